@@ -12,12 +12,8 @@ use nalgebra::{SMatrix, SVector};
 
 type Columns<T> = [[T; 3]; 3];
 
-/// Whether [`solve`] knows systems of so many unknowns.
-pub(crate) const fn are_for(unknowns: usize) -> bool {
-    unknowns == 3 || unknowns == 6
-}
-
-/// x of A x = b and the sign of det A, and in which lanes they are so: not where A is singular, not finite, or not safely solved like this.
+/// x of A x = b with 3 or 6 unknowns and the sign of det A, and in which lanes they are so: not where A is singular, not finite, or not safely
+/// solved like this.
 ///
 /// Accuracy: the relative error of x in the norm in which the columns of A have the length 1 is below 2¹⁶ ε.
 #[inline(always)]

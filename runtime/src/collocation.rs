@@ -23,10 +23,8 @@ use num_traits::Zero;
 
 /// The most sweeps of one step, unless fewer are asked for.
 pub const SWEEPS: u32 = 64;
-
 /// Sweeps after which a derivative has settled as well, for each order of derivatives.
 const SWEEPS_OF_DERIVATIVES: u32 = 4;
-
 /// A change that no longer shrinks is rounding where it is below this multiple of ε.
 const ROUNDING: i64 = 1024;
 

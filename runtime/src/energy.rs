@@ -2,7 +2,7 @@
 
 use crate::implicit::{Equation, solve};
 use crate::linear::solve_linear;
-use crate::{Real, Scalar, Space};
+use crate::{Scalar, Space};
 use nalgebra::{SMatrix, SVector};
 use num_traits::{One, Zero};
 
@@ -33,7 +33,7 @@ pub fn kinetic_energy_at<T: Scalar, const M: usize>(inertia: &SMatrix<T, M, M>, 
             return zero;
         }
         if !(inertia.is_finite() && mu.is_finite()) {
-            return T::Lane::zero() / T::Lane::zero();
+            return zero / zero;
         }
         solve_linear(&inertia, &mu).map_or(one / zero, |velocity| dot(&mu, &velocity) * T::Lane::from_ratio(1, 2))
     })
@@ -57,22 +57,17 @@ pub fn legendre_fenchel<T: Scalar, const M: usize>(equation: &impl VelocityEquat
             let (value, gradient, hessian) = equation.linearize(&xi.map(|x| T::from_lanes(|_| x)));
             (value.lane(lane), gradient.lane(lane), hessian.lane(lane))
         };
-        transform_of_one(linearize, &mu.lane(lane))
+        let (zero, one) = (T::Lane::zero(), T::Lane::one());
+        let mu = mu.lane(lane);
+        let (_, at_rest, hessian) = linearize(&SVector::from_element(zero));
+        if !(mu.is_finite() && at_rest.is_finite() && hessian.is_finite()) {
+            return zero / zero;
+        }
+        match solve(&FromRest { linearize: &linearize, at_rest }, &(mu - at_rest)) {
+            Ok(xi) => dot(&mu, &xi) - linearize(&xi).0,
+            Err(_) => one / zero,
+        }
     })
-}
-
-fn transform_of_one<T: Real, const M: usize>(
-    linearize: impl Fn(&SVector<T, M>) -> (T, SVector<T, M>, SMatrix<T, M, M>),
-    mu: &SVector<T, M>,
-) -> T {
-    let (_, at_rest, hessian) = linearize(&SVector::from_element(T::zero()));
-    if !(mu.is_finite() && at_rest.is_finite() && hessian.is_finite()) {
-        return T::zero() / T::zero();
-    }
-    match solve(&FromRest { linearize: &linearize, at_rest }, &(mu - at_rest)) {
-        Ok(xi) => dot(mu, &xi) - linearize(&xi).0,
-        Err(_) => T::one() / T::zero(),
-    }
 }
 
 fn dot<T: Scalar, const M: usize>(a: &SVector<T, M>, b: &SVector<T, M>) -> T {

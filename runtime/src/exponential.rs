@@ -17,7 +17,6 @@ use num_traits::One;
 
 /// More terms than any precision asks for: 1/40! is 10⁻⁴⁸.
 const TERMS: i64 = 40;
-
 /// Halvings that bring every finite `f64` below one.
 const HALVINGS: u32 = 1100;
 

@@ -40,7 +40,6 @@ mod turn;
 
 /// The most duplications: each doubles the error of the angle, which is that of its last digit.
 const DUPLICATIONS: u32 = 24;
-
 /// The error of an angle up to which it is still one.
 const LARGEST_ERROR: f64 = 1.0 / 8192.0;
 
@@ -85,9 +84,6 @@ impl<T: Scalar> FreeRotation<T> {
 
     /// The same with series that end before terms below `tolerance` of d: turns are of the group and momenta turn by them, but d, and with it
     /// the energy, is off by so much.
-    ///
-    /// # Errors
-    /// As [`new`](Self::new).
     pub fn to_tolerance(inertia: &SMatrix<T, 3, 3>, h: T, tolerance: f64) -> Result<Self, Error> {
         let mut all = Self {
             scale: T::zero(),
@@ -110,9 +106,6 @@ impl<T: Scalar> FreeRotation<T> {
     }
 
     /// The Gibbs vector ρ/ρ₀ = tan(θ/2) n of the rotation that starts with the momentum `momentum`.
-    ///
-    /// # Errors
-    /// As [`turn`](Self::turn).
     #[inline]
     pub fn gibbs_vector(&self, momentum: &Vector<T>) -> Result<Vector<T>, Error> {
         self.turn(momentum).map(ratio)
@@ -131,18 +124,12 @@ impl<T: Scalar> FreeRotation<T> {
     }
 
     /// As [`gibbs_vector`](Self::gibbs_vector), of a motion that is known.
-    ///
-    /// # Errors
-    /// As [`turn`](Self::turn).
     #[inline]
     pub fn gibbs_vector_of(&self, kept: &KeptRotation<T>, momentum: &Vector<T>) -> Result<Vector<T>, Error> {
         self.turn_of(kept, momentum).map(ratio)
     }
 
     /// As [`turn`](Self::turn), of a motion that is known.
-    ///
-    /// # Errors
-    /// As [`turn`](Self::turn).
     #[inline(always)]
     pub fn turn_of(&self, kept: &KeptRotation<T>, momentum: &Vector<T>) -> Result<Turn<T>, Error> {
         self.turn_by(Some(kept), momentum)

@@ -162,9 +162,6 @@ impl<T: Real> FreeRotation4<T> {
     }
 
     /// The constants of the motion with m = hM/s: as few parts as will do.
-    ///
-    /// # Errors
-    /// [`Error::Unsolvable`], [`Error::NotFinite`].
     #[cold]
     fn constants(&self, m: &Vector<T>) -> Result<Constants<T>, Error> {
         if m.iter().any(|entry| !entry.is_finite()) {

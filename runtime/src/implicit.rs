@@ -135,7 +135,6 @@ pub fn orientation<T: Scalar, const M: usize, const N: usize>(
 
 /// Newton steps that are tried before the path is followed. Each at least halves the correction and most square it.
 const QUICK: u32 = 12;
-
 /// How many times as large as that of the predictor a residual may be, where ρ has poles.
 const FARTHEST: f64 = 1024.0;
 

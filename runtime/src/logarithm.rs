@@ -11,9 +11,10 @@ use nalgebra::SMatrix;
 /// Square roots that bring every matrix of finite `f64` near the identity whose entries off the diagonal are not much larger
 /// than those on it.
 const ROOTS: u32 = 64;
-
 /// Terms of the series: 3⁻⁸⁰ is 10⁻³⁸.
 const TERMS: i64 = 40;
+/// Iterations for one square root: scaled, five to ten are enough; for an eigenvalue on the negative axis none are.
+const ITERATIONS: u32 = 40;
 
 /// The principal logarithm, whose eigenvalues have imaginary parts between −π and π.
 ///
@@ -74,9 +75,6 @@ fn inverse_hyperbolic_tangent<T: Real, const N: usize>(x: &SMatrix<T, N, N>) -> 
     Some(sum)
 }
 
-/// Iterations for one square root: scaled, five to ten are enough; for an eigenvalue on the negative axis none are.
-const ITERATIONS: u32 = 40;
-
 /// The principal square root X by X ← (X + Y⁻¹)/2, Y ← (Y + X⁻¹)/2 from A and I, Y being X A⁻¹; `None` where it does not converge
 /// to one.
 ///
@@ -100,16 +98,12 @@ fn square_root<T: Real, const N: usize>(a: &SMatrix<T, N, N>) -> Option<SMatrix<
         (x, y) = (next, next_y);
         // The iteration after the last one that helps is made, for derivatives are behind by one.
         if distance <= T::EPSILON || before < hundredth && distance > before * half {
-            return is_root(&x, a).then_some(x);
+            // X² is A to half of the digits at least
+            return (norm(&(product(&x, &x) - a)) <= T::EPSILON.sqrt() * norm(a)).then_some(x);
         }
         before = distance;
     }
     None
-}
-
-/// Whether X² is A to half of the digits at least.
-fn is_root<T: Real, const N: usize>(root: &SMatrix<T, N, N>, a: &SMatrix<T, N, N>) -> bool {
-    norm(&(product(root, root) - a)) <= T::EPSILON.sqrt() * norm(a)
 }
 
 #[cfg(test)]

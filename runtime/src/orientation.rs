@@ -37,12 +37,6 @@ impl Orientation {
         Self { positive: (regular & !negative).bits(), negative: (regular & negative).bits() }
     }
 
-    /// Whether the matrix is regular in all lanes.
-    #[inline]
-    pub(crate) fn is_known<T: Scalar>(self) -> bool {
-        self.lanes::<T>().all()
-    }
-
     /// The lanes in which the matrix is regular.
     #[inline]
     pub(crate) fn lanes<T: Scalar>(self) -> T::Mask {

@@ -71,40 +71,27 @@ pub trait Moves<X, D> {
     fn of(x: &X, d: impl FnOnce() -> D) -> Self::Motion;
 }
 
-/// q and N move by D.
-pub struct ByIncrement;
+/// One type for each: what it takes, and how that is made of x and of what makes D.
+macro_rules! moves {
+    ($($doc:literal $name:ident: $motion:ty, |$x:pat_param, $d:pat_param| $made:expr;)*) => { $(
+        #[doc = $doc]
+        pub struct $name;
 
-impl<X, D> Moves<X, D> for ByIncrement {
-    type Motion = D;
+        impl<X: Copy, D> Moves<X, D> for $name {
+            type Motion = $motion;
 
-    #[inline(always)]
-    fn of(_: &X, d: impl FnOnce() -> D) -> D {
-        d()
-    }
+            #[inline(always)]
+            fn of($x: &X, $d: impl FnOnce() -> D) -> $motion {
+                $made
+            }
+        }
+    )* };
 }
 
-/// q and N move by x, without the matrix D.
-pub struct ByCoordinates;
-
-impl<X: Copy, D> Moves<X, D> for ByCoordinates {
-    type Motion = X;
-
-    #[inline(always)]
-    fn of(x: &X, _: impl FnOnce() -> D) -> X {
-        *x
-    }
-}
-
-/// q moves by x, N by D.
-pub struct ByBoth;
-
-impl<X: Copy, D> Moves<X, D> for ByBoth {
-    type Motion = (X, D);
-
-    #[inline(always)]
-    fn of(x: &X, d: impl FnOnce() -> D) -> (X, D) {
-        (*x, d())
-    }
+moves! {
+    "q and N move by D." ByIncrement: D, |_, d| d();
+    "q and N move by x, without the matrix D." ByCoordinates: X, |x, _| *x;
+    "q moves by x, N by D." ByBoth: (X, D), |x, d| (*x, d());
 }
 
 /// What moves q and N in a step of S by M.
@@ -209,9 +196,6 @@ pub trait FreeMotion<M: Method<Self> = Declared>: Parts<M> {
     fn kept(&self, c: &M::Constants, mu: &Mu<Self>) -> Self::Kept;
 
     /// The coordinates x of this motion, and M after it where the motion gives both at once.
-    ///
-    /// # Errors
-    /// As [`Substep::solve`].
     fn follow(&self, c: &M::Constants, kept: &Self::Kept, mu: &Mu<Self>) -> Solved<(X<Self, M>, Mu<Self>)>;
 }
 

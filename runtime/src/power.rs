@@ -215,9 +215,7 @@ pub trait Power<const N: usize>:
     }
 
     /// Moves all sites with their momenta, and with `kick` beside them, in the storage of others.
-    ///
-    /// # Errors
-    /// Those of a step of a site, with its index.
+    /// An error comes with the index of its site.
     #[inline]
     #[allow(clippy::too_many_arguments, reason = "two states, and what is between")]
     fn drift_into(

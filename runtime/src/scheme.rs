@@ -149,9 +149,6 @@ pub trait Scheme<S: Clebsch + ?Sized, M: Method<S> = Declared> {
     }
 
     /// One step of the discrete Euler–Poincaré representation: (q, N) ↦ (q⁺, N⁺), from the time t to t + h, with the input u of its forces.
-    ///
-    /// # Errors
-    /// Those of [`Stepper::step`](crate::Stepper::step).
     fn step(at: AtOf<'_, S, Self, M>, state: Before<'_, S, Self, M>, u: &S::Input)
     -> Result<Parted<S, Self, M>, Error>;
 

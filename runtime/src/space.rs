@@ -237,9 +237,7 @@ tuple!(A.0, B.1, C.2, D.3, E.4, F.5, G.6, H.7);
 pub(crate) const MOST_LANES: usize = 16;
 
 /// What a function of the lane gives, lane by lane; `nothing` in the lanes that fail.
-///
-/// # Errors
-/// That of the first lane that is not merely NaN, where all of them fail.
+/// If all lanes fail, the error is that of the first that is not merely NaN.
 #[inline]
 pub(crate) fn each_lane<T: Scalar, V: Copy>(
     nothing: V,

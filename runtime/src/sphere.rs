@@ -76,9 +76,6 @@ pub fn turn_great_circle<T: Scalar, const N: usize>(
 }
 
 /// √(1 − sin²θ), NaN in lanes where there is none.
-///
-/// # Errors
-/// Those of [`turn_great_circle`].
 #[inline]
 fn cosine_of<T: Scalar>(sine_squared: T) -> Result<T, Error> {
     if !sine_squared.below(T::one()).any() {
@@ -89,9 +86,6 @@ fn cosine_of<T: Scalar>(sine_squared: T) -> Result<T, Error> {
 
 /// The same of a point that nothing pushes, whose momentum M = vuᵀ − uvᵀ stays, with w = Mq: q stays in the plane of u and v, what rounding puts beside it
 /// shrinks by c in each step. A point that knows its q and w alone meets the same rounding on each round, and its plane turns away like the number of steps.
-///
-/// # Errors
-/// As [`turn_great_circle`].
 #[inline]
 pub fn turn_freely<T: Scalar, const N: usize>(
     a: T,
@@ -112,9 +106,6 @@ pub fn turn_freely<T: Scalar, const N: usize>(
 /// ```text
 /// p = βq + w, w ⊥ q:    q⁺ = cq + a|q|²w,    p⁺ = βq⁺ + cw − a|w|²q,    c² = 1 − a²|q|²|w|²
 /// ```
-///
-/// # Errors
-/// As [`turn_great_circle`].
 ///
 /// Source: Nordkvist, Crouch and Bloch, *Discrete Clebsch Optimal Control*, theorem 1 and example B.
 #[inline]

@@ -13,12 +13,11 @@ use crate::{Real, Scalar};
 ///
 /// Source: Stumpff, *Himmelsmechanik* I, 1959, section V.
 pub fn stumpff<T: Scalar>(k: u32, s: T) -> T {
-    T::from_lanes(|lane| stumpff_of_one(k, s.lane(lane)))
-}
-
-fn stumpff_of_one<T: Real>(k: u32, s: T) -> T {
-    let switch = if k < 3 { T::one() } else { T::from_f64(16.0) };
-    if s.abs() <= switch { series(k, s) } else { closed(k, s) }
+    let switch = T::Lane::from_f64(if k < 3 { 1.0 } else { 16.0 });
+    T::from_lanes(|lane| match s.lane(lane) {
+        s if s.abs() <= switch => series(k, s),
+        s => closed(k, s),
+    })
 }
 
 /// More terms than any precision asks for: 16⁴⁰/83! is 10⁻⁷⁶.

@@ -204,7 +204,7 @@ impl<T: Scalar, const N: usize, const M: usize> Jacobian<T, M> for Sylvester<T, 
 
     fn orientation(&self) -> Option<Orientation> {
         let (_, orientation) = Jacobian::<T, M>::solve(self, &SVector::from_element(T::zero()))?;
-        orientation.is_known::<T>().then_some(orientation)
+        orientation.lanes::<T>().all().then_some(orientation)
     }
 
     fn solve_exchanged(&self, exchanged: Option<(usize, &SVector<T, M>)>, right: &SVector<T, M>) -> Solution<T, M>

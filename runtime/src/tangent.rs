@@ -182,7 +182,9 @@ where
         let (mut q, mut mu) = (*state.configuration(), state.momentum());
         let mut tangent = Tangent::identity();
         for number in 0..B::EDGES {
-            let passed = self.pass(number, state.time.now(), &q, &mu, u).map_err(|error| self.told(state, u, error))?;
+            // the error of an edge is that of the step that it is a part of
+            let told = |error| if T::LANES == 1 { self.refusal(state, u, 0, error) } else { error };
+            let passed = self.pass(number, state.time.now(), &q, &mu, u).map_err(told)?;
             seen(number, &q, &passed);
             tangent = if number == 0 { passed.tangent } else { tangent.then(&passed.tangent) };
             (q, mu) = (passed.next, passed.edge.momentum);
@@ -217,12 +219,6 @@ where
         let held = B::Scheme::held(&q, &mu);
         let next = State { time, configuration: q, held, left, h: self.step_size() };
         if next.is_finite() { Ok(next) } else { Err(self.overflow(&next, 0)) }
-    }
-
-    /// The error of an edge as that of the step that it is a part of.
-    #[cold]
-    fn told(&self, state: &State<S, B>, u: &S::Input, error: Error) -> Error {
-        if T::LANES == 1 { self.refusal(state, u, 0, error) } else { error }
     }
 
     /// One step with its derivatives with respect to the state and to everything that is fixed during it: parameters, step size, time,

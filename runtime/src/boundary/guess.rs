@@ -35,9 +35,6 @@ type Motions<T, const M: usize> = [SVector<T, M>; COARSE + 1];
 
 impl<T: Real, S: Variational<M, Scalar = T>, B: Differentiated<S, M>, const M: usize> Search<'_, S, M, B> {
     /// Fills the nodes with the guess and brings the end so near to the target that Newton's method does the rest.
-    ///
-    /// # Errors
-    /// [`Error::UndeterminedDirection`], [`Error::Unreachable`], [`Error::NotFinite`].
     pub fn prepare(&mut self, guess: &Guess<T, M>) -> Result<(), Error> {
         let start = match guess {
             Guess::Geodesic => Some(Space::origin()),

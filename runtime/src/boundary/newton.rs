@@ -83,9 +83,6 @@ impl<T: Real, S: Variational<M, Scalar = T>, B: Differentiated<S, M>, const M: u
     /// often, the Hessian damped.
     ///
     /// Corrections are measured in the norm of the Hessian relative to the action, which no choice of units changes.
-    ///
-    /// # Errors
-    /// [`Error::NotFinite`], [`Error::Unreachable`], [`Error::UndeterminedDirection`], [`Error::NoExtremal`].
     #[inline]
     pub fn newton(&mut self, guess: &Guess<T, M>) -> Result<(PathSummary<T, M>, u32), Error> {
         self.prepare(guess)?;

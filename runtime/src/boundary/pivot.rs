@@ -1,7 +1,7 @@
 //! The symmetric M×M pivot of a vertex, and what is made of it: gain and shift.
 
 use crate::Real;
-use crate::linear::rows;
+use crate::linear::{matrix, rows};
 use crate::newton::{Curvature, Ldl, Spectrum};
 use crate::space::larger;
 use core::array::from_fn;
@@ -102,7 +102,7 @@ impl<T: Real, const M: usize> Pivot<T, M> {
         let gradient = SVector::from_fn(|i, _| sum::<T, M>(|k| w[k][i] * shift[k][0]));
         factors.backward(&mut gain);
         factors.backward(&mut shift);
-        feedback.gain = matrix(&gain);
+        feedback.gain = matrix(gain);
         feedback.shift = SVector::from_fn(|i, _| shift[i][0]);
         let decrement = sum::<T, M>(|i| feedback.shift[i] * g[i]);
         Some(Solution { hessian, gradient, decrement, negative: 0 })
@@ -112,8 +112,8 @@ impl<T: Real, const M: usize> Pivot<T, M> {
     #[cold]
     fn by_eigenvalues(&self, curvature: Curvature<T>, feedback: &mut Feedback<T, M>) -> Solution<T, M> {
         let sign = self.sign;
-        let c = matrix(&self.c);
-        let spectrum = Spectrum::of(&matrix(&self.d));
+        let c = matrix(self.c);
+        let spectrum = Spectrum::of(&matrix(self.d));
         let is_wrong = |value: T| value * sign < T::zero();
         let inverse = spectrum.map(|value| {
             if !curvature.is_mirrored {
@@ -139,12 +139,6 @@ impl<T: Real, const M: usize> Pivot<T, M> {
 #[inline]
 fn sum<T: Real, const M: usize>(term: impl Fn(usize) -> T) -> T {
     (1..M).fold(term(0), |sum, k| sum + term(k))
-}
-
-/// The matrix of these rows.
-#[inline]
-fn matrix<T: Real, const M: usize>(rows: &[[T; M]; M]) -> SMatrix<T, M, M> {
-    SMatrix::from_fn(|i, j| rows[i][j])
 }
 
 /// The rows of these entries, with 0 above the diagonal.

@@ -20,10 +20,7 @@ const SIZES: usize = 6;
 
 impl<T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: usize, const C: usize> Plan<'_, S, D, U, C> {
     /// The critical plan near the guess that the stages hold; without their multipliers where those mislead, and from further away where
-    /// there is none.
-    ///
-    /// # Errors
-    /// Those of [`newton`](Self::newton), of the attempt that came nearest. The stages hold the inputs of the guess then.
+    /// there is none. If all attempts fail, the error is that of the one that came nearest, and the stages hold the inputs of the guess.
     pub fn attempt<'p>(&mut self) -> Result<Optimum<'p, S, D, U, C>, Error> {
         self.stages.iter_mut().for_each(|stage| stage.guess = stage.input);
         let is_warm = self.stages.iter().any(|stage| stage.next_costate.max_abs() > T::zero());
@@ -48,9 +45,6 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: usize
     }
 
     /// Varies the inputs of the guess so that they end nearer to the target; those of variation 0 stay as they are.
-    ///
-    /// # Errors
-    /// Those of a step.
     #[cold]
     fn vary(&mut self, variation: u32) -> Result<(), Error> {
         if variation > 0 {

@@ -135,9 +135,6 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: usize
 
     /// Multipliers of the bounds from the correction that would come next, for a plan that needs none: slacks of active bounds, of
     /// which μ/s is made, have few digits.
-    ///
-    /// # Errors
-    /// Those of a step.
     pub fn settle(&mut self, change: &SVector<T, D>, barrier: T) -> Result<(), Error> {
         let Problem { system, constants, .. } = self.problem;
         let mut displacement = SVector::<T, D>::from_element(T::zero());

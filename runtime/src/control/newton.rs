@@ -24,9 +24,6 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: usize
     /// The critical plan near the guess, a minimum where one is found, after at most [`SWEEPS`] more sweeps; its stages are not in it yet.
     ///
     /// Corrections close the gap to the target; where `is_priced`, it is priced, and closed where little of it is left.
-    ///
-    /// # Errors
-    /// [`Error::NotFinite`], [`Error::Uncontrollable`], [`Error::Infeasible`], [`Error::TargetMissed`], [`Error::NoExtremal`].
     pub fn newton<'p>(&mut self, is_priced: bool) -> Result<Optimum<'p, S, D, U, C>, Error> {
         let zero = T::zero();
         let bounds = self.bounds();
@@ -116,9 +113,6 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: usize
     }
 
     /// The plan that the inputs make, with the multipliers that the stages hold.
-    ///
-    /// # Errors
-    /// Those of a step.
     fn start(&mut self, is_priced: bool) -> Result<Iterate<T, D>, Error> {
         self.follow()?;
         let end = self.end();

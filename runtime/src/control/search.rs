@@ -147,9 +147,6 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: usize
     }
 
     /// The places that the inputs lead to.
-    ///
-    /// # Errors
-    /// Those of a step; [`Error::NotFinite`].
     pub fn follow(&mut self) -> Result<(), Error> {
         let Problem { system, constants, start, .. } = self.problem;
         let mut x = *start;
@@ -162,9 +159,6 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: usize
     }
 
     /// Proposes the plan after `fraction` of the correction with the change δν of the multipliers of the target.
-    ///
-    /// # Errors
-    /// Those of a step.
     fn roll_out(
         &mut self,
         descent: &Descent<'_, T, D, U>,

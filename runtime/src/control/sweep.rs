@@ -127,9 +127,6 @@ impl<S: Controlled<D, U, C, Scalar: Real>, const D: usize, const U: usize, const
 
 impl<T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: usize, const C: usize> Plan<'_, S, D, U, C> {
     /// Linearises and eliminates: fills costates, gains and shifts of the stages.
-    ///
-    /// # Errors
-    /// Those of a step.
     pub fn eliminate(&mut self, end: &PlanEnd<T, D>, settings: &Settings<T, D>) -> Result<PlanSummary<T, D, U>, Error> {
         let Problem { system, constants, .. } = self.problem;
         let steps = self.stages.len();

@@ -10,10 +10,8 @@ use nalgebra::{SVector, Vector1};
 
 /// The degree up to which the series are known.
 const DEGREE: usize = 14;
-
 /// One for each monomial of degree 1 to [`DEGREE`], and one for 1.
 pub(super) const MONOMIALS: usize = (DEGREE + 1) * (DEGREE + 2) / 2;
-
 /// The degrees of polynomials that are evaluated: as many terms as α asks for.
 const DEGREES: [usize; 9] = [2, 3, 4, 5, 6, 8, 10, 12, 14];
 

@@ -12,9 +12,7 @@ use num_traits::Zero;
 /// of them, where the equation's limit leaves iterations for it.
 ///
 /// A lane that has none becomes NaN.
-///
-/// # Errors
-/// Where no lane has a solution: the error of the first whose target is finite, as the others have none of their own.
+/// If no lane has a solution, the error is that of the first whose target is finite: the others have none of their own.
 #[cold]
 #[inline(never)]
 pub(super) fn follow<T: Scalar, E: Equation<T, M, N>, const M: usize, const N: usize>(

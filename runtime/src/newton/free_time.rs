@@ -32,8 +32,7 @@ pub(crate) struct Bracket<T> {
 }
 
 impl<T: Real> Bracket<T> {
-    /// # Errors
-    /// [`Error::StepSize`] for limits that are not positive numbers in order.
+    /// Limits are positive numbers in order.
     pub fn within(steps: &RangeInclusive<T>) -> Result<Self, Error> {
         let limits = [*steps.start(), *steps.end()];
         let is_valid = |limit: T| limit > T::zero() && limit.is_finite() && steps.start() <= steps.end();
@@ -47,9 +46,6 @@ impl<T: Real> Bracket<T> {
     /// would be as near as `accuracy`, relative to it. With the sweeps of all trials.
     ///
     /// Where `retreats`, a trial that failed is followed by one nearer to a step size that has a solution.
-    ///
-    /// # Errors
-    /// [`Error::NoExtremal`], and those of the trials.
     pub fn critical<A>(
         mut self,
         first: T,

@@ -2,6 +2,7 @@
 
 use super::Spectrum;
 use crate::Real;
+use crate::linear::rows;
 use crate::space::larger;
 use core::array::from_fn;
 use nalgebra::{SMatrix, SVector};
@@ -24,7 +25,7 @@ pub(crate) fn arc_per_chord<T: Real>(along: T, across: T) -> Option<T> {
 #[inline]
 #[allow(clippy::needless_range_loop)] // Indices show the algorithm and, below constant bounds, cost no checks.
 pub fn regular<T: Real, const M: usize>(a: &SMatrix<T, M, M>, b: &SVector<T, M>) -> Option<SVector<T, M>> {
-    let mut l: [[T; M]; M] = from_fn(|i| from_fn(|j| a[(i, j)]));
+    let mut l = rows(a);
     let largest = (0..M).fold(T::zero(), |max, i| larger(max, a[(i, i)]));
     let mut x: [T; M] = from_fn(|i| b[i]);
     for k in 0..M {

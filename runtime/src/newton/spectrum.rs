@@ -15,7 +15,6 @@ pub(crate) struct Spectrum<T, const M: usize> {
 
 /// What a mirrored eigenvalue is at least, relative to the largest: steps along a direction without curvature end somewhere.
 const MIRRORED: f64 = 1e-4;
-
 /// Sweeps over all pairs of rows. Convergence is quadratic: six do for M = 3, ten for M = 64.
 const SWEEPS: usize = 24;
 

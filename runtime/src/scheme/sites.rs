@@ -27,31 +27,24 @@ pub trait SiteKicks<S: Power<N>, const N: usize> {
     type Left: LeftKick<Mu<S>> + Space<S::Scalar>;
 }
 
-/// Half a kick before the moves, and half of one after them.
-pub struct BothKicks;
+/// One type for each: the weights at the start and at the end, and what one step leaves to the next.
+macro_rules! kicks {
+    ($($doc:literal $name:ident: $start:literal, $end:literal, $left:ty;)*) => { $(
+        #[doc = $doc]
+        pub struct $name;
 
-impl<S: Power<N>, const N: usize> SiteKicks<S, N> for BothKicks {
-    const START: f64 = -0.5;
-    const END: f64 = -0.5;
-    type Left = S::Momentum;
+        impl<S: Power<N>, const N: usize> SiteKicks<S, N> for $name {
+            const START: f64 = $start;
+            const END: f64 = $end;
+            type Left = $left;
+        }
+    )* };
 }
 
-/// A kick after the moves.
-pub struct EndKick;
-
-impl<S: Power<N>, const N: usize> SiteKicks<S, N> for EndKick {
-    const START: f64 = 0.0;
-    const END: f64 = -1.0;
-    type Left = ();
-}
-
-/// No kick.
-pub struct NoKick;
-
-impl<S: Power<N>, const N: usize> SiteKicks<S, N> for NoKick {
-    const START: f64 = 0.0;
-    const END: f64 = 0.0;
-    type Left = ();
+kicks! {
+    "Half a kick before the moves, and half of one after them." BothKicks: -0.5, -0.5, S::Momentum;
+    "A kick after the moves." EndKick: 0.0, -1.0, ();
+    "No kick." NoKick: 0.0, 0.0, ();
 }
 
 /// The kick that one step leaves to the next, or nothing.

@@ -30,9 +30,7 @@ struct Failed<X> {
 
 impl<S: Clebsch, M: Method<S>> Chunk<State<S, M>> {
     /// From at least one body, and at most one for each lane, of which the first has this number.
-    ///
-    /// # Errors
-    /// The first body that [`Stepper::state`] refuses.
+    /// The error is that of the first body that [`Stepper::state`] refuses.
     pub fn new(stepper: &Stepper<S, M>, first: usize, bodies: &[Body<S>]) -> Result<Self, Failure> {
         let body = |lane: usize| bodies[lane.min(bodies.len() - 1)];
         let q = S::Configuration::side_by_side(|lane| body(lane).0);
@@ -76,7 +74,8 @@ impl<S: Clebsch, M: Method<S>> Chunk<State<S, M>> {
                 self.failed.push(Failed { lane, failure, state: self.state });
                 self.live &= !(1 << lane);
             }
-            next.held.set_lane(lane, &undefined::<S, M>().lane(lane));
+            let undefined = Held::<S, M>::filled(S::Scalar::zero() / S::Scalar::zero());
+            next.held.set_lane(lane, &undefined.lane(lane));
         }
         next.time = self.state.time.after_step(stepper.h);
         self.state = next;
@@ -122,9 +121,4 @@ pub fn advance<S: Clebsch, M: Method<S>>(
 /// A state with the same body in all lanes, checked.
 pub fn alone<S: Clebsch, M: Method<S>>(stepper: &Stepper<S, M>, (q, mu): &Body<S>) -> Result<State<S, M>, Error> {
     stepper.state(S::Configuration::side_by_side(|_| *q), S::Momentum::side_by_side(|_| *mu))
-}
-
-/// Momenta that are no numbers.
-fn undefined<S: Clebsch, M: Method<S>>() -> Held<S, M> {
-    Held::<S, M>::filled(S::Scalar::zero() / S::Scalar::zero())
 }
