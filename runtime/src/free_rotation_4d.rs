@@ -25,7 +25,7 @@ use crate::parameters::invert;
 use crate::root::root;
 use crate::space::each_lane;
 use crate::{Error, Mask, Real, Scalar, Space};
-use flow::{Matrix, PLANES, Vector, above, dot, flow, product, skew};
+use flow::{Matrix, Moved, PLANES, Vector, above, dot, flow, product, skew};
 use nalgebra::{SMatrix, SVector};
 use setup::Constants;
 use turn::{composed, turn};
@@ -103,7 +103,7 @@ impl<T: Scalar> FreeRotation4<T> {
     /// The same where lanes have different numbers of parts.
     #[cold]
     #[inline(never)]
-    fn lane_by_lane(&self, kept: &KeptRotation4<T>, m: &Vector<T>) -> Result<(Matrix<T>, Vector<T>), Error> {
+    fn lane_by_lane(&self, kept: &KeptRotation4<T>, m: &Vector<T>) -> Result<Moved<T>, Error> {
         let nothing = T::Lane::from_f64(f64::NAN);
         let all = each_lane::<T, _>(([[nothing; 4]; 4], SVector::from_element(nothing)), |lane| {
             self.of_lane(lane).in_parts(&Constants::read(&kept.lane(lane)), &m.lane(lane))
@@ -187,7 +187,7 @@ impl<T: Real> FreeRotation4<T> {
     }
 
     /// F − I and the momentum after a part of a motion, by one series, or by some of half the time, of a quarter, …: each as long as it may be.
-    fn series(&self, m: &Vector<T>) -> Result<(Matrix<T>, Vector<T>), Error> {
+    fn series(&self, m: &Vector<T>) -> Result<Moved<T>, Error> {
         let (mut whole, mut m) = ([[T::zero(); 4]; 4], *m);
         // of the time, in units of 1/PARTS
         let (mut done, mut length) = (0, PARTS);
@@ -218,7 +218,7 @@ impl<T: Real> FreeRotation4<T> {
     }
 
     /// F − I and the momentum after all parts of the time.
-    fn in_parts(&self, constants: &Constants<T>, m: &Vector<T>) -> Result<(Matrix<T>, Vector<T>), Error> {
+    fn in_parts(&self, constants: &Constants<T>, m: &Vector<T>) -> Result<Moved<T>, Error> {
         let parts = constants.parts.to_f64();
         // no constants: the motion says why
         let constants = if parts >= 1.0 { *constants } else { self.constants(m)? };

@@ -104,11 +104,8 @@ pub fn invert_uniform<T: Scalar>(kappa: &T) -> Result<T, Error> {
 }
 
 /// The sign of det Σ/h.
-pub fn orientation_of_inertia<T: Scalar, const N: usize>(
-    inertia: &SMatrix<T, N, N>,
-    h: T,
-) -> Result<Orientation, Error> {
-    Orientation::of(rows(&inertia.map(|entry| entry / h))).ok_or(SINGULAR)
+pub fn orientation_of_inertia<T: Scalar, const N: usize>(sigma: &SMatrix<T, N, N>, h: T) -> Result<Orientation, Error> {
+    Orientation::of(rows(&sigma.map(|entry| entry / h))).ok_or(SINGULAR)
 }
 
 /// The sign of κⁿ.

@@ -10,7 +10,7 @@ mod formulas;
 
 use crate::parts::{C, F, Mu, Q, Solved, T};
 use crate::scheme::{self, At, Scheme};
-use crate::space::larger;
+use crate::space::{larger, minus, plus};
 use crate::{Clebsch, Error, Scalar, Space};
 use core::array::from_fn;
 use num_traits::{One, Zero};
@@ -53,11 +53,6 @@ pub fn wrapped<const N: usize>(index: isize) -> usize {
 #[cold]
 fn remainder<const N: usize>(index: isize) -> usize {
     index.checked_rem_euclid(N as isize).unwrap_or(0) as usize
-}
-
-#[inline]
-fn plus<T: Scalar, S: Space<T>>(a: &S, b: &S) -> S {
-    a.zip_map(b, |a, b| a + b)
 }
 
 /// What no step of a site changes.
@@ -239,7 +234,7 @@ pub trait Power<const N: usize>:
     #[inline]
     fn power_legendre(&self, h: T<Self>, t: T<Self>, q: &Q<Self>, f: &F<Self>, part: f64) -> Mu<Self> {
         let kick = self.power_kick(t, q, h * Scalar::from_f64(part));
-        self.each(|site, i| site.legendre(h, t, &q[i], &f[i]).zip_map(&kick[i], |momentum, kick| momentum - kick))
+        self.each(|site, i| minus(&site.legendre(h, t, &q[i], &f[i]), &kick[i]))
     }
 
     /// F⁺ℓd, where the kick at the end has the weight `part` of a step.

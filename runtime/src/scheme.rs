@@ -12,10 +12,9 @@
 //! ```
 //! A method names its scheme, [`Method::Scheme`](crate::Method), and the system implements the parts that this scheme calls, [`crate::parts`].
 
-/// Of a scheme with one set of constants, whose states hold N itself.
-macro_rules! momentum_is_held {
+/// Of a scheme with one set of constants.
+macro_rules! constants_of_method {
     ($method:ty) => {
-        type Held = S::Momentum;
         type Constants = <$method as crate::Method<S>>::Constants;
 
         fn constants(system: &S, h: S::Scalar) -> Result<Self::Constants, Error> {
@@ -26,6 +25,15 @@ macro_rules! momentum_is_held {
         fn whole(constants: &Self::Constants) -> &Self::Constants {
             constants
         }
+    };
+}
+
+/// The same, where states hold N itself.
+macro_rules! momentum_is_held {
+    ($method:ty) => {
+        type Held = S::Momentum;
+
+        constants_of_method!($method);
 
         #[inline(always)]
         fn held(_: &Q<S>, mu: &Mu<S>) -> Mu<S> {
@@ -83,6 +91,8 @@ pub type Left<S, M = Declared> = <<M as Method<S>>::Scheme as Scheme<S, M>>::Lef
 pub type Constants<S, M = Declared> = <<M as Method<S>>::Scheme as Scheme<S, M>>::Constants;
 /// The parts of a state: q, what is held of N, and what the last step has left.
 pub type Parted<S, P, M = Declared> = (Q<S>, <P as Scheme<S, M>>::Held, <P as Scheme<S, M>>::Left);
+/// The parts of the state after steps.
+pub type Stepped<S, P, M = Declared> = Result<Parted<S, P, M>, Error>;
 /// The parts of the state before a step.
 pub type Before<'a, S, P, M = Declared> = (&'a Q<S>, &'a <P as Scheme<S, M>>::Held, &'a <P as Scheme<S, M>>::Left);
 /// (q, p)
@@ -149,8 +159,7 @@ pub trait Scheme<S: Clebsch + ?Sized, M: Method<S> = Declared> {
     }
 
     /// One step of the discrete Euler–Poincaré representation: (q, N) ↦ (q⁺, N⁺), from the time t to t + h, with the input u of its forces.
-    fn step(at: AtOf<'_, S, Self, M>, state: Before<'_, S, Self, M>, u: &S::Input)
-    -> Result<Parted<S, Self, M>, Error>;
+    fn step(at: AtOf<'_, S, Self, M>, state: Before<'_, S, Self, M>, u: &S::Input) -> Stepped<S, Self, M>;
 
     /// The same step, into the place of another state. After an error that state is unspecified.
     #[inline]
@@ -173,7 +182,7 @@ pub trait Scheme<S: Clebsch + ?Sized, M: Method<S> = Declared> {
         steps: usize,
         state: Before<'_, S, Self, M>,
         u: &S::Input,
-    ) -> Result<Parted<S, Self, M>, Error> {
+    ) -> Stepped<S, Self, M> {
         one_by_one::<S, Self, M>(at, h, steps, state, u)
     }
 
@@ -192,7 +201,7 @@ fn one_by_one<S: Clebsch + ?Sized, P: Scheme<S, M> + ?Sized, M: Method<S>>(
     steps: usize,
     (q, held, left): Before<'_, S, P, M>,
     u: &S::Input,
-) -> Result<Parted<S, P, M>, Error> {
+) -> Stepped<S, P, M> {
     let mut state = (*q, *held, *left);
     let mut clock = Clock::at(at.t);
     for _ in 0..steps {

@@ -84,6 +84,18 @@ pub(crate) fn larger<T: Scalar>(a: T, b: T) -> T {
     T::select(a.below(b), b, a)
 }
 
+/// a + b
+#[inline(always)]
+pub(crate) fn plus<T: Scalar, V: Space<T>>(a: &V, b: &V) -> V {
+    a.zip_map(b, |a, b| a + b)
+}
+
+/// a − b
+#[inline(always)]
+pub(crate) fn minus<T: Scalar, V: Space<T>>(a: &V, b: &V) -> V {
+    a.zip_map(b, |a, b| a - b)
+}
+
 /// `value` with `number` in lane `lane`.
 #[inline]
 fn with_lane<T: Scalar>(value: T, lane: usize, number: T::Lane) -> T {

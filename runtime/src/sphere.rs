@@ -3,7 +3,7 @@
 //! w is the velocity times the inertia, perpendicular to q. What rounding leaves of it along q is taken off at each kick: without that
 //! the errors of q·w and of |q| grow exponentially.
 
-use crate::matrices::{skew_outer, skew_times};
+use crate::matrices::skew_times;
 use crate::{Error, Mask, Scalar};
 use nalgebra::SVector;
 
@@ -14,15 +14,6 @@ pub fn tangent<T: Scalar, const N: usize, const M: usize>(q: &SVector<T, N>, mu:
     let mut w = skew_times(mu, q);
     straighten(q, &mut w);
     w * (T::one() + missing)
-}
-
-/// The components of M = wqᵀ − qwᵀ.
-#[inline]
-pub fn momentum_of_tangent<T: Scalar, const N: usize, const M: usize>(
-    q: &SVector<T, N>,
-    w: &SVector<T, N>,
-) -> SVector<T, M> {
-    skew_outer(w, q)
 }
 
 /// Adds `weight` g to w, and takes off what of it is along q.

@@ -13,6 +13,9 @@ pub(super) type Matrix<T> = [[T; 4]; 4];
 /// One number for each of the [`PLANES`].
 pub(super) type Vector<T> = SVector<T, 6>;
 
+/// F − I of a motion, and the momentum after it.
+pub(super) type Moved<T> = (Matrix<T>, Vector<T>);
+
 /// The skew matrix with these entries above the diagonal.
 pub(super) fn skew<T: Scalar>(v: &Vector<T>) -> Matrix<T> {
     let ([[a, b, c, d, e, f]], zero) = (v.data.0, T::zero());
@@ -74,10 +77,7 @@ const TERMS: usize = 36;
 
 /// F − I and the momentum after the free motion from I in the time 1, Ω = `velocity`(M); `None` where the series has not ended.
 #[cold]
-pub(super) fn flow<T: Real>(
-    velocity: impl Fn(&Vector<T>) -> Vector<T>,
-    m: &Vector<T>,
-) -> Option<(Matrix<T>, Vector<T>)> {
+pub(super) fn flow<T: Real>(velocity: impl Fn(&Vector<T>) -> Vector<T>, m: &Vector<T>) -> Option<Moved<T>> {
     let zero = T::zero();
     let nothing = SVector::from_element(zero);
     let (mut rotations, mut momenta, mut velocities) = ([[[zero; 4]; 4]; TERMS], [nothing; TERMS], [nothing; TERMS]);

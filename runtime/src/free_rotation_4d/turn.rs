@@ -1,12 +1,12 @@
 //! One step of a motion whose constants are known: no iteration, one division.
 
-use super::flow::{Matrix, PLANES, Vector, at, dot, dual, entry, pfaffian, place};
+use super::flow::{Matrix, Moved, PLANES, Vector, at, dot, dual, entry, pfaffian, place};
 use super::setup::{Constants, integrals};
 use crate::Scalar;
 
 /// F − I and the next m of a motion, from m = h̃M.
 #[inline]
-pub(super) fn turn<T: Scalar>(constants: &Constants<T>, m: &Vector<T>) -> (Matrix<T>, Vector<T>) {
+pub(super) fn turn<T: Scalar>(constants: &Constants<T>, m: &Vector<T>) -> Moved<T> {
     let Powers { squares, square, pf, of_square } = Powers::of(m);
     let j = &constants.moments;
     let k = j.map(|j| j * j);

@@ -5,6 +5,7 @@ use super::substep::{Moving, moved};
 use super::{At, Pair};
 use crate::collocation::{GAUSS_16, collocate};
 use crate::parts::{HamiltonEquations, Mu, Q, Substep};
+use crate::space::{minus, plus};
 use crate::sums::Sums;
 use crate::{Error, Method, Scalar, Space};
 
@@ -25,14 +26,14 @@ impl<S: Substep<0, M> + HamiltonEquations<N, M>, M: Method<S>, const N: usize> S
         // Where rounding has moved q off its orbit, J(q, p) of a covector of μ misses μ by as much: added up, N would drift like the square of the steps.
         // So the covector of the difference is added once.
         let p = system.covector(at.constants, q, mu);
-        let p = plus(p, &system.covector(at.constants, q, &minus(*mu, &system.momentum(q, &p))));
+        let p = plus(&p, &system.covector(at.constants, q, &minus(mu, &system.momentum(q, &p))));
         let (dq, dp) = change(at, q, &p, mu)?;
         let half = S::Scalar::from_ratio(1, 2);
         let middle_q = q.zip_map(&dq, |q, dq| q + half * dq);
         let middle_p = p.zip_map(&dp, |p, dp| p + half * dp);
         let by_q = system.momentum(&dq, &middle_p);
-        let by_q = if S::IS_AFFINE { minus(by_q, &system.momentum(&Q::<S>::origin(), &middle_p)) } else { by_q };
-        let added = plus(by_q, &system.momentum(&middle_q, &dp));
+        let by_q = if S::IS_AFFINE { minus(&by_q, &system.momentum(&Q::<S>::origin(), &middle_p)) } else { by_q };
+        let added = plus(&by_q, &system.momentum(&middle_q, &dp));
         state.q = S::Sums::sum(&state.q, &mut state.rests.0, &dq);
         state.on_space();
         state.push(Some(added));
@@ -41,18 +42,8 @@ impl<S: Substep<0, M> + HamiltonEquations<N, M>, M: Method<S>, const N: usize> S
 
     fn step_symmetric(at: At<'_, S, M>, q: &Q<S>, p: &Q<S>) -> Result<Pair<S>, Error> {
         let (dq, dp) = change(at, q, p, &at.system.momentum(q, p))?;
-        Ok((plus(*q, &dq), plus(*p, &dp)))
+        Ok((plus(q, &dq), plus(p, &dp)))
     }
-}
-
-#[inline(always)]
-fn plus<T: Scalar, V: Space<T>>(a: V, b: &V) -> V {
-    a.zip_map(b, |a, b| a + b)
-}
-
-#[inline(always)]
-fn minus<T: Scalar, V: Space<T>>(a: V, b: &V) -> V {
-    a.zip_map(b, |a, b| a - b)
 }
 
 /// (q⁺ − q, p⁺ − p), by collocation at eight nodes.

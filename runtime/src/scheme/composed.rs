@@ -9,7 +9,7 @@
 //! Source: Hairer, Lubich and Wanner, *Geometric Numerical Integration*, section V.3.2: order 4 is Suzuki's (1990), orders 6 and 8 are those of
 //! Kahan and Li, *Composition constants for raising the orders of unconventional schemes for ordinary differential equations* (1997).
 
-use super::{At, AtOf, Before, Pair, Parted, Scheme};
+use super::{At, AtOf, Before, Pair, Parted, Scheme, Stepped};
 use crate::parts::{Mu, Q};
 use crate::{Clebsch, Error, Method, Scalar};
 use core::marker::PhantomData;
@@ -97,11 +97,7 @@ impl<S: Clebsch, M: Method<S>, I: Scheme<S, M>, Z: Sizes<K>, const K: usize> Sch
     }
 
     #[inline]
-    fn step(
-        at: AtOf<'_, S, Self, M>,
-        (q, held, left): Before<'_, S, Self, M>,
-        u: &S::Input,
-    ) -> Result<Parted<S, Self, M>, Error> {
+    fn step(at: AtOf<'_, S, Self, M>, (q, held, left): Before<'_, S, Self, M>, u: &S::Input) -> Stepped<S, Self, M> {
         let step = |stage: &I::Constants, t, (q, held, left): Parted<S, Self, M>| {
             I::step(At::new(at.system, stage, t), (&q, &held, &left), u)
         };

@@ -2,9 +2,10 @@
 
 use super::sequence::{Apart, Shared};
 use super::substep::{inverse_legendre, plus};
-use super::{At, Before, Pair, Parted, Scheme};
+use super::{At, Before, Pair, Scheme, Stepped};
+use crate::matrices::skew_outer;
 use crate::parts::GreatCircles;
-use crate::sphere::{momentum_of_tangent, push, tangent, turn_freely, turn_great_circle, turned_in_plane};
+use crate::sphere::{push, tangent, turn_freely, turn_great_circle, turned_in_plane};
 use crate::{Clebsch, Error, Method, Scalar, Space};
 use core::marker::PhantomData;
 use nalgebra::SVector;
@@ -41,7 +42,7 @@ impl<T: Scalar, const N: usize> Plane<T, N> for SVector<T, N> {
 
     #[inline]
     fn momentum<const D: usize>(&self, q: &SVector<T, N>) -> SVector<T, D> {
-        momentum_of_tangent(q, self)
+        skew_outer(self, q)
     }
 }
 
@@ -54,7 +55,7 @@ impl<T: Scalar, const N: usize> Plane<T, N> for (SVector<T, N>, SVector<T, N>) {
 
     #[inline]
     fn momentum<const D: usize>(&self, _: &SVector<T, N>) -> SVector<T, D> {
-        momentum_of_tangent(&self.0, &self.1)
+        skew_outer(&self.1, &self.0)
     }
 }
 
@@ -170,16 +171,8 @@ where
 {
     type Held = C::Plane;
     type Left = C::Gradient;
-    type Constants = M::Constants;
 
-    fn constants(system: &S, h: S::Scalar) -> Result<M::Constants, Error> {
-        M::constants(system, h)
-    }
-
-    #[inline(always)]
-    fn whole(constants: &M::Constants) -> &M::Constants {
-        constants
-    }
+    constants_of_method!(M);
 
     #[inline]
     fn held(q: &Point<S, N>, mu: &S::Momentum) -> C::Plane {
@@ -202,7 +195,7 @@ where
     }
 
     #[inline]
-    fn step(at: At<'_, S, M>, state: Before<'_, S, Self, M>, _: &S::Input) -> Result<Parted<S, Self, M>, Error> {
+    fn step(at: At<'_, S, M>, state: Before<'_, S, Self, M>, _: &S::Input) -> Stepped<S, Self, M> {
         let (mut q, mut held, mut left) = (*state.0, *state.1, *state.2);
         C::turn(at, 1, (&mut q, &mut held, &mut left))?;
         Ok((q, held, left))
@@ -225,7 +218,7 @@ where
         steps: usize,
         state: Before<'_, S, Self, M>,
         _: &S::Input,
-    ) -> Result<Parted<S, Self, M>, Error> {
+    ) -> Stepped<S, Self, M> {
         let (mut q, mut held, mut left) = (*state.0, *state.1, *state.2);
         C::turn(at, steps, (&mut q, &mut held, &mut left))?;
         Ok((q, held, left))

@@ -1,7 +1,7 @@
 //! What all schemes have in common that are sequences of the parts of a step.
 
 use super::substep::{RestsOf, inverse_legendre, symmetric};
-use super::{At, Before, Pair, Parted, Scheme, one_by_one};
+use super::{At, Before, Pair, Scheme, Stepped, one_by_one};
 use crate::parts::{Mu, Parts, Q, Substep};
 use crate::sums::Sums;
 use crate::{Clebsch, Error, Method, Space};
@@ -66,7 +66,7 @@ impl<S: Substep<0, M>, M: Method<S>, P: Sequence<S, M>> Scheme<S, M> for InSeque
     }
 
     #[inline(always)]
-    fn step(at: At<'_, S, M>, state: Before<'_, S, Self, M>, u: &S::Input) -> Result<Parted<S, Self, M>, Error> {
+    fn step(at: At<'_, S, M>, state: Before<'_, S, Self, M>, u: &S::Input) -> Stepped<S, Self, M> {
         if S::IS_SHORT { P::step(at, state, u) } else { called::<S, M, P>(at, state, u) }
     }
 
@@ -77,7 +77,7 @@ impl<S: Substep<0, M>, M: Method<S>, P: Sequence<S, M>> Scheme<S, M> for InSeque
         steps: usize,
         state: Before<'_, S, Self, M>,
         u: &S::Input,
-    ) -> Result<Parted<S, Self, M>, Error> {
+    ) -> Stepped<S, Self, M> {
         P::steps(at, h, steps, state, u)
     }
 

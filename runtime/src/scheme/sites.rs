@@ -1,8 +1,9 @@
 //! Equal sites, moved one after the other between kicks of all of them.
 
-use super::{At, Before, Pair, Parted, Scheme};
+use super::{At, Before, Pair, Scheme, Stepped};
 use crate::parts::{F, Mu, Q};
 use crate::power::{Power, SiteScheme};
+use crate::space::plus;
 use crate::{Clock, Declared, Error, Space, Time};
 use core::array::from_fn;
 use core::marker::PhantomData;
@@ -100,7 +101,7 @@ impl<S: Power<N>, K: SiteKicks<S, N>, const N: usize> Scheme<S> for SitesInTurn<
     }
 
     #[inline]
-    fn step(at: At<'_, S>, state: Before<'_, S, Self>, u: &()) -> Result<Parted<S, Self>, Error> {
+    fn step(at: At<'_, S>, state: Before<'_, S, Self>, u: &()) -> Stepped<S, Self> {
         Self::steps(at, at.constants.h, 1, state, u)
     }
 
@@ -128,14 +129,14 @@ impl<S: Power<N>, K: SiteKicks<S, N>, const N: usize> Scheme<S> for SitesInTurn<
         steps: usize,
         (q, mu, left): Before<'_, S, Self>,
         (): &(),
-    ) -> Result<Parted<S, Self>, Error> {
+    ) -> Stepped<S, Self> {
         let (mut q, mut mu, mut left) = (*q, *mu, *left);
         let mut gradient = [Space::origin(); N];
         let mut room = [Space::origin(); N];
         let mut clock = Clock::at(t);
         for _ in 0..steps {
             for i in 0..N {
-                let n = left.kick().map_or(mu[i], |kick| mu[i].zip_map(&kick[i], |mu, kick| mu + kick));
+                let n = left.kick().map_or(mu[i], |kick| plus(&mu[i], &kick[i]));
                 (q[i], mu[i]) = system.moved(constants, clock.now(), i, &q[i], &n)?;
             }
             clock = clock.after_step(constants.h);
@@ -154,8 +155,8 @@ impl<S: Power<N>, K: SiteKicks<S, N>, const N: usize> Scheme<S> for SitesInTurn<
         };
         let (mut next, mut moved) = (*q, kicked(p, t, q, K::START));
         for (i, (q, p)) in next.iter_mut().zip(&mut moved).enumerate() {
-            (*q, *p) = system
-                .at_site(constants, i, |site, c| SiteScheme::<S, N>::step_symmetric(At::new(site, c, t), q, p))?;
+            let moved = |site: &_, c: &_| SiteScheme::<S, N>::step_symmetric(At::new(site, c, t), q, p);
+            (*q, *p) = system.at_site(constants, i, moved)?;
         }
         let p = kicked(&moved, t + constants.h, &next, K::END);
         Ok((next, p))
@@ -165,10 +166,9 @@ impl<S: Power<N>, K: SiteKicks<S, N>, const N: usize> Scheme<S> for SitesInTurn<
         let kick = system.power_kick(t, q, constants.part(K::START));
         let mut elements = [Space::origin(); N];
         for (i, element) in elements.iter_mut().enumerate() {
-            let n = mu[i].zip_map(&kick[i], |mu, kick| mu + kick);
-            *element = system.at_site(constants, i, |site, c| {
-                SiteScheme::<S, N>::inverse_legendre(At::new(site, c, t), &q[i], &n)
-            })?;
+            let n = plus(&mu[i], &kick[i]);
+            let found = |site: &_, c: &_| SiteScheme::<S, N>::inverse_legendre(At::new(site, c, t), &q[i], &n);
+            *element = system.at_site(constants, i, found)?;
         }
         Ok(elements)
     }

@@ -1,6 +1,6 @@
 //! What stands where a declaration has an error.
 
-use super::{At, Before, Pair, Parted, Scheme};
+use super::{At, Before, Pair, Scheme, Stepped};
 use crate::parts::{Mu, Q};
 use crate::{Clebsch, Error, Method};
 
@@ -14,7 +14,7 @@ impl<S: Clebsch, M: Method<S, Constants = ()>> Scheme<S, M> for Unstepped {
 
     fn left(_: At<'_, S, M>, _: &Q<S>, _: &Mu<S>) {}
 
-    fn step(_: At<'_, S, M>, _: Before<'_, S, Self, M>, _: &S::Input) -> Result<Parted<S, Self, M>, Error> {
+    fn step(_: At<'_, S, M>, _: Before<'_, S, Self, M>, _: &S::Input) -> Stepped<S, Self, M> {
         Err(Error::NoCovector)
     }
 

@@ -2,8 +2,10 @@
 
 use super::{GRADIENT, Stepper, check_state};
 use crate::parameters::check_finite;
+use crate::parts::{Mu, Q, T};
 use crate::scheme::Scheme;
-use crate::{Clebsch, Error, Method, Space, State, Time};
+use crate::space::{minus, plus};
+use crate::{Clebsch, Error, Method, State, Time};
 use num_traits::Zero;
 
 /// With `order = 1` a step drifts, then kicks, and the momentum N of a state is ahead of its configuration by half of the kick there.
@@ -53,7 +55,7 @@ impl<S: Clebsch, M: Method<S>> Stepper<S, M> {
     #[inline]
     pub fn synchronized(&self, state: &State<S, M>) -> S::Momentum {
         let ahead = M::stagger(&self.system, self.h, state.time.now(), &state.configuration);
-        state.momentum().zip_map(&ahead, |momentum, ahead| momentum - ahead)
+        minus(&state.momentum(), &ahead)
     }
 
     /// Kinetic energy plus potential, with the momentum that [`synchronized`](Self::synchronized) reads: with `order = 1` its error is of the order
@@ -110,16 +112,11 @@ impl<S: Clebsch, M: Method<S>> Stepper<S, M> {
         self.checked_staggered_state(state.time.now(), *state.configuration(), other.synchronized(state))
     }
 
-    pub(super) fn checked_staggered_state(
-        &self,
-        t: S::Scalar,
-        q: S::Configuration,
-        mu: S::Momentum,
-    ) -> Result<State<S, M>, Error> {
+    pub(super) fn checked_staggered_state(&self, t: T<S>, q: Q<S>, mu: Mu<S>) -> Result<State<S, M>, Error> {
         check_state(&self.system, &q, &mu)?;
         let stagger = M::stagger(&self.system, self.h, t, &q);
         check_finite(GRADIENT, &stagger)?;
-        let staggered = mu.zip_map(&stagger, |momentum, ahead| momentum + ahead);
+        let staggered = plus(&mu, &stagger);
         check_finite("the momentum half a kick ahead", &staggered)?;
         self.made_state(t, q, staggered)
     }

@@ -1,6 +1,7 @@
 //! State after state.
 
 use super::{GRADIENT, Stepper, check_state, first_without, whole_or_lane};
+use crate::parts::{Mu, Q, T, U};
 use crate::scheme::{Left, Scheme};
 use crate::{Clebsch, Error, Mask, Method, Scalar, Space, State, Time, Trajectory};
 use num_traits::Zero;
@@ -101,24 +102,18 @@ impl<S: Clebsch, M: Method<S>> Stepper<S, M> {
         if next.is_finite() { Ok(()) } else { Err(self.beyond(next)) }
     }
 
-    pub(super) fn checked_state(
-        &self,
-        t: S::Scalar,
-        q: S::Configuration,
-        mu: S::Momentum,
-    ) -> Result<State<S, M>, Error> {
+    pub(super) fn checked_state(&self, t: T<S>, q: Q<S>, mu: Mu<S>) -> Result<State<S, M>, Error> {
         check_state(&self.system, &q, &mu)?;
         self.made_state(t, q, mu)
     }
 
     /// The state (q, N) with what its first step takes.
-    pub(super) fn made_state(&self, t: S::Scalar, q: S::Configuration, mu: S::Momentum) -> Result<State<S, M>, Error> {
+    pub(super) fn made_state(&self, t: T<S>, q: Q<S>, mu: Mu<S>) -> Result<State<S, M>, Error> {
         let left = M::Scheme::left(self.at(t), &q, &mu);
         if !left.is_finite() {
             let has_gradient = (0..S::Scalar::LANES).all(|lane| self.has_gradient(t, &q, lane));
-            return Err(Error::NotFinite {
-                name: if has_gradient { "the velocity of this momentum" } else { GRADIENT },
-            });
+            let name = if has_gradient { "the velocity of this momentum" } else { GRADIENT };
+            return Err(Error::NotFinite { name });
         }
         let held = M::Scheme::held(&q, &mu);
         Ok(State { time: S::Time::at(t), configuration: q, held, left, h: self.h })
@@ -133,12 +128,7 @@ impl<S: Clebsch, M: Method<S>> Stepper<S, M> {
 
     /// The same with the impulse at the configuration.
     #[inline(always)]
-    pub(crate) fn attempt_with(
-        &self,
-        state: &State<S, M>,
-        left: &Left<S, M>,
-        u: &S::Input,
-    ) -> Result<State<S, M>, Error> {
+    pub(crate) fn attempt_with(&self, state: &State<S, M>, left: &Left<S, M>, u: &U<S>) -> Result<State<S, M>, Error> {
         let State { time, configuration, held, .. } = state;
         match M::Scheme::step(self.at(time.now()), (configuration, held, left), u) {
             Ok((configuration, held, left)) => {

@@ -2,6 +2,7 @@
 
 use super::Stepper;
 use crate::parameters::check_finite;
+use crate::parts::{Q, T};
 use crate::scheme::Scheme;
 use crate::{Clebsch, CotangentState, Error, Mask, Method, Scalar, Space, Time};
 use num_traits::Zero;
@@ -22,7 +23,7 @@ impl<S: Clebsch, M: Method<S>> Stepper<S, M> {
     #[inline]
     pub fn step_symmetric(&self, state: &CotangentState<S>) -> Result<CotangentState<S>, Error> {
         let time = state.time.after_step(self.h);
-        let name = |(q, now, _): &(S::Configuration, S::Scalar, S::Configuration), lane| {
+        let name = |(q, now, _): &(Q<S>, T<S>, Q<S>), lane| {
             if !q.finite().lane(lane) {
                 "the configuration after the step"
             } else if !Scalar::finite(*now).lane(lane) {
@@ -38,12 +39,7 @@ impl<S: Clebsch, M: Method<S>> Stepper<S, M> {
         Ok(CotangentState { time, configuration, covector })
     }
 
-    pub(super) fn checked_cotangent_state(
-        &self,
-        t: S::Scalar,
-        q: S::Configuration,
-        p: S::Configuration,
-    ) -> Result<CotangentState<S>, Error> {
+    pub(super) fn checked_cotangent_state(&self, t: T<S>, q: Q<S>, p: Q<S>) -> Result<CotangentState<S>, Error> {
         self.check_configuration(&q)?;
         check_finite("the covector", &p)?;
         Ok(CotangentState { time: S::Time::at(t), configuration: q, covector: p })

@@ -180,7 +180,7 @@ pub const PROPERTIES: &[(&str, &[Property])] = &[
         ("integrators_step_in_place",           &["Scheme::step_into", "Stepper::integrator", "Integrator::state", "Integrator::set_state", "Integrator::stepper", "Integrator::steps", "Integrator::step", "Integrator::step_with", "Integrator::advance"]),
         ("states_hold_what_they_step_in",        &["Scheme::held"]),
         ("covectors_are_turned_in_their_plane", &["turned_in_plane"]),
-        ("points_follow_great_circles",      &["tangent", "momentum_of_tangent", "push", "turn_freely", "turn_great_circle"]),
+        ("points_follow_great_circles",      &["tangent", "push", "turn_freely", "turn_great_circle"]),
         ("units_of_projections_do_not_matter", &["projection", "distance_of_projection"]),
     ]),
 ];
