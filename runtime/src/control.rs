@@ -36,16 +36,15 @@ use crate::parameters::check_finite;
 use crate::{Controlled, Error, Real, Scalar};
 use core::ops::RangeInclusive;
 use nalgebra::SVector;
-use num_traits::Zero;
 use sweep::{Plan, Problem};
 
 /// A system whose inputs are chosen, with its step size. Made by [`Controlled::control`].
 #[derive(Clone, Debug)]
 pub struct Control<S: Controlled<D, U, C, Scalar: Real>, const D: usize, const U: usize, const C: usize> {
-    system: S,
-    step_size: S::Scalar,
-    constants: S::Constants,
-    time: S::Scalar,
+    pub(crate) system: S,
+    pub(crate) step_size: S::Scalar,
+    pub(crate) constants: S::Constants,
+    pub(crate) time: S::Scalar,
 }
 
 /// Where a plan is to end.
@@ -69,15 +68,6 @@ impl<X> Target<X> {
 }
 
 impl<S: Controlled<D, U, C, Scalar: Real>, const D: usize, const U: usize, const C: usize> Control<S, D, U, C> {
-    /// Checks `h` and the parameters of `system`.
-    pub(crate) fn new(system: S, h: S::Scalar) -> Result<Self, Error> {
-        if !h.is_finite() || h == S::Scalar::zero() {
-            return Err(Error::StepSize { value: h.to_f64() });
-        }
-        let constants = system.prepare(h)?;
-        Ok(Self { system, step_size: h, constants, time: S::Scalar::zero() })
-    }
-
     /// The same with plans that start at the time `t` instead of 0.
     ///
     /// # Errors

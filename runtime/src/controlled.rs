@@ -3,6 +3,7 @@
 use crate::{Control, Error, Real, Scalar, Space};
 use core::fmt::Debug;
 use nalgebra::{SMatrix, SVector};
+use num_traits::Zero;
 
 /// A system whose inputs are chosen: x⁺ = f(t, h, x, u) at the price ℓ(t, h, x, u), under the bounds a(t, x, u) ≤ 0, with the price
 /// φ(t, x) of the end.
@@ -55,7 +56,11 @@ pub trait Controlled<const D: usize, const U: usize, const C: usize>: Sized {
     where
         Self::Scalar: Real,
     {
-        Control::new(self, h)
+        if !h.is_finite() || h == Self::Scalar::zero() {
+            return Err(Error::StepSize { value: h.to_f64() });
+        }
+        let constants = self.prepare(h)?;
+        Ok(Control { system: self, step_size: h, constants, time: Self::Scalar::zero() })
     }
 
     /// x⁺ = f(t, h, x, u)

@@ -53,9 +53,8 @@ pub struct SO<const P: usize, const Q: usize = 0>(Infallible);
 
 /// The unitary maps of N complex dimensions, in real form: A + iB is the 2N×2N matrix with the blocks A, −B; B, A.
 ///
-/// | matrices | basis, in order (the blocks that are not given are 0) |
-/// |---|---|
-/// | 2N×2N, FᵀF = I, FᵀΩF = Ω | A = E_ji − E_ij for i < j; then B = E_ji + E_ij for i < j; then B = E_ii |
+/// Matrices: 2N×2N with FᵀF = I and FᵀΩF = Ω. Basis, in order: A = E_ji − E_ij for i < j; then B = E_ji + E_ij for i < j; then B = E_ii.
+/// The blocks that are not given are 0.
 ///
 /// A vector of N complex numbers is its real parts followed by its imaginary parts. Pairs i < j are in the order (12), (13), …,
 /// (N−1 N). Every entry stands twice in the real form, so that the Gram matrix is 4 for pairs and 2 for B = E_ii:
@@ -81,9 +80,8 @@ pub struct SU<const N: usize>(Infallible);
 
 /// The translations of N-dimensional space: vectors under addition.
 ///
-/// | matrices | basis, in order | component for a physical Lagrangian |
-/// |---|---|---|
-/// | none: an element is a vector with N entries, the identity is 0 | e₁, …, e_N | the linear momentum p₁, …, p_N |
+/// No matrices: an element is a vector with N entries, the identity is 0. Basis: e₁, …, e_N. Components for a physical Lagrangian: the linear
+/// momentum p₁, …, p_N.
 ///
 /// The Gram matrix is I and M = m. Ad and Ad* are the identity; every action is left and right at once, and takes the side of
 /// the other factors, else left.
@@ -92,9 +90,8 @@ pub struct Translation<const N: usize>(Infallible);
 
 /// The rigid motions of N-dimensional space: x ↦ R x + a, `F.rotation() * x + F.translation()`.
 ///
-/// | matrices | basis, in order | component for a physical Lagrangian |
-/// |---|---|---|
-/// | (N+1)×(N+1), R and a above (0 … 0 1) | that of [`SO`] in the upper left; then E_{i,N+1} | angular momentum, then linear momentum |
+/// Matrices: (N+1)×(N+1), R and a above (0 … 0 1). Basis, in order: that of [`SO`] in the upper left; then E_{i,N+1}. Components for a
+/// physical Lagrangian: angular momentum, then linear momentum.
 ///
 /// The Gram matrix is 2 for the turns and 1 for the shifts: M has ½ π^ (N = 3) in the upper left and p in the last column, and its
 /// last row is 0. A group that is not closed under transposition: Ad*_F M is the part of FᵀMF⁻ᵀ in the Lie algebra.
@@ -106,9 +103,8 @@ pub struct SE<const N: usize>(Infallible);
 
 /// The similarities of N-dimensional space: x ↦ s R x + a with s > 0. `Sim<1>` scales and shifts a line.
 ///
-/// | matrices | basis, in order | component for a physical Lagrangian |
-/// |---|---|---|
-/// | (N+1)×(N+1), s R and a above (0 … 0 1) | that of [`SO`] in the upper left; diag(I, 0); then E_{i,N+1} | angular momentum, x·p of the dilation, linear momentum |
+/// Matrices: (N+1)×(N+1), s R and a above (0 … 0 1). Basis, in order: that of [`SO`] in the upper left; diag(I, 0); then E_{i,N+1}.
+/// Components for a physical Lagrangian: angular momentum, x·p of the dilation, linear momentum.
 ///
 /// The Gram matrix is 2 for the turns, N for the dilation and 1 for the shifts.
 #[derive(Debug)]
@@ -116,9 +112,8 @@ pub struct Sim<const N: usize>(Infallible);
 
 /// The affine maps of N-dimensional space: x ↦ A x + a with det A > 0.
 ///
-/// | matrices | basis, in order | component for a physical Lagrangian |
-/// |---|---|---|
-/// | (N+1)×(N+1), A and a above (0 … 0 1) | E_ij of the upper left by rows; then E_{i,N+1} | p_i x_j, then linear momentum (left action) |
+/// Matrices: (N+1)×(N+1), A and a above (0 … 0 1). Basis, in order: E_ij of the upper left by rows; then E_{i,N+1}. Components for a
+/// physical Lagrangian: p_i x_j, then linear momentum (left action).
 ///
 /// The Gram matrix is I: the entries of M are the components.
 #[derive(Debug)]
@@ -126,9 +121,8 @@ pub struct Aff<const N: usize>(Infallible);
 
 /// The Heisenberg group of 2N + 1 dimensions: N positions x, N positions y and one z that commutes with all.
 ///
-/// | matrices | basis, in order | component for a physical Lagrangian |
-/// |---|---|---|
-/// | (N+2)×(N+2), rows (1 xᵀ z), (0 I y), (0 0 1) | X_i = E_{1,1+i}; then Y_i = E_{1+i,N+2}; then Z = E_{1,N+2} | the momenta p_x, p_y, p_z |
+/// Matrices: (N+2)×(N+2), rows (1 xᵀ z), (0 I y), (0 0 1). Basis, in order: X_i = E_{1,1+i}; then Y_i = E_{1+i,N+2}; then Z = E_{1,N+2}.
+/// Components for a physical Lagrangian: the momenta p_x, p_y, p_z.
 ///
 /// The bracket is \[X_i, Y_i\] = Z, and all others vanish. The Gram matrix is I: the entries of M are the components.
 /// exp(Σ x_i X_i + Σ y_i Y_i + z Z) has the corner z + ½ x·y. The momentum p_z is constant in a free motion, and is what a
@@ -138,9 +132,7 @@ pub struct Heisenberg<const N: usize>(Infallible);
 
 /// The invertible linear maps of N-dimensional space. `GL<1>` is the scalings, a positive number where it starts at one.
 ///
-/// | matrices | basis, in order |
-/// |---|---|
-/// | N×N, det F ≠ 0 | E_ij by rows: (11), (12), …, (NN) |
+/// Matrices: N×N with det F ≠ 0. Basis, in order: E_ij by rows, (11), (12), …, (NN).
 ///
 /// The Gram matrix is I: m are the entries of M by rows. Steps never leave the component det F > 0 of the identity.
 #[derive(Debug)]
@@ -148,9 +140,7 @@ pub struct GL<const N: usize>(Infallible);
 
 /// The linear maps of N-dimensional space that keep the volume.
 ///
-/// | matrices | basis, in order |
-/// |---|---|
-/// | N×N, det F = 1 | E_ii − E_{i+1,i+1} for i < N; then E_ij for i ≠ j by rows |
+/// Matrices: N×N with det F = 1. Basis, in order: E_ii − E_{i+1,i+1} for i < N; then E_ij for i ≠ j by rows.
 ///
 /// For `SL<2>` these are H = diag(1, −1), E = E₁₂ and F = E₂₁. The Gram matrix is the Cartan matrix for the first N − 1 (2 on
 /// the diagonal, −1 beside it) and I for the others: for `SL<2>`, M = ½ m_H H + m_E E + m_F F.
@@ -159,9 +149,8 @@ pub struct SL<const N: usize>(Infallible);
 
 /// The linear maps that keep the symplectic form of a phase space of `DIMENSION` = 2n dimensions: `Sp<2>` is `SL<2>`.
 ///
-/// | matrices | basis, in order |
-/// |---|---|
-/// | 2n×2n, FᵀΩF = Ω with Ω = (0 I; −I 0) | E_ij − E_{n+j,n+i} by rows; then E_{i,n+j} + E_{j,n+i} for j ≤ i (E_{i,n+i} for i = j); then their transposes |
+/// Matrices: 2n×2n, FᵀΩF = Ω with Ω = (0 I; −I 0). Basis, in order: E_ij − E_{n+j,n+i} by rows; then E_{i,n+j} + E_{j,n+i} for j ≤ i
+/// (E_{i,n+i} for i = j); then their transposes.
 ///
 /// Pairs j ≤ i are in the order (11), (21), (22), (31), …. The Gram matrix is 2, and 1 for E_{i,n+i} and its transpose. A vector of
 /// phase space is its n positions followed by its n momenta.

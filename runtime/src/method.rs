@@ -44,7 +44,7 @@ use core::fmt::Debug;
 /// The action, the momentum map, the potential and the conserved momenta are those of the system. The discrete Lagrangian, and with it the Legendre
 /// transforms, belong to a method. `#[derive(Clebsch)]` implements this trait for the unit struct of each key `method`. A method has the default of every dial that it
 /// does not name, whatever the declaration says.
-pub trait Method<S: Clebsch + ?Sized>: Sized {
+pub trait Method<S: Clebsch>: Sized {
     /// What no step of one size changes: computed once per stepper.
     type Constants: Clone + Debug;
     /// How a step is made of its parts.
@@ -90,7 +90,7 @@ pub trait Method<S: Clebsch + ?Sized>: Sized {
 #[derive(Clone, Copy, Debug)]
 pub struct Declared;
 
-impl<S: Clebsch + ?Sized> Method<S> for Declared {
+impl<S: Clebsch> Method<S> for Declared {
     type Constants = S::Constants;
     type Scheme = S::Scheme;
 

@@ -19,7 +19,7 @@ type X<S, M> = <S as Parts<M>>::Coordinates;
 
 /// What all substeps of a step share: how q moves, and what the step is made of.
 #[allow(unused_variables, reason = "provided methods take what others need")]
-pub trait Parts<M: Method<Self> = Declared>: Clebsch + Sized {
+pub trait Parts<M: Method<Self> = Declared>: Clebsch {
     /// How a step adds to q and N.
     type Sums: Sums;
     /// x, the coordinates of the group element that a solve finds.

@@ -64,8 +64,7 @@ fn site_constants<S: Clebsch>(site: &S, h: S::Scalar) -> Result<scheme::Constant
 ///
 /// Only what ties the sites together is generated; everything else is made of [`site`](Self::site).
 pub trait Power<const N: usize>:
-    Sized
-    + Clebsch<
+    Clebsch<
         Configuration = [Point<Self, N>; N],
         Element = [Motion<Self, N>; N],
         Momentum = [SiteMomentum<Self, N>; N],

@@ -1,7 +1,8 @@
 //! The numbers that an integrator computes with.
 
 use core::fmt::{Debug, Display};
-use core::ops::{Add, AddAssign, BitAnd, BitOr, BitXor, Div, DivAssign, Mul, MulAssign, Neg, Not, Sub, SubAssign};
+use core::ops::{BitAnd, BitOr, BitXor, Neg, Not};
+use nalgebra::{ClosedAddAssign, ClosedDivAssign, ClosedMulAssign, ClosedSubAssign};
 use num_traits::{One, Zero};
 
 /// What declarations can be integrated in: `f32` and `f64`, several of them side by side as lanes, numbers that carry derivatives.
@@ -17,18 +18,13 @@ pub trait Scalar:
     nalgebra::Scalar
     + Copy
     + Display
-    + Debug
     + Zero
     + One
     + Neg<Output = Self>
-    + Add<Output = Self>
-    + Sub<Output = Self>
-    + Mul<Output = Self>
-    + Div<Output = Self>
-    + AddAssign
-    + SubAssign
-    + MulAssign
-    + DivAssign
+    + ClosedAddAssign
+    + ClosedSubAssign
+    + ClosedMulAssign
+    + ClosedDivAssign
 {
     /// A single number: the type itself, or that of one lane.
     type Lane: Real;

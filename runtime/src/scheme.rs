@@ -101,7 +101,7 @@ pub type Pair<S> = (Q<S>, Q<S>);
 pub type AtOf<'a, S, P, M = Declared> = At<'a, S, M, <P as Scheme<S, M>>::Constants>;
 
 /// What all parts of a step take: the system, what no step changes, and the time at which the step starts.
-pub struct At<'a, S: Clebsch + ?Sized, M: Method<S> = Declared, C = <M as Method<S>>::Constants> {
+pub struct At<'a, S: Clebsch, M: Method<S> = Declared, C = <M as Method<S>>::Constants> {
     /// The system.
     pub system: &'a S,
     /// What no step changes.
@@ -111,7 +111,7 @@ pub struct At<'a, S: Clebsch + ?Sized, M: Method<S> = Declared, C = <M as Method
     method: PhantomData<M>,
 }
 
-impl<'a, S: Clebsch + ?Sized, M: Method<S>, C> At<'a, S, M, C> {
+impl<'a, S: Clebsch, M: Method<S>, C> At<'a, S, M, C> {
     /// At the time t.
     #[inline(always)]
     pub fn new(system: &'a S, constants: &'a C, t: S::Scalar) -> Self {
@@ -119,10 +119,10 @@ impl<'a, S: Clebsch + ?Sized, M: Method<S>, C> At<'a, S, M, C> {
     }
 }
 
-copy!(At<'_, S, M, C> where [S: Clebsch + ?Sized, M: Method<S>, C]);
+copy!(At<'_, S, M, C> where [S: Clebsch, M: Method<S>, C]);
 
 /// How a system S is stepped by the method M.
-pub trait Scheme<S: Clebsch + ?Sized, M: Method<S> = Declared> {
+pub trait Scheme<S: Clebsch, M: Method<S> = Declared>: Sized {
     /// What a state holds of its momentum from step to step: N itself, or, of a point on a large sphere, the covector w ⊥ q with N = J(q, w), n numbers
     /// in place of n(n − 1)/2.
     type Held: Space<S::Scalar>;
@@ -195,7 +195,7 @@ pub trait Scheme<S: Clebsch + ?Sized, M: Method<S> = Declared> {
 
 /// Steps, one after the other.
 #[inline]
-fn one_by_one<S: Clebsch + ?Sized, P: Scheme<S, M> + ?Sized, M: Method<S>>(
+fn one_by_one<S: Clebsch, P: Scheme<S, M>, M: Method<S>>(
     at: AtOf<'_, S, P, M>,
     h: S::Scalar,
     steps: usize,

@@ -1,6 +1,7 @@
 //! What a step maps: (q, N), or (q, p) on the cotangent bundle.
 
 use crate::fields::{copy, getters};
+use crate::parts::{Mu, Q, T};
 use crate::scheme::{Held, Left, Scheme};
 use crate::{Clebsch, Clock, Declared, Method, Scalar, Space, Time};
 use core::fmt::{self, Debug, DebugStruct, Formatter};
@@ -71,10 +72,7 @@ impl<S: Clebsch, M: Method<S>> State<S, M> {
 }
 
 /// (q, N) of one body: of the single one, or of that in a lane.
-pub type Body<S> = (
-    <<S as Clebsch>::Configuration as Space<<S as Clebsch>::Scalar>>::Lane,
-    <<S as Clebsch>::Momentum as Space<<S as Clebsch>::Scalar>>::Lane,
-);
+pub type Body<S> = (<Q<S> as Space<T<S>>>::Lane, <Mu<S> as Space<T<S>>>::Lane);
 
 impl<S: Clebsch<Time = Clock<<S as Clebsch>::Scalar>>, M: Method<S>> State<S, M> {
     /// The time t of the configuration, in the unit of the step size.

@@ -20,7 +20,7 @@ use num_traits::Zero;
 ///
 /// Source: Nordkvist, Crouch and Bloch, *Discrete Clebsch Optimal Control*, theorems 1 and 2.
 #[allow(unused_variables, reason = "provided methods take what others need")]
-pub trait Clebsch {
+pub trait Clebsch: Sized {
     /// The number type.
     type Scalar: Scalar;
     /// q, nested as in the declared action; `()` where the momentum is stepped alone, by `emit = [momentum]`.
@@ -154,10 +154,7 @@ pub trait Clebsch {
     ///
     /// # Errors
     /// [`Error::StepSize`], and those of [`constants`](Self::constants).
-    fn into_stepper(self, h: Self::Scalar) -> Result<Stepper<Self>, Error>
-    where
-        Self: Sized,
-    {
+    fn into_stepper(self, h: Self::Scalar) -> Result<Stepper<Self>, Error> {
         Stepper::new(self, h)
     }
 
@@ -176,10 +173,7 @@ pub trait Clebsch {
     ///
     /// # Errors
     /// [`Error::StepSize`], and those of [`Method::constants`].
-    fn into_stepper_by<M: Method<Self>>(self, h: Self::Scalar) -> Result<Stepper<Self, M>, Error>
-    where
-        Self: Sized,
-    {
+    fn into_stepper_by<M: Method<Self>>(self, h: Self::Scalar) -> Result<Stepper<Self, M>, Error> {
         Stepper::new(self, h)
     }
 }

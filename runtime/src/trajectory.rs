@@ -8,17 +8,10 @@ use core::iter::FusedIterator;
 ///
 /// A step is made when its state is asked for, so `take(n)` makes n − 1 steps.
 pub struct Trajectory<'a, S: Clebsch, M: Method<S> = Declared> {
-    stepper: &'a Stepper<S, M>,
+    pub(crate) stepper: &'a Stepper<S, M>,
     /// The start, or the state that has been asked for last; `None` after an error.
-    state: Option<State<S, M>>,
-    has_started: bool,
-}
-
-impl<'a, S: Clebsch, M: Method<S>> Trajectory<'a, S, M> {
-    #[inline]
-    pub(crate) fn new(stepper: &'a Stepper<S, M>, start: State<S, M>) -> Self {
-        Self { stepper, state: Some(start), has_started: false }
-    }
+    pub(crate) state: Option<State<S, M>>,
+    pub(crate) has_started: bool,
 }
 
 impl<S: Clebsch, M: Method<S>> Iterator for Trajectory<'_, S, M> {

@@ -124,12 +124,12 @@ pub trait Variational<const M: usize>:
     message = "the steps by the method `{Self}` have no derivatives",
     note = "write `emit = [boundary]` or `emit = [tangent]` in the declaration; methods of order 16 and splittings have no derivatives"
 )]
-pub trait Differentiated<S: Clebsch + ?Sized, const M: usize>: Method<S, Scheme: Edges<S, M, Self>> {
+pub trait Differentiated<S: Clebsch, const M: usize>: Method<S, Scheme: Edges<S, M, Self>> {
     /// The number of edges in a step, as [`Variational::EDGES`].
     const EDGES: usize = <Self::Scheme as Edges<S, M, Self>>::EDGES;
 }
 
-impl<S: Clebsch + ?Sized, B: Method<S, Scheme: Edges<S, M, B>>, const M: usize> Differentiated<S, M> for B {}
+impl<S: Clebsch, B: Method<S, Scheme: Edges<S, M, B>>, const M: usize> Differentiated<S, M> for B {}
 
 /// The discrete Lagrangian ℓd of an edge with its first two derivatives along the motions η of the vertex where it starts and η′ of the
 /// one where it ends.

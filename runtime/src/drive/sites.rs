@@ -85,12 +85,7 @@ fn array_mut<V, const N: usize>(slice: &mut [V]) -> Result<&mut [V; N], SiteErro
 }
 
 fn wrong_length<const N: usize>(found: usize) -> SiteError {
-    of_all(Error::NumberOfSites { found, sites: N })
-}
-
-/// An error at no single site.
-fn of_all(error: Error) -> SiteError {
-    SiteError { site: None, error }
+    SiteError { site: None, error: Error::NumberOfSites { found, sites: N } }
 }
 
 impl<P: Clebsch> Stepper<P> {
@@ -167,7 +162,7 @@ where
         drifted.map_err(|(site, error)| SiteError { site: Some(site), error })?;
         let time = self.time.after_step(h);
         if !time.now().is_finite() {
-            return Err(of_all(Error::NotFinite { name: "the time after the step" }));
+            return Err(SiteError { site: None, error: Error::NotFinite { name: "the time after the step" } });
         }
         let weight = h * Scalar::from_f64(if first { -1.0 } else { -0.5 });
         if !system.kick_into(t + h, next, weight, gradient, next_kick, moved).is_finite()

@@ -29,8 +29,8 @@ pub(super) fn follow<T: Real, const M: usize, const N: usize>(
     if !target.is_finite() {
         return Err(Error::NotFinite { name: "the momentum" });
     }
-    let mut homotopy = Homotopy::new(equation, target, made, allowed(LINEARIZATIONS, limit, made));
-    let mut here = homotopy.start()?;
+    let most = allowed(LINEARIZATIONS, limit, made);
+    let (mut homotopy, mut here) = Homotopy::start(equation, target, made, most)?;
     if homotopy.scale == T::zero() {
         return Ok(here.xi);
     }
@@ -77,7 +77,7 @@ impl<T: Real, E: Equation<T, M, N>, const M: usize, const N: usize> Homotopy<'_,
             self.count += 1;
             let (residual, jacobian) = self.equation.linearize(&self.moving, &xi);
             let (correction, orientation) = jacobian.solve(&residual)?;
-            if orientation != self.branch {
+            if Some(orientation) != self.branch {
                 return None;
             }
             let terms = larger(self.weight, jacobian.largest_entry() * size(&xi));

@@ -5,15 +5,12 @@
 #[macro_export]
 macro_rules! __formulas_of_sites {
     ($scalar:ty, $sites:tt, $start:expr, $end:expr) => {
-        /// The action, site by site.
         fn act(&self, f: &Self::Element, q: &Self::Configuration) -> Self::Configuration {
             $crate::__private::Power::each(self, |site, i| $crate::__private::Clebsch::act(site, &f[i], &q[i]))
         }
-        /// The momentum map of the cotangent lift, site by site.
         fn momentum_map(&self, q: &Self::Configuration, p: &Self::Configuration) -> Self::Momentum {
             $crate::__private::Power::each(self, |site, i| $crate::__private::Clebsch::momentum_map(site, &q[i], &p[i]))
         }
-        /// The coadjoint action, site by site.
         fn coadjoint(&self, f: &Self::Element, mu: &Self::Momentum) -> Self::Momentum {
             $crate::__private::Power::each(self, |site, i| $crate::__private::Clebsch::coadjoint(site, &f[i], &mu[i]))
         }
@@ -25,15 +22,12 @@ macro_rules! __formulas_of_sites {
         fn legendre_next(&self, h: $scalar, t: $scalar, q: &Self::Configuration, f: &Self::Element) -> Self::Momentum {
             $crate::__private::Power::power_legendre_next(self, h, t, q, f, $end)
         }
-        /// By how much the momentum of a state is ahead of the momentum at its configuration.
         fn stagger(&self, h: $scalar, t: $scalar, q: &Self::Configuration) -> Self::Momentum {
             $crate::__private::Power::power_stagger(self, h, t, q, $start, $end)
         }
-        /// The potential energy, a sum over sites.
         fn potential(&self, t: $scalar, q: &Self::Configuration) -> $scalar {
             $crate::__private::Power::potential_of_sites(self, t, q)
         }
-        /// The kinetic energy of all sites.
         fn kinetic_energy(
             &self,
             constants: &Self::Constants,
@@ -43,11 +37,9 @@ macro_rules! __formulas_of_sites {
         ) -> $scalar {
             $crate::__private::Power::power_kinetic_energy(self, constants, t, q, mu)
         }
-        /// The representing matrices of a momentum, site by site.
         fn momentum_matrix(mu: &Self::Momentum) -> Self::MomentumMatrix {
             <Self as $crate::__private::Power<$sites>>::matrices_of(mu)
         }
-        /// The components of a momentum, site by site.
         fn momentum_components(m: &Self::MomentumMatrix) -> Self::Momentum {
             <Self as $crate::__private::Power<$sites>>::components_of(m)
         }
@@ -55,11 +47,9 @@ macro_rules! __formulas_of_sites {
         fn orbit_defect(&self, q: &Self::Configuration) -> $scalar {
             $crate::__private::Power::power_orbit_defect(self, q)
         }
-        /// The size of the component of μ that no motion of q can have.
         fn isotropy_defect(&self, q: &Self::Configuration, mu: &Self::Momentum) -> $scalar {
             $crate::__private::Power::power_isotropy_defect(self, q, mu)
         }
-        /// The momentum without that component.
         fn project_momentum(&self, q: &Self::Configuration, mu: &Self::Momentum) -> Self::Momentum {
             $crate::__private::Power::each(self, |site, i| {
                 $crate::__private::Clebsch::project_momentum(site, &q[i], &mu[i])

@@ -10,7 +10,7 @@ use crate::{Carried, Clebsch, Declared, Edge, Error, Method, Momenta};
 use nalgebra::SMatrix;
 
 /// A scheme whose steps have edges.
-pub trait Edges<S: Clebsch + ?Sized, const M: usize, B: Method<S> = Declared>: Scheme<S, B> {
+pub trait Edges<S: Clebsch, const M: usize, B: Method<S> = Declared>: Scheme<S, B> {
     /// How many.
     const EDGES: usize;
 
@@ -30,7 +30,7 @@ pub trait Edges<S: Clebsch + ?Sized, const M: usize, B: Method<S> = Declared>: S
 }
 
 /// What is asked for at an edge.
-pub trait Visit<S: Clebsch + ?Sized, const M: usize, B: Method<S> = Declared> {
+pub trait Visit<S: Clebsch, const M: usize, B: Method<S> = Declared> {
     /// The answer.
     type Output;
 
@@ -44,9 +44,9 @@ pub trait Visit<S: Clebsch + ?Sized, const M: usize, B: Method<S> = Declared> {
 pub type Ends<'a, S> = (&'a Q<S>, &'a F<S>, &'a Q<S>, &'a U<S>);
 
 /// The increment of the group element with the momentum μ at q, of q, μ and u.
-pub struct Drift<'a, S: Clebsch + ?Sized>(pub &'a Q<S>, pub &'a Mu<S>, pub &'a U<S>);
+pub struct Drift<'a, S: Clebsch>(pub &'a Q<S>, pub &'a Mu<S>, pub &'a U<S>);
 
-impl<S: Clebsch + ?Sized, B: Method<S>, const M: usize> Visit<S, M, B> for Drift<'_, S> {
+impl<S: Clebsch, B: Method<S>, const M: usize> Visit<S, M, B> for Drift<'_, S> {
     type Output = Result<F<S>, Error>;
 
     #[inline(always)]
@@ -63,9 +63,9 @@ impl<S: Clebsch + ?Sized, B: Method<S>, const M: usize> Visit<S, M, B> for Drift
 macro_rules! asked {
     ($($doc:literal $name:ident: $bound:ident $(<$m:ident>)?, $method:ident -> $output:ty;)*) => { $(
         #[doc = $doc]
-        pub struct $name<'a, S: Clebsch + ?Sized>(pub Ends<'a, S>);
+        pub struct $name<'a, S: Clebsch>(pub Ends<'a, S>);
 
-        impl<S: $bound $(<$m>)? + ?Sized, B: Method<S>, const M: usize> Visit<S, M, B> for $name<'_, S> {
+        impl<S: $bound $(<$m>)?, B: Method<S>, const M: usize> Visit<S, M, B> for $name<'_, S> {
             type Output = $output;
 
             #[inline(always)]

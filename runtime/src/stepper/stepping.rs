@@ -55,7 +55,7 @@ impl<S: Clebsch, M: Method<S>> Stepper<S, M> {
     /// The states of all steps, `start` first; ends after the first error.
     #[inline]
     pub fn trajectory(&self, start: State<S, M>) -> Trajectory<'_, S, M> {
-        Trajectory::new(self, start)
+        Trajectory { stepper: self, state: Some(start), has_started: false }
     }
 
     /// One step during which the input of the forces is `u`; [`step`](Self::step) is that with none, all zero.

@@ -29,7 +29,7 @@ pub(super) struct Homotopy<'a, T: Real, E: Equation<T, M, N>, const M: usize, co
     /// Terms for the whole target.
     pub moving: E::Terms,
     /// The sign of det Dρ on the branch.
-    pub branch: Orientation,
+    pub branch: Option<Orientation>,
     /// Largest entry of dξ/ds at the identity: what a change of ξ is measured by.
     pub scale: T,
     /// Size of ρ(0; μ): what a residual is measured by.
@@ -50,27 +50,28 @@ struct Linearization<T: Real, J: Jacobian<T, M>, const M: usize> {
 }
 
 impl<'a, T: Real, E: Equation<T, M, N>, const M: usize, const N: usize> Homotopy<'a, T, E, M, N> {
-    pub fn new(equation: &'a E, target: &SVector<T, N>, made: u32, most: u32) -> Self {
+    /// The path, and its point ξ = 0, s = 0. There is no solution where det Dρ has another sign than on the branch.
+    pub fn start(
+        equation: &'a E,
+        target: &SVector<T, N>,
+        made: u32,
+        most: u32,
+    ) -> Result<(Self, PathPoint<T, M>), Error> {
         let still = equation.prepare(&SVector::from_element(T::zero()));
         let moving = equation.prepare(target);
-        let (branch, scale, weight) = (Orientation::POSITIVE, T::zero(), T::zero());
-        Self { equation, still, moving, branch, scale, weight, count: 0, most, made }
-    }
-
-    /// The point ξ = 0, s = 0. Sets the branch, the scale and the weight. There is no solution where det Dρ has another sign than on the branch.
-    pub fn start(&mut self) -> Result<PathPoint<T, M>, Error> {
-        let zero = SVector::from_element(T::zero());
-        let Linearization { jacobian, rate, .. } = self.linearize(&zero, T::zero());
+        let (branch, zero) = (equation.orientation(), T::zero());
+        let mut path = Self { equation, still, moving, branch, scale: zero, weight: zero, count: 0, most, made };
+        let xi = SVector::from_element(zero);
+        let Linearization { jacobian, rate, .. } = path.linearize(&xi, zero);
         if !(jacobian.all_finite() && rate.is_finite()) {
             return Err(Error::NotFinite { name: "the implicit equation of the step" });
         }
-        let (slope_xi, orientation) = jacobian.solve_exchanged(None, &-rate).ok_or(Error::unsolvable(T::zero()))?;
-        self.branch = self.equation.orientation().ok_or(Error::unsolvable(T::zero()))?;
-        if orientation != self.branch || !slope_xi.is_finite() {
-            return Err(Error::unsolvable(T::zero()));
+        let (slope_xi, orientation) = jacobian.solve_exchanged(None, &-rate).ok_or(Error::unsolvable(zero))?;
+        if branch != Some(orientation) || !slope_xi.is_finite() {
+            return Err(Error::unsolvable(zero));
         }
-        (self.scale, self.weight) = (slope_xi.max_abs(), size(&rate));
-        Ok(PathPoint { xi: zero, s: T::zero(), slope_xi, slope_s: T::one(), is_past: false })
+        (path.scale, path.weight) = (slope_xi.max_abs(), size(&rate));
+        Ok((path, PathPoint { xi, s: zero, slope_xi, slope_s: T::one(), is_past: false }))
     }
 
     pub fn is_affordable(&self) -> bool {
@@ -167,7 +168,7 @@ impl<'a, T: Real, E: Equation<T, M, N>, const M: usize, const N: usize> Homotopy
         let half = T::from_ratio(1, 2);
         let turn = larger((slope_xi - from.slope_xi).max_abs() / self.scale, (slope_s - from.slope_s).abs());
         if turn < half {
-            let is_past = slope_s <= T::zero() || at.jacobian.orientation() != Some(self.branch);
+            let is_past = slope_s <= T::zero() || at.jacobian.orientation() != self.branch;
             return Some(PathPoint { xi, s, slope_xi, slope_s, is_past });
         }
         None
