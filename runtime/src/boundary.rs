@@ -3,17 +3,6 @@
 //! The unknowns are the motions of the vertices of a path along their orbits, which the dynamics q_{k+1} = Φ_{F_k}(q_k) always holds on. So the
 //! problem on the whole space and the problem on the orbit have one answer, of which only the part of momenta that motions can have is
 //! determined, and no extremal is abnormal. As every vertex is an unknown, no single shot has to hit the target.
-//!
-//! | file | what it does |
-//! |---|---|
-//! | `guess` | the path to start from |
-//! | `newton` | iterates, and goes downhill where iterations do not contract |
-//! | `sweep` | linearises and eliminates backward, moves the vertices forward |
-//! | `vertex` | eliminates one vertex in the backward sweep |
-//! | `pivot` | the M×M linear algebra of one vertex |
-//! | `several` | other ways between the same endpoints |
-//! | `end` | the gap to the target and the motions that fix it |
-//! | `extremal` | what the caller stores for each edge, and what a problem is answered with |
 
 mod end;
 mod extremal;
@@ -88,8 +77,7 @@ impl<'a, S: Variational<M, Scalar: Real>, B: Differentiated<S, M>, const M: usiz
         self.stepper
     }
 
-    /// The edge that stays at `q`, as storage: a path of N steps has N of them, and 2N where a step has two edges (order 2 of a cost that
-    /// is composed with its adjoint).
+    /// The edge that stays at `q`, as storage: a path of N steps has N of them; 2N where a cost is composed with its adjoint (order 2).
     pub fn rest(&self, q: &S::Configuration) -> Node<S, M> {
         Node::rest(&self.stepper.system, q)
     }
@@ -171,13 +159,11 @@ impl<'a, S: Variational<M, Scalar: Real>, B: Differentiated<S, M>, const M: usiz
         })
     }
 
-    /// The step size in `steps`, and with it the final time, at which Σ ℓd + φ(t_N, q_N) of the extremal to `target`, or to anywhere, is
-    /// critical: where the energy is ∂φ/∂t. It is looked for where the sum falls, from the step size of the stepper on, and at a limit
-    /// the sum may fall beyond it.
+    /// The step size in `steps`, and so the final time, at which Σ ℓd + φ(t_N, q_N) of the extremal to `target`, or to anywhere, is critical:
+    /// the energy is ∂φ/∂t there. The search starts at the step size of the stepper and goes where the sum falls, at most to a limit.
     ///
-    /// The nodes hold the extremal then: a stepper of that step size and [`Guess::Path`] give it with all that is known of it. By the
-    /// envelope theorem the derivative by h is that at a fixed path, here a central difference, so that h has ten digits of an `f64` and
-    /// the action all.
+    /// The nodes hold the extremal then: a stepper of that step size and [`Guess::Path`] give it with all its numbers. By the envelope
+    /// theorem the derivative by h is that at a fixed path. It is a central difference: h has ten digits of an `f64`, the action all.
     ///
     /// # Errors
     /// [`Error::StepSize`] for limits that are not positive numbers in order, [`Error::NoExtremal`], and those of [`solve`](Self::solve).

@@ -12,8 +12,7 @@ use nalgebra::{SMatrix, SVector};
 
 type Columns<T> = [[T; 3]; 3];
 
-/// x of A x = b with 3 or 6 unknowns and the sign of det A, and in which lanes they are so: not where A is singular, not finite, or not safely
-/// solved like this.
+/// x of A x = b with 3 or 6 unknowns, the sign of det A, and the lanes in which both are safe: A is regular, finite, and not too ill-conditioned.
 ///
 /// Accuracy: the relative error of x in the norm in which the columns of A have the length 1 is below 2¹⁶ ε.
 #[inline(always)]

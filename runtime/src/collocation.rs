@@ -241,8 +241,7 @@ fn sizes<T: Scalar, const N: usize, const S: usize>(h: T, start: &[T; N], slopes
     sizes
 }
 
-/// Why sweeps have found nothing: changes that did not shrink, whether or not they have overflowed since, or slopes that are no numbers near a place
-/// where the last of them was small.
+/// Why sweeps have found nothing: changes did not shrink, whether or not they overflowed later; or slopes are not finite near the stages.
 #[cold]
 fn failure<T: Scalar>(last_change: T, sweeps: u32, most: u32) -> Error {
     let is_large = T::from_ratio(1, 16).below(last_change).any();

@@ -8,10 +8,9 @@ use core::ops::Index;
 
 /// A system with conserved momenta.
 ///
-/// Implemented by `#[derive(Clebsch)]` where it has found some, and nowhere else: a system without any has no method
-/// [`Stepper::conserved`](crate::Stepper::conserved). Found are the directions of the symmetries along which cost and potential
-/// are invariant for every value of the parameters (Noether's theorem for discrete Lagrangians); a step keeps their momenta
-/// exactly, a computed one to round-off.
+/// Implemented by `#[derive(Clebsch)]` where it has found some: a system without any has no method
+/// [`Stepper::conserved`](crate::Stepper::conserved). Found are the directions of the symmetries along which cost and potential are
+/// invariant for every value of the parameters (Noether's theorem). A step keeps their momenta exactly, a computed one to round-off.
 ///
 /// Source: Marsden and West, *Discrete mechanics and variational integrators*, 2001, theorem 1.3.3.
 pub trait Conserves: Clebsch {

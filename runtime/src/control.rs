@@ -5,18 +5,6 @@
 //! ```
 //! The unknowns are the inputs, from which places follow. Newton's method for them is a Riccati sweep backward, with exact second
 //! derivatives on the manifold, and a roll-out forward, which the gains of the sweep keep stable.
-//!
-//! | file | what it does |
-//! |---|---|
-//! | `attempt` | approaches the target in one way after another, and varies inputs where by symmetry no first derivative leads there |
-//! | `newton` | iterates, and goes downhill where iterations do not contract |
-//! | `iterate` | what is known between sweeps, and decided by it |
-//! | `sweep` | linearises and eliminates backward |
-//! | `quadratic` | the model of one step, its elimination, and the U×U linear algebra of one input |
-//! | `end` | the gap to the target, the changes that close it, and the multipliers of the target |
-//! | `barrier` | bounds: slacks, multipliers and their sequence of barriers |
-//! | `search` | follows corrected inputs forward: how much of a correction is made, and how saddles are left |
-//! | `optimum` | what the caller stores for each step, and what a problem is answered with |
 
 mod attempt;
 mod barrier;
@@ -105,8 +93,7 @@ impl<S: Controlled<D, U, C, Scalar: Real>, const D: usize, const U: usize, const
     /// The plan of least price from `start` to `target`, as near to the guess as Newton's method finds it.
     ///
     /// The number of steps is that of `plan`. The inputs, costates and multipliers that its stages hold are the guess: none of
-    /// [`stage`](Self::stage), a solution for another start, target or system, or inputs from elsewhere. They need neither lead to the
-    /// target nor keep the bounds.
+    /// [`stage`](Self::stage), an earlier solution, or inputs from elsewhere. They need neither lead to the target nor keep the bounds.
     ///
     /// Work: two or three linearisations where the system is linear and its price quadratic, four to eight from a good guess, ten to forty
     /// with bounds or from standing still, each linear in the number of stages; at most 400 in each of up to six attempts. Where the

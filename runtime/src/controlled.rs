@@ -5,16 +5,14 @@ use core::fmt::Debug;
 use nalgebra::{SMatrix, SVector};
 use num_traits::Zero;
 
-/// A system whose inputs are chosen: x⁺ = f(t, h, x, u) at the price ℓ(t, h, x, u), under the bounds a(t, x, u) ≤ 0, with the price
-/// φ(t, x) of the end.
+/// A system whose inputs are chosen: x⁺ = f(t, h, x, u) at the price ℓ(t, h, x, u), with bounds a(t, x, u) ≤ 0 and the price φ(t, x) of the end.
 ///
 /// D is the dimension of places x, U that of inputs u, C the number of bounds. Implemented by `#[derive(Clebsch)]` for a struct with
 /// `controls` or `dynamics`, where x is the configuration, and for one with `effort`, where x is a state (q, N) and f the forced step.
 ///
 /// # Coordinates
-/// Small changes of a place are written as δ of D components: for a configuration, the motion η of the group that moves q to
-/// Φ_{exp η}(q) (q exp η or (exp η) q for a group that acts on itself); for a state, (η, ν) with N + ν. Second derivatives are those along
-/// s ↦ Φ_{exp sη}(q).
+/// Small changes of a place are written as δ of D components: for a configuration, the motion η of the group that moves q to Φ_{exp η}(q);
+/// for a state, (η, ν) with N + ν. Second derivatives are those along s ↦ Φ_{exp sη}(q).
 pub trait Controlled<const D: usize, const U: usize, const C: usize>: Sized {
     /// The scalar.
     type Scalar: Scalar;

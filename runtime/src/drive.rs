@@ -1,10 +1,4 @@
 //! What is stepped in place: a [`Stepper`](crate::Stepper) with a state of its own.
-//!
-//! | file | what it steps |
-//! |---|---|
-//! | `integrator` | one state |
-//! | `sites` | a power, in storage of the user's choice |
-//! | `ensemble` | many bodies, on the heap |
 
 #[cfg(feature = "alloc")]
 mod ensemble;

@@ -31,8 +31,7 @@ pub fn inverse<T: Scalar, const N: usize>(a: &SMatrix<T, N, N>) -> SMatrix<T, N,
 /// The solution `x` where the step exists, whose angle θ has this sin²θ: below one, it does. Lanes in which it does not are NaN.
 ///
 /// # Errors
-/// Where it exists in no lane: [`Error::Unsolvable`] with 1/|sin θ|, the fraction of the momentum for which it would;
-/// [`Error::NotFinite`].
+/// Where it exists in no lane: [`Error::Unsolvable`] with 1/|sin θ|, the fraction of the momentum that is solvable; [`Error::NotFinite`].
 #[inline]
 pub fn below_right_angle<T: Scalar, const M: usize>(x: SVector<T, M>, sine_squared: T) -> Result<SVector<T, M>, Error> {
     let exists = sine_squared.below(T::one());

@@ -82,8 +82,7 @@ impl<T: Scalar> FreeRotation<T> {
         Self::to_tolerance(inertia, h, 0.0)
     }
 
-    /// The same with series that end before terms below `tolerance` of d: turns are of the group and momenta turn by them, but d, and with it
-    /// the energy, is off by so much.
+    /// The same with series that end before terms below `tolerance` of d. Turns stay in the group; d, and with it the energy, is off by so much.
     pub fn to_tolerance(inertia: &SMatrix<T, 3, 3>, h: T, tolerance: f64) -> Result<Self, Error> {
         let mut all = Self {
             scale: T::zero(),

@@ -15,9 +15,8 @@
 //! The e_i are taken from m anew in each step, from det(λ² − λm − J̃²): kept as they were, rounding would grow exponentially.
 //!
 //! Source: J. Moser and A. P. Veselov, *Discrete versions of some classical integrable systems and factorization of matrix polynomials*,
-//! Comm. Math. Phys. 139 (1991); the integrals are those of S. V. Manakov, *Note on the integration of Euler's equations of the dynamics of an
-//! n-dimensional rigid body*, Funct. Anal. Appl. 10 (1976). The constants of the motion follow from the theorem of Liouville and Arnold: the map is
-//! the flow of a function of the four integrals.
+//! Comm. Math. Phys. 139 (1991); for the integrals S. V. Manakov, *Note on the integration of Euler's equations of the dynamics of an n-dimensional
+//! rigid body*, Funct. Anal. Appl. 10 (1976). By the theorem of Liouville and Arnold the map is the flow of a function of the four integrals.
 
 use crate::free_rotation::axes::Axes;
 use crate::linear::{matrix, rows};

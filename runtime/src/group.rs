@@ -80,11 +80,9 @@ pub struct SU<const N: usize>(Infallible);
 
 /// The translations of N-dimensional space: vectors under addition.
 ///
-/// No matrices: an element is a vector with N entries, the identity is 0. Basis: e₁, …, e_N. Components for a physical Lagrangian: the linear
-/// momentum p₁, …, p_N.
+/// An element is a vector with N entries, the identity is 0. Basis: e₁, …, e_N. Components for a physical Lagrangian: the linear momentum p.
 ///
-/// The Gram matrix is I and M = m. Ad and Ad* are the identity; every action is left and right at once, and takes the side of
-/// the other factors, else left.
+/// The Gram matrix is I and M = m. Ad and Ad* are the identity. Every action is left and right: it takes the side of the other factors, else left.
 #[derive(Debug)]
 pub struct Translation<const N: usize>(Infallible);
 
@@ -124,9 +122,8 @@ pub struct Aff<const N: usize>(Infallible);
 /// Matrices: (N+2)×(N+2), rows (1 xᵀ z), (0 I y), (0 0 1). Basis, in order: X_i = E_{1,1+i}; then Y_i = E_{1+i,N+2}; then Z = E_{1,N+2}.
 /// Components for a physical Lagrangian: the momenta p_x, p_y, p_z.
 ///
-/// The bracket is \[X_i, Y_i\] = Z, and all others vanish. The Gram matrix is I: the entries of M are the components.
-/// exp(Σ x_i X_i + Σ y_i Y_i + z Z) has the corner z + ½ x·y. The momentum p_z is constant in a free motion, and is what a
-/// magnetic field is to the other two.
+/// The bracket is \[X_i, Y_i\] = Z, and all others vanish. The Gram matrix is I: the entries of M are the components. The corner of
+/// exp(Σ x_i X_i + Σ y_i Y_i + z Z) is z + ½ x·y. A free motion keeps p_z, which acts on the other two as a magnetic field does.
 #[derive(Debug)]
 pub struct Heisenberg<const N: usize>(Infallible);
 

@@ -72,8 +72,7 @@ pub trait Equation<T: Scalar, const M: usize, const N: usize = M> {
 
     /// The part of |ξ| below which a correction is not made.
     ///
-    /// A quarter of ε by the provided method: the solution is then right to rounding. Larger ones are made by [`tolerance`], and end the
-    /// iteration earlier.
+    /// A quarter of ε by the provided method: the solution is then right to rounding. Larger ones, made by [`tolerance`], end it earlier.
     #[inline]
     fn tolerance() -> T {
         T::EPSILON * T::from_ratio(1, 4)
@@ -144,8 +143,7 @@ fn allowed(most: u32, limit: Option<u32>, spent: u32) -> u32 {
     limit.map_or(most, |limit| most.min(limit.saturating_sub(spent)))
 }
 
-/// The solution ξ of ρ(ξ; `target`) = 0 that is connected to ξ = 0, in each lane the same as for a single number. Lanes without a
-/// solution are NaN.
+/// The solution ξ of ρ(ξ; `target`) = 0 that is connected to ξ = 0, in each lane as for a single number; NaN in lanes without one.
 ///
 /// Accuracy: the correction that Newton's method would make next is below [`Equation::tolerance`] of ξ, a quarter of a unit in its last
 /// place unless the equation says otherwise, or the residual is round-off. It is always the latter where Newton's method alone does not
@@ -261,8 +259,7 @@ fn newton<T: Scalar, E: Equation<T, M, N>, const M: usize, const N: usize>(
 
 /// The same solution with its derivatives: each of Newton's corrections doubles the order to which they are right.
 ///
-/// Source: Griewank and Walther, *Evaluating Derivatives*, 2nd edition, SIAM 2008, section 15.4 (the derivatives of what Newton's method
-/// finds).
+/// Source: Griewank and Walther, *Evaluating Derivatives*, 2nd edition, SIAM 2008, section 15.4.
 #[inline(never)]
 fn with_derivatives<T: Scalar, E: Equation<T, M, N>, const M: usize, const N: usize>(
     equation: &E,
@@ -303,8 +300,7 @@ fn is_round_off<T: Scalar, const M: usize>(
     size(residual).at_most(T::from_f64(8.0) * T::EPSILON * jacobian.size_of_terms(xi))
 }
 
-/// Whether the residual shrank to less than a quarter: progress too where stiff directions are settled before soft ones, while
-/// corrections grow.
+/// Whether the residual shrank to less than a quarter: progress too, where corrections grow as stiff directions settle before soft ones.
 #[cold]
 fn is_much_smaller<T: Scalar, const M: usize>(residual: &SVector<T, M>, before: &SVector<T, M>) -> T::Mask {
     size(residual).at_most(T::from_ratio(1, 4) * size(before))

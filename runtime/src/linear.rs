@@ -16,8 +16,7 @@ pub type Solution<T, const M: usize> = Option<(SVector<T, M>, Orientation)>;
 
 /// Runs `$body` for `$k` from 0 to `$n` − 1, or backwards; each of the first four times is code of its own, in which indices are constants.
 ///
-/// Without that, a loop over loops whose bounds depend on it stays a loop for lanes, with the matrix in memory: a step of eight free bodies
-/// took half as long again.
+/// Otherwise a loop with bounds that depend on it stays a loop for lanes, with the matrix in memory: eight free bodies took half as long again.
 macro_rules! unrolled {
     ($k:ident in 0..$n:ident $body:block) => {
         unrolled!(@ $k $n $body 0 1 2 3);

@@ -1,15 +1,13 @@
 //! The principal logarithm of a matrix: square roots until it is near the identity, then the series of 2 artanh.
 //!
-//! Source: Higham, *Functions of Matrices*, 2008, chapters 6 (equation 6.29, the product form of the iteration of Denman and
-//! Beavers) and 11 (equation 11.31).
+//! Source: Higham, *Functions of Matrices*, 2008, equations 6.29 (the product form of the iteration of Denman and Beavers) and 11.31.
 
 use crate::linear::{divided, function, norm, product};
 use crate::matrices::shifted;
 use crate::{Real, Scalar};
 use nalgebra::SMatrix;
 
-/// Square roots that bring every matrix of finite `f64` near the identity whose entries off the diagonal are not much larger
-/// than those on it.
+/// Square roots that bring every matrix of finite `f64` near the identity, unless entries off the diagonal are much the largest.
 const ROOTS: u32 = 64;
 /// Terms of the series: 3⁻⁸⁰ is 10⁻³⁸.
 const TERMS: i64 = 40;
@@ -75,8 +73,7 @@ fn inverse_hyperbolic_tangent<T: Real, const N: usize>(x: &SMatrix<T, N, N>) -> 
     Some(sum)
 }
 
-/// The principal square root X by X ← (X + Y⁻¹)/2, Y ← (Y + X⁻¹)/2 from A and I, Y being X A⁻¹; `None` where it does not converge
-/// to one.
+/// The principal square root X by X ← (X + Y⁻¹)/2, Y ← (Y + X⁻¹)/2 from A and I, where Y is X A⁻¹; `None` if it does not converge.
 ///
 /// The product form of the iteration, which needs one inverse less, loses the square of the digits for angles near π.
 fn square_root<T: Real, const N: usize>(a: &SMatrix<T, N, N>) -> Option<SMatrix<T, N, N>> {

@@ -2,13 +2,6 @@
 //!
 //! Both eliminate a block tridiagonal Hessian from the end, one symmetric pivot after the other, and both leave the way of Newton's method where
 //! pivots are not definite or corrections do not contract.
-//!
-//! | file | what it does |
-//! |---|---|
-//! | `ldl` | L Δ Lᵀ of a definite pivot |
-//! | `spectrum` | eigenvalues of a pivot that is not definite |
-//! | `gap` | what separates an end from its target |
-//! | `free_time` | the step size at which the action or the price is critical |
 
 mod free_time;
 mod gap;
@@ -28,8 +21,7 @@ use crate::space::larger;
 /// How a sweep takes the Hessian, and what it adds to its diagonal: multiples of a stiffness that path or plan have by themselves.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub(crate) struct Curvature<T> {
-    /// Whether eigenvalues of the wrong sign are turned over, so that steps go downhill. Otherwise steps go to the critical point of the
-    /// quadratic model.
+    /// Whether eigenvalues of the wrong sign are turned over, so that steps go downhill. Else steps go to the critical point of the model.
     pub is_mirrored: bool,
     pub damping: T,
     /// A small one keeps directions without curvature from being left to round-off.

@@ -36,8 +36,7 @@ pub fn length_defect<T: Scalar, const N: usize>(q: &SVector<T, N>) -> T {
     (q.iter().fold(T::zero(), |sum, &x| sum + x * x) - T::one()).abs()
 }
 
-/// R, brought back by one step R(3I − RᵀR)/2 of Newton and Schulz to the rotation next to it where rounding has moved |Re|², e = (1, …, 1), off N by more
-/// than 8Nε.
+/// R, brought back to the next rotation by one step R(3I − RᵀR)/2 of Newton and Schulz, where |Re|², e = (1, …, 1), is off N by more than 8Nε.
 ///
 /// After each product of rotations: rounding would add up like √steps. All entries of RᵀR count in |Re|², which costs N² additions that nothing waits
 /// for; the correction is made once in some hundred steps.

@@ -172,8 +172,7 @@ pub fn annihilator_projection<T: Scalar, const M: usize, const D: usize>(
 
 /// An orthonormal basis of the span of `rows`, zeros for the rows that depend on those before them.
 ///
-/// Modified Gram–Schmidt, each row made orthogonal twice (once more than round-off needs); a row of which less than √ε is left
-/// is taken for dependent.
+/// Modified Gram–Schmidt, each row made orthogonal twice. A row of which less than √ε is left counts as dependent.
 fn orthonormal<T: Real, const M: usize, const D: usize>(mut basis: [[T; M]; D]) -> [[T; M]; D] {
     for k in 0..D {
         let (before, others) = basis.split_at_mut(k);

@@ -1,7 +1,6 @@
 //! The parts of a step, as they are derived for one declaration.
 //!
-//! A *scheme* is the order in which these parts are called. It is the same for every declaration and stands in [`scheme`](crate::scheme); the derive
-//! macro writes parts alone.
+//! A *scheme* is the order in which these parts are called, in [`scheme`](crate::scheme), the same for every declaration. The macro writes parts alone.
 
 use crate::sums::Sums;
 use crate::{Carried, Clebsch, Declared, Edge, Error, Method, Momenta, Space};
@@ -54,8 +53,7 @@ pub trait Parts<M: Method<Self> = Declared>: Clebsch {
         *p
     }
 
-    /// q without the rounding that has moved it off rotations, unit vectors and unit quaternions. It is the last thing that a step does: nothing waits
-    /// for it.
+    /// q without the rounding that has moved it off rotations, unit vectors and unit quaternions. A step does it last, so that nothing waits for it.
     #[inline(always)]
     fn on_space(q: Q<Self>, rest: RestOf<Self, M>) -> (Q<Self>, RestOf<Self, M>) {
         (q, rest)

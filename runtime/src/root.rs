@@ -9,8 +9,7 @@ const CORRECTIONS: usize = 50;
 
 /// The x near `start` where `defect` vanishes but for rounding, by Newton's method with differences for slopes.
 ///
-/// Defects are to be free of units, so that those of order one are large. `None` where the defect is not defined, or shrinks no further before
-/// it is below √ε.
+/// Defects have no units: those of order one are large. `None` where the defect is not defined, or shrinks no further before it is below √ε.
 #[cold]
 pub(crate) fn root<T: Real, const M: usize>(
     start: SVector<T, M>,

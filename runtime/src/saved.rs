@@ -62,10 +62,9 @@ impl<S: Clebsch, M: Method<S>> Debug for SavedState<S, M> {
 impl<S: Clebsch, M: Method<S>> Stepper<S, M> {
     /// The state that was written, after the checks of [`state`](Self::state): the next steps have the bits that they would have had.
     ///
-    /// All that a step takes from the last one is written and read back: the impulse at q, what a free motion keeps, what compensated sums have
-    /// left. It is taken as it is, so that states of *other* systems or of other versions of a declaration have to be made anew, by
-    /// [`state`](Self::state). Formats have to give back every bit of a number: `serde_json` does with its feature `float_roundtrip`, and
-    /// binary ones do.
+    /// All that a step takes from the last one is written and read back: the impulse at q, what a free motion conserves, what compensated sums have
+    /// left. It is taken as it is: make states of *other* systems or versions anew, by [`state`](Self::state). Formats have to give back every bit of a
+    /// number: `serde_json` does with its feature `float_roundtrip`, and binary ones do.
     ///
     /// ```
     /// # use clebsch::{Clebsch, SavedState};

@@ -123,8 +123,7 @@ copy!(At<'_, S, M, C> where [S: Clebsch, M: Method<S>, C]);
 
 /// How a system S is stepped by the method M.
 pub trait Scheme<S: Clebsch, M: Method<S> = Declared>: Sized {
-    /// What a state holds of its momentum from step to step: N itself, or, of a point on a large sphere, the covector w ⊥ q with N = J(q, w), n numbers
-    /// in place of n(n − 1)/2.
+    /// What a state holds of its momentum: N itself, or, of a point on a large sphere, the covector w ⊥ q with N = J(q, w), n numbers for n(n − 1)/2.
     type Held: Space<S::Scalar>;
     /// What one step leaves to the next: the kick that the end of one and the start of the other share, or what a free motion keeps, and what rounding
     /// has taken off q and N where sums are compensated.
@@ -173,8 +172,7 @@ pub trait Scheme<S: Clebsch, M: Method<S> = Declared>: Sized {
         Ok(())
     }
 
-    /// `steps` steps of the size h, as [`step`](Self::step) makes them but for rounding: where a step ends as the next one starts, both may be made at
-    /// once.
+    /// `steps` steps of the size h, as [`step`](Self::step) makes them but for rounding: the end of one step and the start of the next may be one.
     #[inline]
     fn steps(
         at: AtOf<'_, S, Self, M>,

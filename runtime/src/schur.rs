@@ -18,8 +18,7 @@ pub(crate) struct Schur<T, const N: usize> {
 const SWEEPS: u32 = 60;
 
 impl<T: Real, const N: usize> Schur<T, N> {
-    /// By Householder's reflections to Hessenberg form, then by sweeps with the two shifts of Francis; `None` for a matrix that is not
-    /// finite.
+    /// By Householder's reflections to Hessenberg form, then by sweeps with the two shifts of Francis; `None` if the matrix is not finite.
     ///
     /// Blocks of two rows are left as they are, whether their eigenvalues are real or not. Cost: about 25 N³ operations.
     ///

@@ -4,8 +4,7 @@ use crate::{Error, Mask, Scalar};
 use core::fmt::Debug;
 use nalgebra::{Quaternion, SMatrix};
 
-/// A value made of scalars `T`: a scalar, a vector or matrix, a quaternion, a tuple of up to eight spaces, an array of a space,
-/// or `()`.
+/// A value made of scalars `T`: a scalar, vector, matrix or quaternion, a tuple of up to eight spaces, an array of a space, or `()`.
 ///
 /// Implementations only have to say how their scalars are visited.
 pub trait Space<T: Scalar>: Copy + Debug + PartialEq {

@@ -30,8 +30,7 @@ fn straighten<T: Scalar, const N: usize>(q: &SVector<T, N>, w: &mut SVector<T, N
     w.zip_apply(q, |w, q| *w -= q * along);
 }
 
-/// q, brought back to length one as by [`of_length_one`](crate::orbit::of_length_one), and w longer by as much as q is shorter: the momentum
-/// wqᵀ − qwᵀ stays.
+/// q, brought back to length one as by [`of_length_one`](crate::orbit::of_length_one), and w made longer in return: wqᵀ − qwᵀ stays.
 #[inline]
 fn mend<T: Scalar, const N: usize>(q: &mut SVector<T, N>, w: &mut SVector<T, N>) {
     let missing = T::one() - q.dot(q);

@@ -13,8 +13,7 @@ pub(crate) fn exact_sum<T: Scalar>(a: T, b: T) -> (T, T) {
     (sum, (a - of_a) + (b - of_b))
 }
 
-/// (s⁺, r⁺) with s⁺ = s + y rounded, where y = d + r is what is added and what earlier sums have left, and r⁺ what that takes off:
-/// s⁺ + r⁺ = s + y without an error.
+/// (s⁺, r⁺) with s⁺ = s + y rounded, y = d + r the addition with what earlier sums have left, and r⁺ the rounding: s⁺ + r⁺ = s + y exactly.
 ///
 /// Of n sums the errors of y alone add up, ε |d| each in place of ε |s|. For each scalar
 ///

@@ -38,15 +38,13 @@ pub trait Clebsch: Sized {
     /// How it is stepped by the declared dials.
     #[doc(hidden)]
     type Scheme: Scheme<Self>;
-    /// What a state knows of the time: `()` for an autonomous system, [`Clock`](crate::Clock) where the cost or the potential
-    /// depends on it.
+    /// What a state knows of the time: `()` for an autonomous system, else [`Clock`](crate::Clock).
     type Time: Time<Self::Scalar>;
 
     /// The name of the struct.
     const NAME: &'static str;
-    /// Order of accuracy of a step: 4, 6 and 8 are composed of steps of second order, of which
-    /// [`legendre`](Self::legendre) and [`legendre_next`](Self::legendre_next) are the transforms; 16 collocates Hamilton's equations, and the
-    /// transforms are those of the step of second order that is declared beside.
+    /// Order of accuracy of a step. 4, 6 and 8 are composed of steps of second order, 16 collocates Hamilton's equations; then
+    /// [`legendre`](Self::legendre) and [`legendre_next`](Self::legendre_next) are the transforms of the declared step of second order.
     const ORDER: u32;
     /// Whether a step is the free motion itself, without an error in h and with nothing that acts: then h and N count by their product alone, and the longest
     /// step with a momentum is known without trying. `false` as provided.

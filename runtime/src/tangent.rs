@@ -33,8 +33,7 @@ pub struct Tangent<T, const M: usize> {
     pub momentum_by_momentum: SMatrix<T, M, M>,
 }
 
-/// The derivatives of a state with respect to P quantities that are fixed during a step; column k belongs to
-/// [`QUANTITIES`](Sensitive::QUANTITIES)`[k]`.
+/// The derivatives of a state by P quantities that are fixed during a step: column k by [`QUANTITIES`](Sensitive::QUANTITIES)`[k]`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sensitivity<T, const M: usize, const P: usize> {
     /// ∂η
@@ -154,8 +153,7 @@ where
 {
     /// One step with its derivative with respect to the state: (q⁺, N⁺) and the tangent map there.
     ///
-    /// The map is exact up to round-off, by the implicit function theorem on the solved step: one linear system of M unknowns and
-    /// no further iteration.
+    /// The map is exact up to round-off, by the implicit function theorem on the solved step: one linear system of M unknowns, no iteration.
     ///
     /// # Errors
     /// As [`step`](Stepper::step), and [`Error::SingularTangent`] at the very edge of what is solvable.
@@ -221,8 +219,7 @@ where
         if next.is_finite() { Ok(next) } else { Err(self.overflow(&next, 0)) }
     }
 
-    /// One step with its derivatives with respect to the state and to everything that is fixed during it: parameters, step size, time,
-    /// input.
+    /// One step with its derivatives by the state and by everything that is fixed during it: parameters, step size, time, input.
     ///
     /// # Errors
     /// As [`step_tangent`](Self::step_tangent).

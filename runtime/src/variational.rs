@@ -131,8 +131,7 @@ pub trait Differentiated<S: Clebsch, const M: usize>: Method<S, Scheme: Edges<S,
 
 impl<S: Clebsch, B: Method<S, Scheme: Edges<S, M, B>>, const M: usize> Differentiated<S, M> for B {}
 
-/// The discrete Lagrangian ℓd of an edge with its first two derivatives along the motions η of the vertex where it starts and η′ of the
-/// one where it ends.
+/// The discrete Lagrangian ℓd of an edge with its first two derivatives along the motions η of its start and η′ of its end.
 ///
 /// dℓd = F⁺ℓd·η′ − F⁻ℓd·η with the discrete Legendre transforms F⁻ℓd = N_k and F⁺ℓd = N_{k+1}, kicks included. A path is an extremal
 /// where F⁺ℓd of each edge is F⁻ℓd of the next.

@@ -16,8 +16,7 @@ pub enum Guess<T, const M: usize> {
     /// The same with this velocity ξ in 𝔤 to start with, for other windings and directions. It need not lead to the target: the
     /// velocity near it that does is taken. An extremal is found that may be no minimum.
     Velocity(SVector<T, M>),
-    /// The increments that the nodes hold, as a solution left them: for another start or target, or another system. An extremal is
-    /// found that may be no minimum.
+    /// The increments that the nodes hold, from another start, target or system. An extremal is found that may be no minimum.
     Path,
 }
 
@@ -144,8 +143,7 @@ impl<T: Real, S: Variational<M, Scalar = T>, B: Differentiated<S, M>, const M: u
         None
     }
 
-    /// Moves vertex k by k/N of what the end lacks, until the gap is below `enough` of the size of the configuration or no pass makes
-    /// it smaller.
+    /// Moves vertex k by k/N of what the end lacks, until the gap is below `enough` of the configuration or no pass makes it smaller.
     #[cold]
     pub fn close(&mut self, enough: T) {
         let edges = T::from_f64(self.path.len() as f64);

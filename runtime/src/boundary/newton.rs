@@ -78,9 +78,8 @@ impl<T: Real, S: Variational<M, Scalar = T>, B: Differentiated<S, M>, const M: u
     ///
     /// Full Newton steps are made as long as each at least halves the correction or makes the action smaller. Otherwise the last one is
     /// taken back and the gap is closed. Near an extremal such steps go on from there with a steadied Hessian: where extremals are a family,
-    /// as between opposite points of a sphere, it is singular along the family, and how far a step goes there is left to round-off. Else, or
-    /// where that fails too, the action is made smaller, with its Hessian made definite, steps halved (Armijo's rule) and, where that happens
-    /// often, the Hessian damped.
+    /// as between opposite points of a sphere, the Hessian is singular along the family. Elsewhere, or where that fails too, the action is made
+    /// smaller: with a definite Hessian, steps halved (Armijo's rule) and, where that happens often, the Hessian damped.
     ///
     /// Corrections are measured in the norm of the Hessian relative to the action, which no choice of units changes.
     #[inline]

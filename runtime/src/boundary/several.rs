@@ -37,8 +37,7 @@ impl<S: Variational<M, Scalar: Real>, B: Differentiated<S, M>, const M: usize> B
     /// Work: 1 + 8M² calls of [`solve`](Self::solve) at most.
     ///
     /// # Errors
-    /// Those of [`solve`](Self::solve) for what was given; the least distance that was left, as [`Error::Unreachable`], where no guess
-    /// led to an extremal.
+    /// Those of [`solve`](Self::solve) for what was given; where no guess led to an extremal, [`Error::Unreachable`] with the least distance.
     pub fn several<const K: usize>(
         &self,
         start: &S::Configuration,

@@ -112,8 +112,7 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: usize
         self.stages.iter_mut().for_each(|stage| stage.multipliers = stage.slack.map(|slack| barrier / slack));
     }
 
-    /// Takes the plan that a roll-out with this fraction of the correction proposes, and that leads to `last`. Multipliers stay positive and near
-    /// μ/s.
+    /// Takes the plan that a roll-out with this fraction of the correction proposes, which leads to `last`. Multipliers stay positive, near μ/s.
     pub fn accept(&mut self, fraction: T, barrier: T, last: S::Place) {
         let wide = T::EPSILON.sqrt().recip();
         for stage in self.stages.iter_mut() {

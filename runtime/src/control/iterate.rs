@@ -162,8 +162,7 @@ impl<T: Real, const D: usize> Iterate<T, D> {
         self.begin_again();
     }
 
-    /// From now on corrections close the gap: its price becomes a weight, with multipliers that leave this price's force on the end,
-    /// Eᵀ(ν − Re), as it is.
+    /// From now on corrections close the gap: its price becomes a weight, and multipliers keep its force on the end, Eᵀ(ν − Re).
     pub fn close_gap(&mut self, force: SVector<T, D>, end: &PlanEnd<T, D>) {
         self.settings.weight = SMatrix::from_diagonal(&self.settings.gap_price.take().unwrap_or(SVector::zeros()));
         self.settings.multipliers = force + self.settings.weight * end.lack;
@@ -198,8 +197,7 @@ impl<T: Real, const D: usize> Iterate<T, D> {
         may_be
     }
 
-    /// Near a solution √ε, as a part of the price's curvature: it keeps corrections from going far where round-off alone bends the price, as
-    /// along a symmetry.
+    /// Near a solution √ε, as a part of the price's curvature: else corrections go far where round-off alone bends the price, as along a symmetry.
     fn steadiness(&self) -> T {
         let seen = T::EPSILON.sqrt();
         self.before.filter(|before| *before * *before <= seen).map_or(T::zero(), |_| seen)

@@ -87,8 +87,7 @@ impl<S: Controlled<D, U, C, Scalar: Real>, const D: usize, const U: usize, const
 copied!(Stage<S, D, U, C> where [S: Controlled<D, U, C, Scalar: Real>, const D: usize, const U: usize, const C: usize]:
     place, input, costate, gain, multipliers);
 
-/// A plan on which the price is critical, solved to round-off by [`Control::solve`](crate::Control::solve). The stages that it was solved
-/// in hold the plan itself.
+/// A plan on which the price is critical, solved to round-off by [`Control::solve`](crate::Control::solve). Its stages are the plan itself.
 pub struct Optimum<'p, S: Controlled<D, U, C, Scalar: Real>, const D: usize, const U: usize, const C: usize> {
     pub(super) stages: &'p [Stage<S, D, U, C>],
     pub(super) step_size: S::Scalar,

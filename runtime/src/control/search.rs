@@ -20,8 +20,7 @@ use nalgebra::{SMatrix, SVector};
 
 /// Roll-outs of one correction.
 const TRIALS: usize = 12;
-/// Halvings of the first change away from a saddle, which would make the price smaller by a hundredth: what is looked for is the minimum next
-/// to the saddle.
+/// Halvings of the first change away from a saddle, which would take a hundredth of the price: the minimum next to the saddle is wanted.
 const HALVINGS: usize = 30;
 
 /// The plan that a correction starts from.

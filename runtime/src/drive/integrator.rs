@@ -8,8 +8,7 @@ use core::fmt::{self, Debug, Formatter};
 /// A [`Stepper`] with a state and room for the next one, which are all that steps write: for states so large that handing each on by value takes longer than
 /// the step itself, points on large spheres and arrays of sites.
 ///
-/// It makes the steps of [`Stepper::step`], to the last bit, and where one fails the state is what it was. Small states are better off in a `Stepper`, which
-/// keeps them in registers.
+/// It makes the steps of [`Stepper::step`], to the last bit; where one fails the state is what it was. Keep small states in a `Stepper`: in registers.
 ///
 /// An integrator is where it is put: on the stack, in a struct of yours, or on the heap, by `Box::new(stepper.integrator(state))`, which allocates once.
 ///

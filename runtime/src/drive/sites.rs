@@ -60,8 +60,7 @@ impl From<SiteError> for Error {
 
 /// A power whose state is in storage of the user's choice: many sites that no stack would hold.
 ///
-/// A step costs and computes what [`Stepper::step`] does, to the last bit; it reads one state and writes the other, so that the state is
-/// what it was where a step fails.
+/// A step costs and computes what [`Stepper::step`] does, to the last bit. It writes to the other state: where it fails, the state is what it was.
 #[derive(Clone, Debug)]
 pub struct Sites<P: Clebsch, Points, Momenta, const N: usize> {
     stepper: Stepper<P>,

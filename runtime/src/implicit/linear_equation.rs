@@ -8,8 +8,7 @@ use nalgebra::{SMatrix, SVector};
 
 /// An implicit equation ρ(ξ; μ) = A(μ) ξ − b(μ) = 0 for M unknowns ξ, given N components of momentum, the target μ.
 ///
-/// A and b are affine in μ, or det A does not depend on μ; and b(0) = 0. Wanted is the solution that is connected to ξ = 0 for μ = 0, which ends where det A
-/// changes its sign.
+/// A and b are affine in μ, or det A does not depend on μ; and b(0) = 0. Wanted is the solution on the branch of ξ = 0, which ends where det A changes its sign.
 pub trait LinearEquation<T: Scalar, const M: usize, const N: usize = M> {
     /// A and b for the target μ.
     fn system(&self, target: &SVector<T, N>) -> (SMatrix<T, M, M>, SVector<T, M>);

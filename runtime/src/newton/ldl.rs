@@ -31,8 +31,7 @@ impl<T: Real, const M: usize> Ldl<T, M> {
         Self::factored(a, true, |pivot, entry| pivot > unit * entry && pivot > T::zero())
     }
 
-    /// Where `is_regular(Δ_kk, A_kk)` of all pivots. The product of a column and its multiple is rounded as (multiple)·(column), or the other
-    /// way round where `column_first`.
+    /// Where `is_regular(Δ_kk, A_kk)` of all pivots. A column times its multiple is rounded as (multiple)·(column), or else with the column first.
     ///
     /// Nothing leaves the loop, which is then unrolled.
     #[inline(always)]

@@ -135,11 +135,9 @@ fn merged<S: Clebsch, M: Method<S>>(
     merged
 }
 
-/// The longest step that `tried` solves, to [`WIDTH`], given the step `h` that has no solution and the fraction of its momentum that has one;
-/// `None` if none was found.
+/// The longest step that `tried` solves, to [`WIDTH`], given a step `h` without a solution and the fraction of its momentum that has one.
 ///
-/// Where momenta alone count, the longest is that fraction of h. What a potential or a force adds depends on h in its own way: where that
-/// shows, the interval is halved.
+/// Where momenta alone count, the longest is that fraction of h. Where a potential or a force shows, the interval is halved.
 fn longest(h: f64, fraction: f64, tried: impl Fn(f64) -> Result<bool, Error>) -> Option<f64> {
     let (mut refused, mut edge) = (h, h * fraction);
     let mut solved: Option<f64> = None;

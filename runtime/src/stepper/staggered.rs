@@ -67,9 +67,8 @@ impl<S: Clebsch, M: Method<S>> Stepper<S, M> {
         M::kinetic_energy(&self.system, constants, t, q, &self.synchronized(state)) + self.system.potential(t, q)
     }
 
-    /// The state of a body at q whose momentum there is π, after the checks of [`state`](Self::state): with `order = 1` its momentum N is ahead of π by
-    /// half a kick, and [`synchronized`](Self::synchronized) gives π back but for rounding; with every other order it is the state (q, π). Where
-    /// the time matters it starts at 0.
+    /// The state of a body at q whose momentum there is π, after the checks of [`state`](Self::state). With `order = 1` its N is ahead of π by half a kick,
+    /// and [`synchronized`](Self::synchronized) gives π back but for rounding. With every other order it is the state (q, π). The time starts at 0.
     ///
     /// # Errors
     /// As [`state`](Self::state), for π.
