@@ -87,8 +87,7 @@ impl<'a, S: Variational<M, Scalar: Real>, B: Differentiated<S, M>, const M: usiz
     /// The number of steps is that of `path` divided by the edges in a step; its nodes are overwritten. F⁺ℓd of each edge is F⁻ℓd of the
     /// next and q_N is the target, both up to round-off; where motions fix the target, the last momentum vanishes on them.
     ///
-    /// Work: three to six linearisations from a good guess, each linear in the number of nodes; at most 200. A long path from
-    /// [`Guess::Geodesic`] is begun with eight edges.
+    /// Work: three to six linearisations from a good guess, each linear in the number of nodes; at most 200. [`Guess::Geodesic`] begins with eight edges.
     ///
     /// # Errors
     /// * [`Error::PathLength`], [`Error::NotFinite`], [`Error::OffOrbit`] for what was given;
@@ -110,8 +109,7 @@ impl<'a, S: Variational<M, Scalar: Real>, B: Differentiated<S, M>, const M: usiz
         self.extremal(start, Some(target), guess, path)
     }
 
-    /// The path from `start` to wherever the action with the price of the end, Σ ℓd + φ(t_N, q_N), is critical: its last momentum is
-    /// −∂φ/∂q_N, 0 where no `endpoint` is declared.
+    /// The path from `start` to wherever Σ ℓd + φ(t_N, q_N) is critical: its last momentum is −∂φ/∂q_N, 0 where no `endpoint` is declared.
     ///
     /// As [`solve`](Self::solve), but that [`Guess::Geodesic`] starts at rest. [`Extremal::action`] includes φ.
     ///

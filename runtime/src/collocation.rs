@@ -84,8 +84,7 @@ impl<const H: usize> Gauss<H> {
     }
 }
 
-/// y⁺ − y of a step of the size h that starts at the time t in y = (q, p), N numbers of which the first half are those of q; S = 2H stages, of
-/// which the second half are mirrored.
+/// y⁺ − y of a step of the size h that starts at the time t in y = (q, p), N numbers, q first. Of the S = 2H stages the second half are mirrored.
 ///
 /// `guess` is a place near that after a part of the step, `slope` is (q′, p′) at a time and a place. Sweeps end where they change the step by less than
 /// `tolerance`, relative to q and to p, or where rounding is all that changes, and after `most` at the latest: ended one sweep earlier, by the rate of the last two, they leave energies that drift

@@ -1,7 +1,6 @@
 //! Dual numbers of the crate `num-dual` as scalars: a whole simulation differentiates, by parameters, step size and initial data.
 //!
-//! Comparisons look at the values alone, so that a step takes the way that it takes without derivatives; what iterates goes on until these
-//! are right too, [`Scalar::DERIVATIVES`].
+//! Comparisons look at the values alone: a step goes as without derivatives. Iterations go on until derivatives are right, [`Scalar::DERIVATIVES`].
 
 use crate::Scalar;
 use nalgebra::Const;

@@ -51,8 +51,7 @@ pub fn below_right_angle<T: Scalar, const M: usize>(x: SVector<T, M>, sine_squar
 /// ```text
 /// 1/2 + t/8 + t²/16 + 5t³/128 + 7t⁴/256 + 21t⁵/1024 + 33t⁶/2048 + …,    the next of which is below 5·10⁻¹⁷ of the sum
 /// ```
-/// are half as long a chain of operations as a root and a division. Numbers of more digits, and with derivatives, have the quotient
-/// for all angles. The relative error is below 1.5 ε.
+/// are half as long a chain of operations as a root and a division. Longer numbers, and derivatives, take the quotient. The relative error is below 1.5 ε.
 #[inline]
 pub fn per_one_plus_cosine<T: Scalar>(sine_squared: T) -> T {
     let quotient = || (T::one() + (T::one() - sine_squared).sqrt()).recip();

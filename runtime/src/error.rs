@@ -167,8 +167,7 @@ errors! {
             /// The number of nodes of one step.
             per_step: usize,
         } => "a path of {nodes} nodes was given: give {per_step} for each step, and at least one step";
-        /// No small motion of the start comes nearer to the target: its direction is not determined, as between opposite points of a
-        /// sphere, or the target is off the orbit.
+        /// No small motion of the start comes nearer to the target: they are like opposite points of a sphere, or on different orbits.
         UndeterminedDirection {
             /// The distance from start to target, as the root of the sum of squares of all entries.
             distance: f64,

@@ -1,12 +1,11 @@
 //! The exponential of a matrix and the function φ(z) = (eᶻ − 1)/z of it: Taylor series, scaled and doubled.
 //!
-//! Terms are added until they cannot be seen, whatever the precision of the scalar; derivatives of dual numbers come along.
-//! Errors are a few units in the last place of |exp A| for |A| ≤ 1, and grow like |A| beyond, as they do for a rotation by many
-//! turns however it is computed. The scaling looks at powers of A, and what is doubled is exp A − I: so neither large entries
-//! beside the diagonal, as of a translation, nor a small A cost digits.
+//! Terms are added until they cannot be seen, whatever the precision of the scalar; derivatives of dual numbers come along. Errors are a few units
+//! in the last place of |exp A| for |A| ≤ 1, and grow like |A| beyond. Scaling looks at powers of A, and exp A − I is doubled: neither large
+//! entries beside the diagonal, as of a translation, nor a small A cost digits.
 //!
-//! Source: Higham, *Functions of Matrices*, 2008, sections 10.3 and 10.7.4; Al-Mohy and Higham, *A New Scaling and Squaring
-//! Algorithm for the Matrix Exponential*, 2009, theorem 4.2.
+//! Source: Higham, *Functions of Matrices*, 2008, sections 10.3 and 10.7.4; Al-Mohy and Higham, *A New Scaling and Squaring Algorithm for the
+//! Matrix Exponential*, 2009, theorem 4.2.
 
 use crate::linear::{function, norm, product};
 use crate::matrices::shifted;

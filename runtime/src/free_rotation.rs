@@ -12,9 +12,8 @@
 //! D′_i = −½ (a + D_i²) (x_i + P_i (e − a x_i)/(℘(τ/2) − e_i + a P_i)),    D_i = 2 d_i/τ
 //! P_i = (x_i − x_j)(x_i − x_k),    e_i = a x_j x_k + e x_i − their mean,    ℘ with the roots e_i
 //! ```
-//! so that d_i is a power series in τ², its coefficients homogeneous polynomials in a and e: made once for a body, without a division by
-//! differences of inertia. Where few terms are not enough, those of a part of the time are, and formulas of duplication lead from d of a part
-//! to d of twice the part, as often as it takes.
+//! so that d_i is a power series in τ² whose coefficients are homogeneous polynomials in a and e, made once for a body, without a division by
+//! differences of inertia. Where few terms are not enough, d of a part of the time is found, and doubled by formulas as often as it takes.
 //!
 //! Source: the equation is that of J. Moser and A. P. Veselov, *Discrete versions of some classical integrable systems and factorization of
 //! matrix polynomials*, Comm. Math. Phys. 139 (1991); that modified constants make it exact, R. I. McLachlan and A. Zanna, *The discrete

@@ -1,7 +1,6 @@
 //! The groups that declarations can name, with the conventions of their momenta.
 //!
-//! These types hold nothing: `F: SO<3>` in a declaration is a 3×3 matrix. They exist so that an editor shows this page, and
-//! to say in one place what the components of a momentum are.
+//! These types hold nothing: `F: SO<3>` in a declaration is a 3×3 matrix. An editor shows this page, with the components of a momentum.
 //!
 //! | group | of | page |
 //! |---|---|---|
@@ -21,8 +20,7 @@
 //!   have the unit of a discrete Lagrangian, J·s; those along a translation have J·s per unit of length.
 //! * An action is *left* if Φ_gh = Φ_g Φ_h, as in `F * q`; then momenta are spatial. It is *right* if Φ_gh = Φ_h Φ_g, as in
 //!   `q * F`; then momenta are those of the body frame. Ad*_F is (Ad_F)*, without an inverse inside.
-//! * A velocity ξ, the argument of a `lagrangian`, has the coordinates of ξ = Σ ξ_i E_i; so m·ξ = ⟨M, ξ⟩ is twice the kinetic
-//!   energy of a Lagrangian that is quadratic in ξ.
+//! * A velocity ξ, the argument of a `lagrangian`, has the coordinates of ξ = Σ ξ_i E_i; m·ξ = ⟨M, ξ⟩ is twice a quadratic kinetic energy.
 
 use core::convert::Infallible;
 
@@ -53,12 +51,10 @@ pub struct SO<const P: usize, const Q: usize = 0>(Infallible);
 
 /// The unitary maps of N complex dimensions, in real form: A + iB is the 2N×2N matrix with the blocks A, −B; B, A.
 ///
-/// Matrices: 2N×2N with FᵀF = I and FᵀΩF = Ω. Basis, in order: A = E_ji − E_ij for i < j; then B = E_ji + E_ij for i < j; then B = E_ii.
-/// The blocks that are not given are 0.
+/// Matrices: 2N×2N, FᵀF = I, FᵀΩF = Ω. Basis: A = E_ji − E_ij for i < j; B = E_ji + E_ij for i < j; B = E_ii; the other blocks are 0.
 ///
-/// A vector of N complex numbers is its real parts followed by its imaginary parts. Pairs i < j are in the order (12), (13), …,
-/// (N−1 N). Every entry stands twice in the real form, so that the Gram matrix is 4 for pairs and 2 for B = E_ii:
-/// M = ¼ Σ m E over the pairs + ½ Σ m E over the others.
+/// A vector of N complex numbers is its real parts followed by its imaginary parts. Pairs i < j are in the order (12), …, (N−1 N). Every entry stands
+/// twice in the real form: the Gram matrix is 4 for pairs and 2 for B = E_ii, and M = ¼ Σ m E over the pairs + ½ Σ m E over the others.
 ///
 /// `U<1>` is the circle. The component along B = E_ii is the momentum of the phase of number i.
 #[derive(Debug)]
@@ -146,8 +142,7 @@ pub struct SL<const N: usize>(Infallible);
 
 /// The linear maps that keep the symplectic form of a phase space of `DIMENSION` = 2n dimensions: `Sp<2>` is `SL<2>`.
 ///
-/// Matrices: 2n×2n, FᵀΩF = Ω with Ω = (0 I; −I 0). Basis, in order: E_ij − E_{n+j,n+i} by rows; then E_{i,n+j} + E_{j,n+i} for j ≤ i
-/// (E_{i,n+i} for i = j); then their transposes.
+/// Matrices: 2n×2n, FᵀΩF = Ω, Ω = (0 I; −I 0). Basis: E_ij − E_{n+j,n+i} by rows; E_{i,n+j} + E_{j,n+i}, j ≤ i (E_{i,n+i} for i = j); their transposes.
 ///
 /// Pairs j ≤ i are in the order (11), (21), (22), (31), …. The Gram matrix is 2, and 1 for E_{i,n+i} and its transpose. A vector of
 /// phase space is its n positions followed by its n momenta.

@@ -1,12 +1,10 @@
 //! The implicit equation of a step: ρ(ξ; μ) = 0 for the chart coordinates ξ of the group element F, given the momentum μ.
 //!
-//! [`solve`] first tries full Newton steps from the predictor, which ends after one to four linearisations for the step sizes
-//! that people use. Where these do not contract cleanly, the path from the identity is followed instead, with bounded work,
-//! until it arrives or is found to turn back: then no solution is connected to the identity. [`solve_linear_equation`] does
-//! without iteration where ρ is affine in ξ.
+//! [`solve`] first tries full Newton steps from the predictor, one to four linearisations for usual step sizes. Where these do not contract
+//! cleanly, it follows the path from the identity with bounded work, until that arrives or turns back: then no solution is connected to the
+//! identity. [`solve_linear_equation`] does without iteration where ρ is affine in ξ.
 //!
-//! Solves are always inlined in the part of the step that calls them, once: the result of a call lies in memory, and a step of a small system
-//! would wait for it. What is cold is not.
+//! Solves are inlined once, in the part of the step that calls them: the result of a call lies in memory, for which small steps would wait.
 
 mod fixed_point;
 mod jacobian;
@@ -31,8 +29,7 @@ use nalgebra::SVector;
 /// ρ is affine in μ, and ξ = 0 solves it for μ = 0, so that sμ with s from 0 to 1 leads from the identity to the solution.
 /// Wanted is the solution on the branch that starts there, which ends where det Dρ changes its sign, as h grows or as s does.
 ///
-/// Where the momentum of the identity is not 0, as for a cost in which a potential depends on q and F together, μ is the
-/// momentum less that of the identity, and so is ρ.
+/// If the momentum of the identity is not 0, as for a cost with a potential of q and F together, it is subtracted from μ, and so from ρ.
 pub trait Equation<T: Scalar, const M: usize, const N: usize = M> {
     /// What does not change during the iteration.
     type Terms;
@@ -146,9 +143,8 @@ fn allowed(most: u32, limit: Option<u32>, spent: u32) -> u32 {
 /// The solution ξ of ρ(ξ; `target`) = 0 that is connected to ξ = 0, in each lane as for a single number; NaN in lanes without one.
 ///
 /// Accuracy: the correction that Newton's method would make next is below [`Equation::tolerance`] of ξ, a quarter of a unit in its last
-/// place unless the equation says otherwise, or the residual is round-off. It is always the latter where Newton's method alone does not
-/// decide. Work: at most 12 linearisations, and where they do not decide at most [`LINEARIZATIONS`] more (ten to two hundred in practice);
-/// in all not more than [`Equation::limit`].
+/// place by default, or the residual is round-off: always the latter where Newton's method alone does not decide. Work: at most 12 linearisations,
+/// then at most [`LINEARIZATIONS`] more (ten to two hundred in practice); in all not more than [`Equation::limit`].
 ///
 /// # Errors
 /// Where no lane has a solution: [`Error::Unsolvable`] where no solution is connected to the identity, with the largest fraction of `target` for which there is
@@ -180,9 +176,8 @@ fn solve_after<T: Scalar, E: Equation<T, M, N>, const M: usize, const N: usize>(
 /// Newton's method from the predictor: ξ, in which lanes it is the solution, and how many linearisations were made, at most `most`. A lane
 /// stays as it is once it has arrived, and is given up as soon as it does not contract cleanly, or leaves the branch.
 ///
-/// Near a solution the corrections obey |Δ_{k+1}| ≈ C|Δ_k|². With C from the last two, |Δ_k|³/|Δ_{k−1}|² is the correction that
-/// would come next, and is not made if it is negligible. The predictor counts as the correction of ξ = 0, and where it is 0 the
-/// first correction is the predictor.
+/// Near a solution the corrections obey |Δ_{k+1}| ≈ C|Δ_k|². With C from the last two, |Δ_k|³/|Δ_{k−1}|² would come next, and is not made if
+/// it is negligible. The predictor counts as the correction of ξ = 0; where it is 0 the first correction is the predictor.
 #[inline(always)]
 fn newton<T: Scalar, E: Equation<T, M, N>, const M: usize, const N: usize>(
     equation: &E,

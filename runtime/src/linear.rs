@@ -1,7 +1,6 @@
 //! Small linear systems: Gaussian elimination with partial pivoting in straight loops over constant bounds.
 //!
-//! For M = 3 the loops unroll and the matrix stays in registers. Only signs of pivots are used, never the determinant, which
-//! overflows long before its factors do.
+//! For M = 3 the loops unroll and the matrix stays in registers. Only signs of pivots are used: the determinant overflows long before they do.
 
 use crate::cofactors;
 use crate::orientation::Orientation;

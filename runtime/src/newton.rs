@@ -40,8 +40,7 @@ impl<T: Real> Curvature<T> {
     }
 }
 
-/// The damping after a correction that was halved so many times: eight times less where it was not, eight times more where only an eighth or
-/// less was made. Below `least` it is none.
+/// The damping after so many halvings: an eighth of it after none, eight times as much after three or more. Below `least` it is none.
 pub(crate) fn adapted<T: Real>(damping: T, least: T, halvings: usize) -> T {
     let factor = T::from_f64(8.0);
     match halvings {

@@ -208,8 +208,7 @@ pub trait Power<const N: usize>:
         })
     }
 
-    /// Moves all sites with their momenta, and with `kick` beside them, in the storage of others.
-    /// An error comes with the index of its site.
+    /// Moves all sites with their momenta, and with `kick` added, in the storage of others. An error comes with the index of its site.
     #[inline]
     #[allow(clippy::too_many_arguments, reason = "two states, and what is between")]
     fn drift_into(

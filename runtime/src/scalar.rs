@@ -7,13 +7,11 @@ use num_traits::{One, Zero};
 
 /// What declarations can be integrated in: `f32` and `f64`, several of them side by side as lanes, numbers that carry derivatives.
 ///
-/// Everything that the language of declarations can write about a scalar is a method of this trait, so that generated
-/// code works for any implementation. Angles are in radians. Functions outside their domain give NaN, as for `f64`; the
-/// stepper turns that into [`Error::NotFinite`](crate::Error::NotFinite).
+/// Everything that declarations can write about a scalar is a method of this trait. Angles are in radians. Functions outside their domain give
+/// NaN, as for `f64`; the stepper turns that into [`Error::NotFinite`](crate::Error::NotFinite).
 ///
-/// Operations act on each lane by itself. Lanes have no order: where numbers are compared, the answer is a
-/// [`Mask`](Self::Mask), and code that needs a single answer asks for a [`Real`]. An implementation for a single number writes
-/// [`one_number!`](crate::one_number) in place of what is about lanes.
+/// Operations act on each lane by itself. Lanes have no order: a comparison answers with a [`Mask`](Self::Mask), and code that needs one answer
+/// asks for a [`Real`]. An implementation for a single number writes [`one_number!`](crate::one_number) for the lanes.
 pub trait Scalar:
     nalgebra::Scalar
     + Copy

@@ -247,8 +247,7 @@ tuple!(A.0, B.1, C.2, D.3, E.4, F.5, G.6, H.7);
 /// Lanes, at most.
 pub(crate) const MOST_LANES: usize = 16;
 
-/// What a function of the lane gives, lane by lane; `nothing` in the lanes that fail.
-/// If all lanes fail, the error is that of the first that is not merely NaN.
+/// What a function of the lane gives in each; `nothing` where it fails. If all fail, the error is that of the first that is not merely NaN.
 #[inline]
 pub(crate) fn each_lane<T: Scalar, V: Copy>(
     nothing: V,

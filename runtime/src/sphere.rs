@@ -1,7 +1,6 @@
 //! Points on spheres in (q, w), where the momentum is M = wqᵀ − qwᵀ: a step in n numbers in place of n(n − 1)/2.
 //!
-//! w is the velocity times the inertia, perpendicular to q. What rounding leaves of it along q is taken off at each kick: without that
-//! the errors of q·w and of |q| grow exponentially.
+//! w is the velocity times the inertia, perpendicular to q. Each kick takes its rounding along q off: else q·w and |q| err exponentially.
 
 use crate::matrices::skew_times;
 use crate::{Error, Mask, Scalar};
@@ -46,8 +45,7 @@ fn mend<T: Scalar, const N: usize>(q: &mut SVector<T, N>, w: &mut SVector<T, N>)
 /// Lanes without a solution are NaN. Rounding is taken off the length of q⁺.
 ///
 /// # Errors
-/// Where it exists in no lane: [`Error::Unsolvable`] with 1/|sin θ|, the fraction of the momentum for which it would;
-/// [`Error::NotFinite`]. Nothing has moved then.
+/// Where it exists in no lane: [`Error::Unsolvable`] with 1/|sin θ|, the solvable fraction of the momentum; [`Error::NotFinite`]. Nothing has moved then.
 ///
 /// Source: Nordkvist, Crouch and Bloch, *Discrete Clebsch Optimal Control*, example B.
 #[inline]

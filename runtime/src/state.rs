@@ -8,11 +8,10 @@ use core::fmt::{self, Debug, DebugStruct, Formatter};
 
 /// A configuration q with its momentum N, checked by [`Stepper::state`](crate::Stepper::state).
 ///
-/// N is the momentum *before* the kick of the step that follows: the physical momentum at q, but with order 1, where it is half a kick ahead and
-/// [`Stepper::synchronized`](crate::Stepper::synchronized) reads that.
-/// The impulse at q, which two steps share, or what a free motion keeps, travels along unseen; a stepper of another step size makes its own. To go on with another
-/// *system*, make a new state of [`configuration`](Self::configuration) and [`momentum`](Self::momentum). Where the cost or the potential depends on the time, a
-/// state has its [`time`](Self::time).
+/// N is the momentum *before* the kick of the next step. It is the physical momentum at q, but with order 1 half a kick ahead: read that by
+/// [`Stepper::synchronized`](crate::Stepper::synchronized). The impulse at q, which two steps share, or what a free motion conserves, travels along
+/// unseen; a stepper of another step size makes its own. To go on with another *system*, make a new state of [`configuration`](Self::configuration)
+/// and [`momentum`](Self::momentum). Where the cost or the potential depends on the time, a state has its [`time`](Self::time).
 pub struct State<S: Clebsch, M: Method<S> = Declared> {
     pub(crate) time: S::Time,
     pub(crate) configuration: S::Configuration,

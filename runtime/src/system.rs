@@ -7,10 +7,9 @@ use num_traits::Zero;
 
 /// A mechanical or control system with everything that is derived from its declaration.
 ///
-/// Implemented by `#[derive(Clebsch)]`; the documentation of each generated method carries its formula as derived for that
-/// struct. Notation: configuration q in Q, group element F in G, action Φ, momentum μ in the dual of the Lie algebra 𝔤, step
-/// size h, time t, discrete Lagrangian ℓd(t, h, q, F). Momenta are components with respect to the basis E_i of 𝔤 that
-/// [`group`](crate::group) documents, m_i = ⟨M, E_i⟩ = tr(MᵀE_i), all factors of a product one after the other.
+/// Implemented by `#[derive(Clebsch)]`; each generated method documents its formula as derived. Notation: configuration q in Q, group element F
+/// in G, action Φ, momentum μ in the dual of the Lie algebra 𝔤, step size h, time t, discrete Lagrangian ℓd(t, h, q, F). Momenta are components
+/// m_i = ⟨M, E_i⟩ = tr(MᵀE_i) in the basis E_i of 𝔤 that [`group`](crate::group) documents, all factors of a product one after the other.
 ///
 /// The time of a step, in [`legendre`](Self::legendre) and wherever h matters, is that of its start; elsewhere it is that of the
 /// configuration. An autonomous system takes no notice of it.
@@ -95,8 +94,7 @@ pub trait Clebsch: Sized {
         Zero::zero()
     }
 
-    /// The kinetic energy μ·ξ − ℓ(q, ξ) at the velocity ξ with ∂ℓ/∂ξ = μ: the Legendre–Fenchel transform of ℓ(q, ·), with
-    /// ℓ(q, ξ) = lim ℓd(t, h, q, exp hξ)/h less its value at ξ = 0.
+    /// The Legendre–Fenchel transform of ℓ(q, ·), ℓ(q, ξ) = lim ℓd(t, h, q, exp hξ)/h less its value at 0: μ·ξ − ℓ(q, ξ) at the ξ with ∂ℓ/∂ξ = μ.
     ///
     /// ½ μ·Σ⁻¹μ where ℓ is quadratic with the Hessian Σ; +∞ where no velocity has this momentum.
     fn kinetic_energy(

@@ -56,8 +56,7 @@ impl<T: Scalar, const M: usize> Tangent<T, M> {
         Variation { motion, momentum }
     }
 
-    /// The transposed map, which pulls gradients back: the gradient of a function of the state after is turned into that of the
-    /// same function of the state before.
+    /// The transposed map, which pulls gradients back: from a function of the state after to the same function of the state before.
     pub fn apply_transposed(&self, gradient: &Variation<T, M>) -> Variation<T, M> {
         let transposed = Self {
             motion_by_motion: self.motion_by_motion.transpose(),

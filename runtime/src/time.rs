@@ -34,8 +34,7 @@ impl<T: Scalar> Time<T> for () {
 
 /// A time to which steps are added without drift: after k steps of size h from t₀ it shows t₀ + kh to the last place.
 ///
-/// What each addition rounds off is carried along and added later, so that this holds for steps of changing sizes too.
-/// Two clocks are equal if they show the same time.
+/// The rounding of each addition is carried along and added later, also for steps of changing sizes. Equal clocks show the same time.
 ///
 /// Source: Knuth, *The Art of Computer Programming* 2, section 4.2.2, theorem B (the error of a sum).
 #[derive(Clone, Copy, Debug)]

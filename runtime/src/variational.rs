@@ -10,10 +10,9 @@ use nalgebra::{SMatrix, SVector};
 /// A system whose discrete Lagrangian has been differentiated twice: for sensitivities of steps and for problems with fixed
 /// endpoints. Implemented by `#[derive(Clebsch)]` with `emit = [tangent]` or `emit = [boundary]`.
 ///
-/// A *path* is a sequence of configurations q_{k+1} = Φ_{F_k}(q_k); k counts *edges*, of which a step has
-/// [`EDGES`](Self::EDGES). Its vertices are varied along the orbits, q_k ↦ Φ_{exp η_k}(q_k) with η_k in 𝔤, and F_k follows: for a left
-/// action F_k ↦ exp(η_{k+1}) F_k exp(−η_k), for a right one exp(−η_k) F_k exp(η_{k+1}). The group element of an edge is given by its
-/// increment D = F − I (for translations F itself), which small steps do not cancel.
+/// A *path* is a sequence of configurations q_{k+1} = Φ_{F_k}(q_k) with *edges* k, [`EDGES`](Self::EDGES) in a step. Its vertices are varied along
+/// the orbits, q_k ↦ Φ_{exp η_k}(q_k) with η_k in 𝔤, and F_k follows: F_k ↦ exp(η_{k+1}) F_k exp(−η_k) for a left action, exp(−η_k) F_k exp(η_{k+1})
+/// for a right one. An edge is given by the increment D = F − I (for translations F itself), which small steps do not cancel.
 ///
 /// Components of η are those of 𝔤 in the basis that [`group`](crate::group) documents, M of them.
 #[allow(clippy::too_many_arguments, reason = "an edge is its place and time, its ends and its input")]
@@ -133,8 +132,7 @@ impl<S: Clebsch, B: Method<S, Scheme: Edges<S, M, B>>, const M: usize> Different
 
 /// The discrete Lagrangian ℓd of an edge with its first two derivatives along the motions η of its start and η′ of its end.
 ///
-/// dℓd = F⁺ℓd·η′ − F⁻ℓd·η with the discrete Legendre transforms F⁻ℓd = N_k and F⁺ℓd = N_{k+1}, kicks included. A path is an extremal
-/// where F⁺ℓd of each edge is F⁻ℓd of the next.
+/// dℓd = F⁺ℓd·η′ − F⁻ℓd·η, kicks included, with F⁻ℓd = N_k and F⁺ℓd = N_{k+1}. On an extremal F⁺ℓd of each edge is F⁻ℓd of the next.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Edge<T, const M: usize> {
     /// ℓd(t, h, q, F)
@@ -184,8 +182,7 @@ pub struct Carried<T, const M: usize> {
 /// The derivatives of F⁻ℓd and of F⁺ℓd, one column for each quantity.
 type BothSlopes<T, const M: usize, const P: usize> = (SMatrix<T, M, P>, SMatrix<T, M, P>);
 
-/// A system whose steps have been differentiated with respect to all that is fixed during a step, P quantities. Implemented by
-/// `#[derive(Clebsch)]` with `emit = [tangent]`.
+/// A system whose steps have been differentiated by P quantities, all that a step fixes. Implemented by `#[derive(Clebsch)]` with `emit = [tangent]`.
 pub trait Sensitive<const M: usize, const P: usize>:
     Variational<M> + Varied<M, Slopes = BothSlopes<<Self as Clebsch>::Scalar, M, P>>
 {

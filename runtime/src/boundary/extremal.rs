@@ -8,8 +8,7 @@ use crate::{Clebsch, Declared, Differentiated, Real, Space, State, Stepper, Time
 use core::iter::FusedIterator;
 use nalgebra::{SMatrix, SVector};
 
-/// One edge of a path with the vertex where it starts. Made by [`Boundary::rest`](crate::Boundary::rest), filled by
-/// [`Boundary::solve`](crate::Boundary::solve).
+/// One edge of a path with the vertex where it starts. [`Boundary::rest`](crate::Boundary::rest) makes it, and a solution fills it.
 pub struct Node<S: Clebsch, const M: usize> {
     pub(super) configuration: S::Configuration,
     pub(super) increment: S::Element,
@@ -45,8 +44,7 @@ impl<S: Clebsch, const M: usize> Node<S, M> {
         ref momentum: SVector<S::Scalar, M>;
     }
 
-    /// The matrix K of optimal feedback: where q_k is found at Φ_{exp η}(q_k), the extremal from there to the target passes
-    /// Φ_{exp η′}(q_{k+1}) with η′ = −Kη + O(η²).
+    /// The matrix K of optimal feedback: from Φ_{exp η}(q_k) the extremal to the target passes Φ_{exp η′}(q_{k+1}) with η′ = −Kη + O(η²).
     ///
     /// It is of the last linearisation, from which the path may have moved by √ε of its size: K is known to as much.
     ///

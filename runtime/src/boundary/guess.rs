@@ -10,8 +10,7 @@ use nalgebra::SVector;
 /// Where the search for an extremal starts. Extremals between two endpoints are not unique: the guess selects.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Guess<T, const M: usize> {
-    /// A path that moves by the same group element in every edge, the shortest way to the target. A minimum is looked
-    /// for. Where no target is given, the path starts at rest.
+    /// A path with the same group element in every edge, the shortest way to the target, or at rest without one. A minimum is looked for.
     Geodesic,
     /// The same with this velocity ξ in 𝔤 to start with, for other windings and directions. It need not lead to the target: the
     /// velocity near it that does is taken. An extremal is found that may be no minimum.

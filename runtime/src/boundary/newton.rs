@@ -145,8 +145,7 @@ impl<T: Real, S: Variational<M, Scalar = T>, B: Differentiated<S, M>, const M: u
         Err(Error::NoExtremal { correction: size.to_f64(), iterations: SWEEPS })
     }
 
-    /// Makes a step that makes the action smaller, or a full one where the action has no digits left to tell. Returns how often it was halved;
-    /// `None` where it would be too small.
+    /// Makes a step that makes the action smaller, or a full one where the action has no digits left. Returns how often it was halved, if it was made.
     #[cold]
     fn descend(&mut self, summary: &PathSummary<T, M>) -> Option<usize> {
         let is_trusted = summary.is_near() && summary.negative == 0;

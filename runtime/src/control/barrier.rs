@@ -74,8 +74,7 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: usize
         T::from_f64((self.stages.len() * C) as f64)
     }
 
-    /// The barrier of a plan that holds multipliers of its bounds, which it keeps: the mean of z·s. `None` where there are none: bounds are
-    /// relaxed then by what makes slacks positive.
+    /// The barrier of a plan with multipliers of its bounds, which it keeps: the mean of z·s. Otherwise `None`, and bounds are relaxed.
     pub fn resume_or_relax(&mut self) -> Option<T> {
         let zero = T::zero();
         if C == 0 {
@@ -132,8 +131,7 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: usize
         self.last = last;
     }
 
-    /// Multipliers of the bounds from the correction that would come next, for a plan that needs none: slacks of active bounds, of
-    /// which μ/s is made, have few digits.
+    /// Multipliers of the bounds from the correction that would come next: slacks of active bounds, of which μ/s is made, have few digits.
     pub fn settle(&mut self, change: &SVector<T, D>, barrier: T) -> Result<(), Error> {
         let Problem { system, constants, .. } = self.problem;
         let mut displacement = SVector::<T, D>::from_element(T::zero());
@@ -155,8 +153,7 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: usize
         self.stages.iter().any(|stage| stage.excess.iter().any(|excess| *excess > T::zero()))
     }
 
-    /// Whether a bound is violated, where all are still relaxed by this part of the first excess: by more than the round-off of its slack,
-    /// and by more than that of the first excess.
+    /// Whether a bound is violated by more than round-off of its slack and of the first excess, of which this part still relaxes all bounds.
     pub fn is_violated(&self, relaxation: T) -> bool {
         let round_off = T::from_f64(16.0) * T::EPSILON;
         let mut bounds = self.stages.iter().flat_map(|stage| stage.slack.iter().zip(stage.excess.iter()));

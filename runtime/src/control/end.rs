@@ -41,8 +41,7 @@ impl<S: Controlled<D, U, C, Scalar: Real>, const D: usize, const U: usize, const
 
     /// The end of a plan at `x`.
     ///
-    /// What small motions close of a gap is taken for the tangential part of the chord of a circle and lengthened to its arc: exact in
-    /// flat spaces and for the rotations about one axis.
+    /// A small motion closes the tangential part of a chord, which is lengthened to its arc: exact in flat spaces and for rotations about one axis.
     pub fn end(&self, x: &S::Place) -> PlanEnd<S::Scalar, D> {
         let Self { target, lengths, .. } = self;
         let (zero, one) = (S::Scalar::zero(), S::Scalar::one());

@@ -112,8 +112,7 @@ impl<'p, S: Controlled<D, U, C, Scalar: Real>, const D: usize, const U: usize, c
         copy residual: S::Scalar;
         /// The distance to what was asked of the end, as the root of the sum of squares of all entries; 0 for [`Target::Free`](crate::Target).
         copy gap: S::Scalar;
-        /// The Morse index: the number of independent changes of the inputs, among those that keep the target and the active bounds, that make
-        /// the price smaller. 0 on a local minimum.
+        /// The Morse index: the number of independent changes of the inputs that keep target and active bounds and lower the price. 0 on a local minimum.
         copy negative: usize;
         /// The place x_N: the target up to the [`gap`](Self::gap).
         ref end: S::Place;

@@ -78,10 +78,9 @@ impl<T: Real, const D: usize, const U: usize> Policy<T, D, U> {
         let input = step.input_curvature + b.tr_mul(&across);
         let input_multiplier = b.tr_mul(&next.by_multiplier);
         // How much the price curves along each input, of which steadiness is a part. Bounds that are reached, of this step and, through P, of
-        // later places, stiffen Q_uu by Σ = z²/μ, up to 10¹² times what the price does. A part √ε of that would hold what is free beside them:
-        // each correction would make a part 10⁻⁴ of the way to a bound that is reached with the multiplier 0. Hence, where there are bounds,
-        // the step alone tells, as interior point methods shift the Hessian of the Lagrangian by what has nothing to do with Σ. Inputs that
-        // the step does not price are left as they are.
+        // later places, stiffen Q_uu by Σ = z²/μ, up to 10¹² times what the price does. A part √ε of that would hold the free inputs too: each
+        // correction would go a part 10⁻⁴ of the way to a bound that is reached with the multiplier 0. So, where there are bounds, the step alone
+        // tells, as interior point methods shift the Hessian of the Lagrangian without Σ. Inputs that the step does not price are left as they are.
         let (natural, slopes) = bounded.unwrap_or_else(|| (input.diagonal(), (SVector::zeros(), SVector::zeros())));
         let violation = slopes.1 + b.tr_mul(&next.violation);
         let pivot = Pivot::of(&input, &natural, curvature);

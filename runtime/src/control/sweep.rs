@@ -86,9 +86,8 @@ pub(super) struct PlanSummary<T, const D: usize, const U: usize> {
 }
 
 impl<T: Real, const D: usize, const U: usize> PlanSummary<T, D, U> {
-    /// What it costs at least to keep the bounds that are violated: a change that keeps each of them takes V away, for which
-    /// ½ V²/(g·H⁻¹g) is the least price in the quadratic model. It does not vanish with the price of the plan, and units of bounds cancel.
-    /// What the target asks for, which makes it dearer, is left aside.
+    /// What it costs at least to keep the bounds that are violated: ½ V²/(g·H⁻¹g) is the least price of taking V away in the quadratic model.
+    /// It does not vanish with the price of the plan, and units of bounds cancel. That the target makes it dearer is left aside.
     pub fn repair(&self) -> T {
         let price = self.violation / self.yielding * self.violation * T::from_ratio(1, 2);
         if price > T::zero() && price.is_finite() { price } else { T::zero() }

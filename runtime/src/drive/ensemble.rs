@@ -83,8 +83,7 @@ impl<S: Clebsch + Debug, M: Method<S>> Debug for Ensemble<S, M> {
 }
 
 impl<S: Clebsch, M: Method<S>> Stepper<S, M> {
-    /// This stepper with bodies at (q, N): stepped in place. All have its parameters and step size, which may differ between lanes: body i is in
-    /// lane i mod [`LANES`](Scalar::LANES).
+    /// This stepper with bodies at (q, N): stepped in place. Parameters and step size may differ between lanes: body i is in lane i mod [`LANES`](Scalar::LANES).
     ///
     /// # Errors
     /// The first body that [`state`](Self::state) refuses, and why.

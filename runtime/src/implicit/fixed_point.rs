@@ -10,12 +10,10 @@ const QUICK: u32 = 32;
 
 /// The solution ξ of ρ(ξ; `target`) = 0 that is connected to ξ = 0, by ξ ← ξ − Σ⁻¹ρ(ξ).
 ///
-/// For equations with ρ(ξ; μ) = (Σ + O(μ)) ξ − μ + O(μ ξ²), whose [`predict`](Equation::predict) is Σ⁻¹μ. An iteration contracts like
-/// h|ω|, and takes a residual in place of a Jacobian and a linear system. Where corrections do not shrink to a quarter each time,
-/// [`solve`](super::solve) takes over from the start.
+/// For equations with ρ(ξ; μ) = (Σ + O(μ)) ξ − μ + O(μ ξ²), whose [`predict`](Equation::predict) is Σ⁻¹μ. An iteration contracts like h|ω|, and
+/// takes a residual and no linear system. Where corrections do not shrink to a quarter each time, [`solve`](super::solve) takes over.
 ///
-/// Accuracy: what later corrections would add up to is below twice [`Equation::tolerance`] of ξ, half a unit in its last place
-/// unless the equation says otherwise.
+/// Accuracy: later corrections would add up to less than twice [`Equation::tolerance`] of ξ, by default half a unit in its last place.
 ///
 /// # Errors
 /// Those of [`solve`](super::solve).
@@ -48,8 +46,7 @@ fn solve_at_last<T: Scalar, const M: usize>(
     }
 }
 
-/// The iteration: ξ, in which lanes it is the solution, and how many residuals were taken, at most `most`. A lane is given up as soon as it
-/// does not contract by a factor of four.
+/// The iteration: ξ, the lanes in which it is the solution, and how many residuals were taken. Lanes that do not contract by four are given up.
 ///
 /// Corrections then add up to at most a third of the predictor, so that ξ stays where the Jacobian is near Σ and on the branch of ξ = 0.
 /// After a correction Δ with the ratio r to the one before, those to come add up to r|Δ|/(1 − r) ≤ 4r|Δ|/3.

@@ -11,8 +11,7 @@ use num_traits::Zero;
 /// The solutions `xi` with those of the lanes that are not `solved` after `made` iterations: the path from the identity is followed in each
 /// of them, where the equation's limit leaves iterations for it.
 ///
-/// A lane that has none becomes NaN.
-/// If no lane has a solution, the error is that of the first whose target is finite: the others have none of their own.
+/// A lane that has none becomes NaN. If none has one, the error is that of the first whose target is finite: the others have none of their own.
 #[cold]
 #[inline(never)]
 pub(super) fn follow<T: Scalar, E: Equation<T, M, N>, const M: usize, const N: usize>(

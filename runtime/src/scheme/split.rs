@@ -3,9 +3,8 @@
 //! ```text
 //! Ψ_h = D(a_1 h) K_1 D(a_2 h) K_2 … K_s D(a_1 h),    the same forwards and backwards
 //! ```
-//! D is the exact flow of the kinetic energy T = ½ μ·Σ⁻¹μ and K_i the flow of b_i h V − g_i h³ {V, {V, T}}, with the force gradient
-//! {V, {V, T}} = G·Σ⁻¹G, G = J(q, ∂V): a function of q too, so that each K_i is a kick. Every part keeps the group, the symplectic form and the
-//! momenta of the symmetries, and so does the step.
+//! D is the exact flow of the kinetic energy T = ½ μ·Σ⁻¹μ and K_i the flow of b_i h V − g_i h³ {V, {V, T}}. The force gradient {V, {V, T}} = G·Σ⁻¹G,
+//! G = J(q, ∂V), is a function of q too: each K_i is a kick. Every flow, and so the step, conserves group, symplectic form and momenta.
 //!
 //! Kinetic energy is quadratic: the exact drift of the time a h and the momentum μ is that of the time h and the momentum a μ.
 //!

@@ -9,8 +9,7 @@ use num_traits::Zero;
 const TRIALS: usize = 32;
 /// The ratio of the shortest step that was found to have no solution to the longest that has one.
 const WIDTH: f64 = 1.02;
-/// Bytes of constants of a body up to which steps are tried, each with constants of its own: making larger ones takes stack that a step should not need, 45 KB for
-/// series of exact drifts.
+/// Bytes of constants of a body up to which steps are tried, each with its own: making larger ones takes much stack, 45 KB for series of exact drifts.
 const CONSTANTS: usize = 2048;
 /// What solvers call the momentum that they are given.
 const MOMENTUM: Error = Error::NotFinite { name: "the momentum" };

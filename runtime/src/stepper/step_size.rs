@@ -25,8 +25,7 @@ impl<S: Clebsch<Scalar: Real> + Clone, M: Method<S>> Stepper<S, M> {
     /// ```text
     /// E(t) = d / (1 − 2⁻ᵖ)        E(T) = E(t) T/t        h* = h (error / E(T))^(1/p)
     /// ```
-    /// Where h* is not near h, so that another power of h may count, the run is repeated with h*, over the same time t,
-    /// unless it would take more than a million steps.
+    /// Where h* is not near h, another power of h may count: the run is repeated with h*, unless it would take more than a million steps.
     ///
     /// * The error is the largest of |Δq|, the root of the sum of squares of all entries, and |Δμ|/|μ|, so that it has the unit of the
     ///   configuration, and none for rotations and unit vectors.
@@ -36,8 +35,7 @@ impl<S: Clebsch<Scalar: Real> + Clone, M: Method<S>> Stepper<S, M> {
     /// * At order 1 a part of the error, of h, does not grow: the answer errs to the short side.
     /// * Choose this stepper's h so that 64 steps go over a period or more: what has not happened in the run is not known to it.
     /// * Forces have no input during the run, and an explicit time starts as in `start`.
-    /// * The answer has the sign of this stepper's h, so that it may run back in time; it is not above t/4. The steps of the run were
-    ///   solvable with it or with a step near it.
+    /// * The answer has the sign of this stepper's h and is not above t/4. The steps of the run were solvable with it or with a step near it.
     /// * Rounding is not in E: over n steps it is about ε √n.
     ///
     /// ```

@@ -119,8 +119,7 @@ impl<S: Clebsch, M: Method<S>> Stepper<S, M> {
         Ok(State { time: S::Time::at(t), configuration: q, held, left, h: self.h })
     }
 
-    /// A step before it is checked. Lanes in which the implicit equation has no solution are NaN. Where no lane has one, the error is that of
-    /// the first whose momentum is finite.
+    /// A step before it is checked, NaN in lanes that have no solution. Where no lane has one, the error is that of the first with a finite momentum.
     #[inline(always)]
     pub(super) fn attempt(&self, state: &State<S, M>, u: &S::Input) -> Result<State<S, M>, Error> {
         self.attempt_with(state, &self.left_of(state), u)

@@ -29,8 +29,7 @@ struct Failed<X> {
 }
 
 impl<S: Clebsch, M: Method<S>> Chunk<State<S, M>> {
-    /// From at least one body, and at most one for each lane, of which the first has this number.
-    /// The error is that of the first body that [`Stepper::state`] refuses.
+    /// From one body or more, at most one for each lane, the first with this number. The error is that of the first body that is refused.
     pub fn new(stepper: &Stepper<S, M>, first: usize, bodies: &[Body<S>]) -> Result<Self, Failure> {
         let body = |lane: usize| bodies[lane.min(bodies.len() - 1)];
         let q = S::Configuration::side_by_side(|lane| body(lane).0);
