@@ -127,8 +127,7 @@ pub trait Controlled<const D: usize, const U: usize, const C: usize>: Sized {
     /// φ with its derivatives.
     fn endpoint_expanded(&self, t: Self::Scalar, x: &Self::Place) -> EndpointExpansion<Self::Scalar, D>;
 
-    /// What separates x from a target: with the motions G: η ↦ η_Q(q), residual Gᵀ(q* − q) and slope GᵀG, and for momenta N* − N and I;
-    /// a small change δ with slope·δ = residual goes there.
+    /// What separates x from a target: with the motions G: η ↦ η_Q(q), residual Gᵀ(q* − q) and slope GᵀG; for momenta N* − N and I.
     fn arrival(&self, x: &Self::Place, target: &Self::Place) -> Arrival<Self::Scalar, D>;
 
     /// The small change δ that moves x to y, to first order; the shortest where several do.

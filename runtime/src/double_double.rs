@@ -20,8 +20,7 @@ use qd::Quad;
 /// Sums, differences, products, quotients and square roots are right to a few 2⁻¹⁰⁴; so are elementary functions of numbers of order one,
 /// an absolute error for logarithms, sines and cosines. The range is that of `f64`, but below 10⁻²⁹² the second number has lost digits.
 ///
-/// Steps of orders 6 and 8 are composed of sizes that are known to 17 digits, and splittings of order 4 and 6 with `discretization = exact` of
-/// weights that are: for references take order 2.
+/// For references take order 2: the sizes of orders 6 and 8, and the weights of splittings with `discretization = exact`, have 17 digits.
 ///
 /// Source: Joldes, Muller and Popescu, *Tight and rigorous error bounds for basic building blocks of double-word arithmetic* (2017).
 #[derive(Clone, Copy, Debug, PartialEq, PartialOrd)]

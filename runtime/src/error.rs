@@ -227,8 +227,7 @@ errors! {
         } =>
             "the implicit equation was not solved in {iterations} iterations (relative residual {residual:.1e}): \
              reduce the step size, or allow more by `iterations` where the declaration limits them";
-        /// The step of a lane failed, where the scalar has several: [`Stepper::failure`](crate::Stepper::failure) says why, and
-        /// [`Stepper::step_each`](crate::Stepper::step_each) steps the others.
+        /// The step of a lane failed: [`failure`](crate::Stepper::failure) says why, and [`step_each`](crate::Stepper::step_each) steps the others.
         InLane {
             /// The first such lane, counted from 0.
             lane: usize,

@@ -36,8 +36,7 @@ use core::convert::Infallible;
 /// | `SO<N>` | N×N | E_ji − E_ij for i < j, in the order (12), (13), …, (N−1 N): axis i turns to axis j | x_i p_j − x_j p_i |
 /// | `SO<P, Q>` | (P+Q)×(P+Q) | E_ji − η_i η_j E_ij for i < j, in the same order | `SO<1, 3>`: boosts (12), (13), (14), then rotations |
 ///
-/// All of these bases have the Gram matrix 2I, so that M = ½ Σ m_i E_i: for `SO<3>`, M = ½ π^; else m_(ij) = 2 M_ji.
-/// `SO<2>` has the one component (12), the angular momentum in the plane.
+/// All of these bases have the Gram matrix 2I: M = ½ Σ m_i E_i. For `SO<3>`, M = ½ π^; else m_(ij) = 2 M_ji. `SO<2>` has the component (12).
 ///
 /// ```text
 ///        ⎡  0  −x₃  x₂ ⎤
@@ -84,14 +83,12 @@ pub struct Translation<const N: usize>(Infallible);
 
 /// The rigid motions of N-dimensional space: x ↦ R x + a, `F.rotation() * x + F.translation()`.
 ///
-/// Matrices: (N+1)×(N+1), R and a above (0 … 0 1). Basis, in order: that of [`SO`] in the upper left; then E_{i,N+1}. Components for a
-/// physical Lagrangian: angular momentum, then linear momentum.
+/// Matrices: (N+1)×(N+1), R and a above (0 … 0 1). Basis: that of [`SO`] in the upper left, for the angular momentum; E_{i,N+1}, for the linear one.
 ///
 /// The Gram matrix is 2 for the turns and 1 for the shifts: M has ½ π^ (N = 3) in the upper left and p in the last column, and its
 /// last row is 0. A group that is not closed under transposition: Ad*_F M is the part of FᵀMF⁻ᵀ in the Lie algebra.
 ///
-/// For a right action, `q * F`, both momenta are in the body frame, the angular one about the body's origin. For a left action
-/// they are spatial, the angular one about the origin of space.
+/// For a right action, `q * F`, both momenta are in the body frame, about the body's origin; for a left action spatial, about that of space.
 #[derive(Debug)]
 pub struct SE<const N: usize>(Infallible);
 
@@ -115,8 +112,7 @@ pub struct Aff<const N: usize>(Infallible);
 
 /// The Heisenberg group of 2N + 1 dimensions: N positions x, N positions y and one z that commutes with all.
 ///
-/// Matrices: (N+2)×(N+2), rows (1 xᵀ z), (0 I y), (0 0 1). Basis, in order: X_i = E_{1,1+i}; then Y_i = E_{1+i,N+2}; then Z = E_{1,N+2}.
-/// Components for a physical Lagrangian: the momenta p_x, p_y, p_z.
+/// Matrices: (N+2)×(N+2), rows (1 xᵀ z), (0 I y), (0 0 1). Basis: X_i = E_{1,1+i}; Y_i = E_{1+i,N+2}; Z = E_{1,N+2}. Components: p_x, p_y, p_z.
 ///
 /// The bracket is \[X_i, Y_i\] = Z, and all others vanish. The Gram matrix is I: the entries of M are the components. The corner of
 /// exp(Σ x_i X_i + Σ y_i Y_i + z Z) is z + ½ x·y. A free motion keeps p_z, which acts on the other two as a magnetic field does.
@@ -144,7 +140,6 @@ pub struct SL<const N: usize>(Infallible);
 ///
 /// Matrices: 2n×2n, FᵀΩF = Ω, Ω = (0 I; −I 0). Basis: E_ij − E_{n+j,n+i} by rows; E_{i,n+j} + E_{j,n+i}, j ≤ i (E_{i,n+i} for i = j); their transposes.
 ///
-/// Pairs j ≤ i are in the order (11), (21), (22), (31), …. The Gram matrix is 2, and 1 for E_{i,n+i} and its transpose. A vector of
-/// phase space is its n positions followed by its n momenta.
+/// Pairs j ≤ i are (11), (21), (22), (31), …. The Gram matrix is 2, and 1 for E_{i,n+i} and its transpose. Vectors are n positions, then n momenta.
 #[derive(Debug)]
 pub struct Sp<const DIMENSION: usize>(Infallible);

@@ -45,8 +45,7 @@ macro_rules! lanes {
     ($lanes:ident, $mask:ident, $vector:ident, $number:ident, $bits:ident, $count:literal) => {
         #[doc = concat!(stringify!($count), " numbers of type `", stringify!($number), "` side by side: the scalar of ", stringify!($count), " bodies that are stepped at once.")]
         ///
-        /// Each lane has the bits that a single number would have. Registers are as wide as the instruction set that the program is
-        /// built for: `RUSTFLAGS="-C target-cpu=native"` for that of the machine.
+        /// Each lane has the bits of a single number. Registers are those of the target: `RUSTFLAGS="-C target-cpu=native"` for the machine's own.
         #[derive(Clone, Copy, Debug, PartialEq)]
         pub struct $lanes($vector);
 

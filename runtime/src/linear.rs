@@ -35,8 +35,7 @@ macro_rules! unrolled {
 
 /// Solves A X = B in place of `b`: Gaussian elimination with partial pivoting, X of shape M×K.
 ///
-/// Returns the sign of det A. Where a pivot is zero or not finite `b` is spoilt; `None` where that is so in all lanes.
-/// Cost: M³/3 + M²/2 + M²K multiplications to leading orders and M divisions.
+/// Returns the sign of det A. `b` is spoilt where a pivot is zero or not finite; `None` if in all lanes. Cost: M³/3 + M²/2 + M²K multiplications.
 #[inline]
 #[allow(clippy::needless_range_loop)] // Indices show the algorithm and, below constant bounds, cost no checks.
 pub(crate) fn eliminate<T: Scalar, const M: usize, const K: usize>(
@@ -126,8 +125,7 @@ pub fn solve_dense<T: Scalar, const M: usize>(a: &SMatrix<T, M, M>, b: &SVector<
     Some((x, orientation))
 }
 
-/// The same where cofactors do not serve in all lanes: near the ends of the exponent range in other units, in which the digits are those of numbers
-/// of ordinary size, and elsewhere by elimination.
+/// The same where cofactors do not serve in all lanes: in other units near the ends of the exponent range, elsewhere by elimination.
 #[cold]
 #[inline(never)]
 fn eliminated_at_last<T: Scalar, const M: usize>(

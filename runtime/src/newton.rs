@@ -1,7 +1,6 @@
 //! What Newton's method on a path of least action and on a plan of least price have in common.
 //!
-//! Both eliminate a block tridiagonal Hessian from the end, one symmetric pivot after the other, and both leave the way of Newton's method where
-//! pivots are not definite or corrections do not contract.
+//! Both eliminate a block tridiagonal Hessian from the end, pivot by pivot. Both leave Newton's method where pivots are not definite or it stalls.
 
 mod free_time;
 mod gap;

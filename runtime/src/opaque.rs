@@ -6,8 +6,7 @@ use num_traits::One;
 
 /// Checks one entry of a gradient against differences of the value along it.
 ///
-/// The difference is Richardson's, (8(f₊ − f₋) − (f₊₊ − f₋₋))/12δ with δ = ε^{1/5} max(1, |x|), whose error is of the order ε^{4/5} for a
-/// smooth function; ε^{2/5} of the terms, 5e-7 for `f64`, is accepted.
+/// The difference is Richardson's, (8(f₊ − f₋) − (f₊₊ − f₋₋))/12δ, δ = ε^{1/5} max(1, |x|), of the error ε^{4/5}; ε^{2/5} of the terms is accepted.
 ///
 /// # Errors
 /// [`Error::WrongGradient`]; [`Error::NotFinite`] where the value or the gradient is not.

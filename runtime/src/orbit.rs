@@ -38,8 +38,7 @@ pub fn length_defect<T: Scalar, const N: usize>(q: &SVector<T, N>) -> T {
 
 /// R, brought back to the next rotation by one step R(3I − RᵀR)/2 of Newton and Schulz, where |Re|², e = (1, …, 1), is off N by more than 8Nε.
 ///
-/// After each product of rotations: rounding would add up like √steps. All entries of RᵀR count in |Re|², which costs N² additions that nothing waits
-/// for; the correction is made once in some hundred steps.
+/// Without it, rounding of products would add up like √steps. |Re|² costs N² additions that nothing waits for; corrections are rare.
 ///
 /// Source: Higham, *Functions of Matrices*, section 8.3.
 #[inline(always)]

@@ -151,8 +151,7 @@ pub trait Power<const N: usize>:
         momentum.zip_map(&momentum, |x, _| weight * x)
     }
 
-    /// The kicks of all sites in the storage of others, added to their momenta. Gives the sum of all numbers of the state that may not be finite, which is finite
-    /// where they are, unless they are very large.
+    /// The kicks of all sites in the storage of others, added to their momenta. Returns the sum of all numbers: if it is finite, all of them are.
     #[inline]
     fn kick_into(
         &self,

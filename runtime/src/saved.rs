@@ -8,8 +8,7 @@ use crate::{Clebsch, Declared, Error, Method, State, Stepper, Time};
 use core::fmt::{self, Debug, Formatter};
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
-/// What is written of a state: the numbers of its time, of q and N, what its next step takes from the last, and the step size that this is for.
-/// Of the momentum it is what the state holds.
+/// What is written of a state: time, q, what it holds of N, what its next step takes from the last, and the step size that this is for.
 #[derive(Serialize, Deserialize)]
 #[serde(rename = "State")]
 struct Record<Time, Configuration, Momentum, Impulse, Scalar> {

@@ -11,11 +11,9 @@ use num_traits::Zero;
 /// in G, action Φ, momentum μ in the dual of the Lie algebra 𝔤, step size h, time t, discrete Lagrangian ℓd(t, h, q, F). Momenta are components
 /// m_i = ⟨M, E_i⟩ = tr(MᵀE_i) in the basis E_i of 𝔤 that [`group`](crate::group) documents, all factors of a product one after the other.
 ///
-/// The time of a step, in [`legendre`](Self::legendre) and wherever h matters, is that of its start; elsewhere it is that of the
-/// configuration. An autonomous system takes no notice of it.
+/// The time of a step, in [`legendre`](Self::legendre) and wherever h matters, is that of its start; elsewhere that of the configuration.
 ///
-/// People use it through a [`Stepper`], which holds h and the [`Constants`](Self::Constants). What depends on how it is stepped is that of the declared dials
-/// here; the same of other methods is in [`Method`].
+/// A [`Stepper`] holds h and the [`Constants`](Self::Constants). What depends on the dials is that of the declared ones; see [`Method`] for others.
 ///
 /// Source: Nordkvist, Crouch and Bloch, *Discrete Clebsch Optimal Control*, theorems 1 and 2.
 #[allow(unused_variables, reason = "provided methods take what others need")]
@@ -48,8 +46,7 @@ pub trait Clebsch: Sized {
     /// Whether a step is the free motion itself, without an error in h and with nothing that acts: then h and N count by their product alone, and the longest
     /// step with a momentum is known without trying. `false` as provided.
     const IS_FREE_MOTION: bool = false;
-    /// The derivation in words and formulas, with operation counts and what was left out and why. With `emit = [latex]` the struct has a constant
-    /// `DERIVATION_LATEX` too, the same formulas for a paper.
+    /// The derivation in words and formulas, with operation counts. With `emit = [latex]` there is a constant `DERIVATION_LATEX` too, for a paper.
     const DERIVATION: &'static str;
 
     /// Checks the parameters and computes what no step changes.
@@ -82,8 +79,7 @@ pub trait Clebsch: Sized {
     /// By how much the momentum N of a state is ahead of the momentum π that belongs to its configuration: N − π = ½ J(q, ∂(U₁ − U₀)), where
     /// U₀(t, q) and U₁(t, q) are what ℓd adds at the start and at the end of a step.
     ///
-    /// The time is that of the configuration. −h/2 J(q, ∂V) with `order = 1`, half of the kick; 0 with every other order, where N is π. See
-    /// [`Stepper::synchronized`](crate::Stepper::synchronized).
+    /// −h/2 J(q, ∂V) with `order = 1`, half of the kick; else 0, and N is π. See [`Stepper::synchronized`](crate::Stepper::synchronized).
     fn stagger(&self, h: Self::Scalar, t: Self::Scalar, q: &Self::Configuration) -> Self::Momentum {
         Self::Momentum::origin()
     }

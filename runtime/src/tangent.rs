@@ -112,8 +112,7 @@ pub(crate) fn times<T: Scalar, const R: usize, const M: usize, const K: usize>(
     SMatrix::from_fn(|i, j| (0..M).fold(T::zero(), |sum, k| sum + a[(i, k)] * b[(k, j)]))
 }
 
-/// The tangent map of an edge, by the implicit function theorem on F⁻ℓd = N: with η′ = Ad η + ζ, ζ = (∂F⁻ℓd/∂η′)⁻¹ (ν − ∂F⁻ℓd η), the
-/// derivatives along η at fixed F. `None` where ∂F⁻ℓd/∂η′ is singular.
+/// The tangent map of an edge, by the implicit function theorem on F⁻ℓd = N: η′ = Ad η + ζ, ζ = (∂F⁻ℓd/∂η′)⁻¹ (ν − ∂F⁻ℓd η), ∂/∂η at fixed F.
 #[inline]
 pub(crate) fn of_edge<T: Scalar, const M: usize>(edge: &Carried<T, M>) -> Option<Tangent<T, M>> {
     let inverse = divided(&edge.before_by_end, &SMatrix::identity())?;

@@ -22,8 +22,7 @@ pub trait Variational<const M: usize>:
     /// The number of edges in a step: 2 where a discrete Lagrangian is composed with its adjoint, else 1; of a composed step those of all its steps.
     const EDGES: usize = <Self::Scheme as Edges<Self, M>>::EDGES;
 
-    /// The increments of τ(η) and of τ(−η), a group element with τ(0) = I, dτ = id there, and τ(−η) = τ(η)⁻¹ wherever τ is Cayley's map
-    /// or the exponential. They have most of their terms in common.
+    /// The increments of τ(η) and τ(−η), which share most terms: τ(0) = I, dτ = id there, and τ(−η) = τ(η)⁻¹ for Cayley's map and the exponential.
     fn retractions(&self, eta: &Self::Momentum) -> [Self::Element; 2];
 
     /// The increment of τ(η).
@@ -86,8 +85,7 @@ pub trait Variational<const M: usize>:
         Self::Scheme::visit(At::new(self, constants, t), edge, FirstDerivatives((q, d, next, u)))
     }
 
-    /// The derivatives of the same edge along motions η of q that carry q⁺ along and leave F as it is, and along motions of q⁺ alone.
-    /// Together they say everything, and nothing of the size of inertia/h cancels.
+    /// The derivatives of the same edge along motions of q that leave F as it is, and of q⁺ alone: nothing of the size of inertia/h cancels.
     #[inline]
     fn carried(
         &self,

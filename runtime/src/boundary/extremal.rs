@@ -57,8 +57,7 @@ impl<S: Clebsch, const M: usize> Node<S, M> {
 
 copied!(Node<S, M> where [S: Clebsch, const M: usize]: configuration, increment, momentum, gain);
 
-/// A path between fixed endpoints on which the action is critical, solved to round-off by
-/// [`Boundary::solve`](crate::Boundary::solve). The nodes that it was solved in hold the path itself.
+/// A critical path between fixed endpoints, solved to round-off by [`Boundary::solve`](crate::Boundary::solve): its nodes are the path itself.
 pub struct Extremal<'a, S: Variational<M, Scalar: Real>, const M: usize, B: Differentiated<S, M> = Declared> {
     pub(super) stepper: &'a Stepper<S, B>,
     pub(super) nodes: &'a [Node<S, M>],

@@ -12,8 +12,7 @@ use nalgebra::SVector;
 pub enum Guess<T, const M: usize> {
     /// A path with the same group element in every edge, the shortest way to the target, or at rest without one. A minimum is looked for.
     Geodesic,
-    /// The same with this velocity ξ in 𝔤 to start with, for other windings and directions. It need not lead to the target: the
-    /// velocity near it that does is taken. An extremal is found that may be no minimum.
+    /// The same with this velocity ξ in 𝔤, for other windings: the velocity near it that leads to the target is taken. It may find no minimum.
     Velocity(SVector<T, M>),
     /// The increments that the nodes hold, from another start, target or system. An extremal is found that may be no minimum.
     Path,

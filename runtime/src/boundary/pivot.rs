@@ -39,8 +39,7 @@ pub(super) struct Solution<T, const M: usize> {
 }
 
 impl<T: Real, const M: usize> Pivot<T, M> {
-    /// D = L Δ Lᵀ without pivoting where D is definite: M³/6 + M²(M + 1) multiplications, M divisions; for M = 3 from cofactors. Else from
-    /// eigenvalues. Inlined, for what it answers is taken apart at once.
+    /// D = L Δ Lᵀ without pivoting where D is definite: M³/6 + M²(M + 1) multiplications, M divisions. For M = 3 by cofactors, else by eigenvalues.
     #[inline(always)]
     pub fn solve(&self, curvature: Curvature<T>, feedback: &mut Feedback<T, M>) -> Solution<T, M> {
         let solution = if M == 3 { self.by_cofactors(feedback) } else { self.by_elimination(feedback) };

@@ -42,8 +42,7 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: usize
         (SVector::from_fn(|i, _| barrier / self.slack[i] + stiffness[i] * self.excess[i]), stiffness)
     }
 
-    /// Adds ζ·a + ½ Σ (aδ)² with the curvature of z·a to the model of the step, in the last sweep z·a alone in place of ζ·a. Returns Σ a/s of the
-    /// bounds that are violated, and its slopes.
+    /// Adds ζ·a + ½ Σ (aδ)² with the curvature of z·a to the model of the step; in the last sweep z·a. Returns Σ a/s of violated bounds, and its slopes.
     #[inline]
     pub(super) fn add_bounds(
         &self,

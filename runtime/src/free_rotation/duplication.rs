@@ -203,8 +203,7 @@ impl<T: Real> Curve<T> {
         CurvePoint { q: f.product(&n, &n), y: f.determinant(&n), z: (*y + *y) * *z }
     }
 
-    /// The same point with numbers of the size of 1, and with the Q of which no digits cancel from their mean, X: by themselves the errors of
-    /// their differences would grow fourfold each time.
+    /// The same point with numbers of the size of 1. Q of which no digits cancel is taken from the mean X: else errors would grow fourfold each time.
     fn settled(&self, CurvePoint { q, y, z }: CurvePoint<T>) -> CurvePoint<T> {
         let size = (self.functions.trace(&q) + z * z).recip();
         let scale = size.sqrt();

@@ -8,8 +8,7 @@ use core::marker::PhantomData;
 use nalgebra::SVector;
 use num_traits::Zero;
 
-/// The solutions `xi` with those of the lanes that are not `solved` after `made` iterations: the path from the identity is followed in each
-/// of them, where the equation's limit leaves iterations for it.
+/// The solutions `xi`, completed by following the path from the identity in the lanes that are not `solved` after `made` iterations.
 ///
 /// A lane that has none becomes NaN. If none has one, the error is that of the first whose target is finite: the others have none of their own.
 #[cold]

@@ -53,8 +53,7 @@ pub fn regular<T: Real, const M: usize>(a: &SMatrix<T, M, M>, b: &SVector<T, M>)
 /// x, and the projector to the motions that change nothing.
 pub(crate) type Closing<T, const M: usize> = (SVector<T, M>, Option<SMatrix<T, M, M>>);
 
-/// The smallest x with A x = b for a symmetric A with no negative eigenvalue, and the orthogonal projector to the kernel of A, of eigenvalues
-/// below √ε of the largest; `None` where there is no kernel.
+/// The smallest x with A x = b, A symmetric with no negative eigenvalue, and the orthogonal projector to its kernel, of those below √ε of the largest.
 #[inline]
 pub(crate) fn shortest<T: Real, const M: usize>(a: &SMatrix<T, M, M>, b: &SVector<T, M>) -> Closing<T, M> {
     regular(a, b).map_or_else(|| singular(a, b), |x| (x, None))

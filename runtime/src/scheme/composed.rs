@@ -3,8 +3,7 @@
 //! ```text
 //! Ψ_h = Φ_{γ_1 h} ∘ Φ_{γ_2 h} ∘ … ∘ Φ_{γ_m h},    γ_i = γ_{m+1−i},    Σ γ_i = 1
 //! ```
-//! What every Φ keeps, Ψ keeps: the group, momenta, the symplectic form. Where a kick ends one step and starts the next, it is the same but
-//! for the ratio of their sizes, so that its gradient is evaluated once.
+//! What every Φ conserves, Ψ does: group, momenta, symplectic form. Kicks that meet differ by the ratio of sizes: one gradient serves both.
 //!
 //! Source: Hairer, Lubich and Wanner, *Geometric Numerical Integration*, section V.3.2: order 4 is Suzuki's (1990), orders 6 and 8 are those of
 //! Kahan and Li, *Composition constants for raising the orders of unconventional schemes for ordinary differential equations* (1997).

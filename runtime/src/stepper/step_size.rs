@@ -27,8 +27,7 @@ impl<S: Clebsch<Scalar: Real> + Clone, M: Method<S>> Stepper<S, M> {
     /// ```
     /// Where h* is not near h, another power of h may count: the run is repeated with h*, unless it would take more than a million steps.
     ///
-    /// * The error is the largest of |Δq|, the root of the sum of squares of all entries, and |Δμ|/|μ|, so that it has the unit of the
-    ///   configuration, and none for rotations and unit vectors.
+    /// * The error is the larger of |Δq|, the root of the sum of squares of all entries, in the unit of the configuration, and |Δμ|/|μ|.
     /// * **Linear growth is assumed.** It holds for symmetric or symplectic steps of motions that are integrable or nearly so, also on
     ///   average over their periods. Errors of chaotic motions grow like exponentials: over their Lyapunov time and longer the answer is
     ///   too long a step. A friction that damps errors makes it too short.

@@ -60,16 +60,14 @@ impl<S: Clebsch, M: Method<S>> Stepper<S, M> {
 
     /// One step during which the input of the forces is `u`; [`step`](Self::step) is that with none, all zero.
     ///
-    /// By the discrete Lagrange–d'Alembert principle the force acts at both ends, of second order in h. A forced step is not symplectic,
-    /// and conserves those momenta alone on which the force does not act.
+    /// By the discrete Lagrange–d'Alembert principle the force acts at both ends, of second order in h. Forced steps conserve momenta without force alone.
     ///
     /// # Errors
     /// As [`step`](Self::step), and [`Error::NotFinite`] where the input is not.
     #[inline(always)]
     pub fn step_with(&self, state: &State<S, M>, u: &S::Input) -> Result<State<S, M>, Error> {
         check_input::<S>(u)?;
-        // Copy the state on the cold path only: passing it by reference would force it into memory in every step. Build the error there too: otherwise
-        // LLVM splits the loads of a successful result.
+        // Copy the state on the cold path only: a reference would force it into memory. So with the error: LLVM splits the loads of a result.
         let Ok(next) = self.attempt(state, u) else {
             let (before, u) = (*state, *u);
             return Err(self.refused(&before, &u));
