@@ -2,8 +2,7 @@
 
 use clebsch_symbolic::{Expr, Group, Shape, identity};
 
-use super::action_laws::Action;
-use super::membership::Verdict;
+use super::action_laws::{Action, Verdict};
 use super::{Configuration, Factor, LeafSpace};
 use crate::diagnostic::{Diagnostic, error};
 use crate::parse::{joined, shortened, spell};

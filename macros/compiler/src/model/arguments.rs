@@ -6,7 +6,7 @@ use syn::ext::IdentExt;
 use syn::{Generics, Type};
 
 use super::scope::{Scope, check_reserved};
-use super::sizes::const_generic;
+use super::shapes::const_generic;
 use super::slots::{Matched, SharedNames, Slot};
 use super::value::{Each, Value};
 use crate::diagnostic::{Diagnostic, Diagnostics, error, refuse, report};

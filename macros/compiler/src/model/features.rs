@@ -3,7 +3,6 @@
 //! A stage says which features it has found and where; [`refusals`] looks the combinations up. A rule for a new feature is a row.
 
 mod feature;
-mod markdown;
 mod rows;
 #[cfg(test)]
 mod tests;
@@ -12,7 +11,6 @@ use proc_macro2::Span;
 
 use crate::diagnostic::{Diagnostic, Diagnostics, Location, error};
 pub(crate) use feature::Feature;
-pub use markdown::features_as_markdown;
 use rows::ROWS;
 
 /// Features that do not go with each other: each of the first with each of the second.
@@ -130,4 +128,31 @@ impl Row {
 
 fn filled(text: &str, refused: &str, beside: &str, name: &str) -> String {
     text.replace("{refused}", refused).replace("{beside}", beside).replace("{name}", name)
+}
+
+/// The table of what does not go together in Markdown.
+pub fn features_as_markdown() -> String {
+    let head = "| what | does not go with | why | what to write |\n|---|---|---|---|\n";
+    ROWS.iter().map(markdown_row).fold(head.to_string(), |table, row| table + &row)
+}
+
+fn markdown_row(row: &Row) -> String {
+    let refused = words(row.refused, ", ");
+    let beside = words(row.beside, ", ");
+    let fill = |text: &str, name: &str| {
+        filled(text, &either(row.refused, "the former"), &either(row.beside, "the latter"), name)
+    };
+    let why = fill(if row.why.is_empty() { row.message } else { row.why }, "…");
+    // help gives the name of a velocity; a bar would end a cell
+    let help = fill(row.help, "omega").replace('|', "\\|");
+    format!("| {refused} | {beside} | {why} | {help} |\n")
+}
+
+/// Few features by their words, else what stands for them.
+fn either(features: &[Feature], stand_in: &str) -> String {
+    if features.len() > 2 { stand_in.to_string() } else { words(features, " or ") }
+}
+
+fn words(features: &[Feature], separator: &str) -> String {
+    features.iter().map(|feature| feature.words()).collect::<Vec<_>>().join(separator)
 }

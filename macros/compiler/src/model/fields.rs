@@ -10,9 +10,8 @@ use syn::{Generics, Type};
 
 use super::arguments::sites_of;
 use super::scalar::Agreement;
-use super::sizes::{ENTRIES, GROWS, size, type_parameter};
+use super::shapes::{ENTRIES, GROWS, hint, last_name, last_segment, size, type_parameter, vectors};
 use super::value::{Each, Value};
-use super::vectors::{hint, last_name, last_segment, vectors};
 use super::{Access, Layout, Leaf, Parameter, Promise, ScalarType};
 use crate::diagnostic::{Diagnostic, Diagnostics, bail, error};
 use crate::parse::{Declaration, Field, spell_type};

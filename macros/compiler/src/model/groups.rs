@@ -8,8 +8,7 @@ use syn::ext::IdentExt;
 use syn::{GenericArgument, Generics, Type};
 
 use super::features::{self, Feature, Found};
-use super::sizes::{GROWS, LARGEST, size_argument};
-use super::vectors::{arguments, last_name, last_segment, named_shape};
+use super::shapes::{GROWS, LARGEST, arguments, last_name, last_segment, named_shape, size_argument};
 use super::{ChartChoice, Configuration, Factor, LeafSpace};
 use crate::diagnostic::{Diagnostic, Diagnostics, Location, bail, error, nearest, report};
 use crate::parse::{Declaration, Dials, listed, spell_type};

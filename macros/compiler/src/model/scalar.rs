@@ -3,7 +3,7 @@
 use syn::{Generics, Ident, Type};
 
 use super::ScalarType;
-use super::vectors::last_name;
+use super::shapes::last_name;
 use crate::diagnostic::{Diagnostics, refuse, report};
 use crate::parse::{Declaration, spell_type};
 

@@ -5,7 +5,7 @@ use proc_macro2::Ident;
 use syn::Generics;
 
 use super::features::{self, Feature, Found};
-use super::power::{SiteIndex, Term, bounds, index_name};
+use super::power::{SiteIndex, Term, index_name, is_inside};
 use super::space::Space;
 use super::value::Value;
 use super::{Configuration, Item, Leaf, Order, Parameter, Power, ScalarType, System};
@@ -89,7 +89,7 @@ impl<'g> Sites<'g> {
 
     /// Whether a place is one of the sites 0..N for every N ≥ 1, wherever the sums around it are.
     pub fn is_inside(&self, place: &SiteIndex<'g>) -> bool {
-        place.wraps || bounds::is_inside(place.index, self.count, &self.ranges)
+        place.wraps || is_inside(place.index, self.count, &self.ranges)
     }
 }
 

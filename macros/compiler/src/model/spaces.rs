@@ -6,8 +6,7 @@ use syn::{GenericArgument, Type};
 
 use super::groups::{GroupNames, group, known_group, suggestion};
 use super::quaternion;
-use super::sizes::{IN_LOOPS, LEAVES, length};
-use super::vectors::{Vectors, arguments, hint, last_name, last_segment, vectors};
+use super::shapes::{IN_LOOPS, LEAVES, Vectors, arguments, hint, last_name, last_segment, length, vectors};
 use super::{Layout, LeafSpace};
 use crate::diagnostic::{Diagnostic, Location, error};
 use crate::parse::spell_type;

@@ -1,11 +1,16 @@
-//! The value of the stage `parse`.
+//! The value of the stage `parse`, and its printed form: one line for each key and field.
+
+use std::fmt;
 
 use proc_macro2::Ident;
 use syn::{DeriveInput, Generics, Visibility};
 
 use super::dials::Dials;
 use super::keys::Keys;
-use super::{Argument, Choice, Closure, DeclaredGroup, DeclaredMethod, Field, Opaque, combinations, control, methods};
+use super::spelling::{joined, spell, spell_type, tokens};
+use super::{
+    Argument, Choice, Closure, DeclaredGroup, DeclaredMethod, Definition, Field, Opaque, combinations, control, methods,
+};
 use crate::diagnostic::{Diagnostic, Diagnostics, error};
 
 /// What the user declared: the struct, the closures and the dials, as written.
@@ -180,4 +185,43 @@ fn missing_kinetic(ident: &Ident) -> Diagnostic {
     error!(ident, "`{ident}` has neither a cost nor a lagrangian";
         help "write `lagrangian = |omega| omega.dot(&(self.inertia * omega)) / 2`, or a `cost = |h, F| …`";
         note "without kinetic energy nothing says how a momentum moves the configuration")
+}
+
+impl fmt::Display for Declaration {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        writeln!(f, "declaration {}{}", self.ident, tokens(&self.generics))?;
+        for DeclaredGroup { name, definition } in &self.groups {
+            match definition {
+                Definition::Equation(closure) => writeln!(f, "  group {name} = {}", closure.spell())?,
+                Definition::Basis(elements, _) => {
+                    writeln!(f, "  group {name} = basis([{}])", joined(elements.iter().map(spell)))?;
+                }
+            }
+        }
+        let entry = |f: &mut fmt::Formatter<'_>, closure: &Closure| {
+            writeln!(f, "  {:<10} = {}", closure.key.to_string(), closure.spell())
+        };
+        entry(f, &self.action)?;
+        entry(f, self.kinetic.closure())?;
+        match &self.potential {
+            Some(Potential::Closure(closure)) => entry(f, closure)?,
+            Some(Potential::Opaque(opaque)) => writeln!(f, "  potential  = {}", opaque.spell())?,
+            None => {}
+        }
+        let control = self.control.iter().flat_map(|control| [Some(&control.price), control.bounds.as_ref()]).flatten();
+        let others = self.force.iter().chain(&self.force_on).chain(control);
+        others.chain(&self.endpoint).chain(&self.symmetries).try_for_each(|closure| entry(f, closure))?;
+        for (name, value) in self.dials.given() {
+            writeln!(f, "  {name:<10} = {}", value.value)?;
+        }
+        for method in &self.methods {
+            let dials = joined(method.dials.given().map(|(name, value)| format!("{name} = {}", value.value)));
+            writeln!(f, "  method {} = ({dials})", method.name)?;
+        }
+        for field in &self.fields {
+            let promise = field.promise.map(|(promise, _)| format!(", {promise}")).unwrap_or_default();
+            writeln!(f, "  field {}: {}{promise}", field.name(), spell_type(&field.ty))?;
+        }
+        Ok(())
+    }
 }

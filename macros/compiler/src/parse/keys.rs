@@ -1,10 +1,10 @@
 //! The keys of `#[clebsch(…)]`: one table says how each is read, its default and what it belongs to.
 
-mod markdown;
+#[cfg(test)]
+mod tests;
 
 use std::collections::BTreeMap;
 
-pub use markdown::keys_as_markdown;
 use proc_macro2::{Ident, Span};
 
 use super::dials::{Dials, EMITTED};
@@ -194,4 +194,26 @@ impl<'d> Keys<'d> {
     pub fn is_empty(&self) -> bool {
         self.given.is_empty()
     }
+}
+
+/// The table of all keys in Markdown.
+pub fn keys_as_markdown() -> String {
+    let head = "| key | an example | default | of |\n|---|---|---|---|\n";
+    let rows = KEYS.iter().filter(|key| !key.comes_later()).map(markdown_row);
+    let table = rows.fold(head.to_string(), |table, row| table + &row);
+    let dials: Vec<String> = KEYS.iter().filter(|key| key.of_method).map(|key| format!("`{}`", key.name)).collect();
+    format!(
+        "{table}
+`method NAME = (dial = value, …)` declares a further way to step the same system. `NAME` is a unit struct of yours. There may be any number of methods.
+The dials of a method are {}. One that a method does not name has its default, whatever the declaration says.
+`emit = [tangent]` and `[boundary]` serve every method whose steps can be differentiated. `effort` is of the steps with the declared dials.
+",
+        dials.join(", ")
+    )
+}
+
+fn markdown_row(key: &Key) -> String {
+    let Key { name, example, default, of, .. } = key;
+    // a bar would end a cell
+    format!("| `{name}` | `{name} = {}` | {default} | {of} |\n", example.replace('|', "\\|"))
 }

@@ -12,7 +12,6 @@ mod groups;
 mod keys;
 mod methods;
 mod opaque;
-mod print;
 mod spelling;
 mod values;
 

@@ -1,14 +1,13 @@
 //! A group by an equation: the identity satisfies it, its Lie algebra is the kernel of the derivative there, and the equation holds
 //! along the group that this algebra generates.
 
-use clebsch_symbolic::{Expr, Graph, Group, Property, Rational, Role, Shape, Sparse, reduce};
+use clebsch_symbolic::{Expr, Graph, Group, One, Property, Rational, Role, Shape, Sparse, Zero, reduce};
 use quote::ToTokens;
 use syn::Expr as Syntax;
 
 use super::super::scope::{Scope, check_reserved};
+use super::super::shapes::vectors;
 use super::super::value::Value;
-use super::super::vectors::vectors;
-use super::kernel::kernel;
 use super::{check_literal, check_size, dense, elaborate, empty_scope, follow, open_bracket, sparse, spell_matrix};
 use crate::diagnostic::{Diagnostic, Diagnostics, Location, bail, error};
 use crate::parse::{Closure, Pattern, shortened, spell_type, tail};
@@ -201,4 +200,22 @@ impl<'g> GroupEquation<'_, 'g> {
         let entries: Vec<Expr<'g>> = expressions.iter().flat_map(entries_of).collect();
         self.graph.stack(Shape::vector(entries.len()), entries)
     }
+}
+
+/// A basis of all x of the given length with ⟨row, x⟩ = 0: an entry that those before do not determine is one in one vector of the
+/// basis and zero in the others.
+pub(super) fn kernel(rows: &[Vec<Rational>], length: usize) -> Vec<Vec<Rational>> {
+    // a pivot is determined by the entries behind it, so entries are taken from the last to the first
+    let mut reversed: Vec<Vec<Rational>> = rows.iter().map(|row| row.iter().rev().cloned().collect()).collect();
+    let pivots = reduce(&mut reversed);
+    let row_of = |entry: usize| pivots.iter().position(|&pivot| pivot == length - 1 - entry);
+    let vector = |one: usize| {
+        let entry = |entry: usize| match row_of(entry) {
+            Some(row) => -reversed[row][length - 1 - one].clone(),
+            None if entry == one => Rational::one(),
+            None => Rational::zero(),
+        };
+        (0..length).map(entry).collect()
+    };
+    (0..length).filter(|&entry| row_of(entry).is_none()).map(vector).collect()
 }

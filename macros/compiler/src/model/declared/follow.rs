@@ -4,8 +4,7 @@
 use clebsch_symbolic::identity::{self, Residue};
 use clebsch_symbolic::{Expr, Matrix, Number, Rational, Shape, Sparse, rational};
 
-use super::exact::Exact;
-use super::series::Series;
+use super::numbers::{Exact, Series};
 
 /// The order up to which curves are followed.
 const ORDER: usize = 8;

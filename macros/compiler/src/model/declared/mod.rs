@@ -2,10 +2,8 @@
 
 mod basis;
 mod equation;
-mod exact;
 mod follow;
-mod kernel;
-mod series;
+mod numbers;
 #[cfg(test)]
 mod tests;
 
@@ -18,7 +16,7 @@ use super::elaborate::{Context, Elaborator};
 use super::fields::Fields;
 use super::groups::{DeclaredGroups, is_built_in};
 use super::scope::Scope;
-use super::vectors::named_shape;
+use super::shapes::named_shape;
 use crate::diagnostic::{Diagnostic, Diagnostics, Location, bail, error};
 use crate::parse::{DeclaredGroup, Definition, joined, spell_tokens};
 

@@ -3,7 +3,7 @@
 use clebsch_symbolic::{Expr, Graph, Group, integer, rational};
 use proc_macro2::Span;
 
-use super::kernel::kernel;
+use super::equation::kernel;
 use super::read_all;
 use crate::diagnostic::Diagnostics;
 use crate::parse::parse;

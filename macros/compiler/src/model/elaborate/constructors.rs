@@ -5,8 +5,7 @@ use quote::ToTokens;
 use syn::parse::ParseStream;
 use syn::{Expr as Syntax, ExprCall, ExprPath, GenericArgument, Generics, Ident, Macro, PathSegment, Token};
 
-use super::super::sizes::{LARGEST, size_argument};
-use super::super::vectors::{arguments, named_shape};
+use super::super::shapes::{LARGEST, arguments, named_shape, size_argument};
 use super::access::strip;
 use super::tables::METHODS;
 use super::{Elaborator, Growth, Value};

@@ -3,14 +3,13 @@
 mod access;
 mod block;
 mod constructors;
+mod errors;
 mod methods;
-mod mismatch;
 mod names;
 mod operators;
 mod parts;
 mod powers;
 mod quaternions;
-mod refused;
 mod sequences;
 mod sites;
 mod tables;

@@ -3,7 +3,7 @@
 use clebsch_symbolic::{Expr, Group, Rational, integer};
 use syn::{BinOp, Expr as Syntax, ExprBinary, ExprUnary, UnOp};
 
-use super::mismatch::{no_product, point_moved, unequal_shapes};
+use super::errors::{no_product, point_moved, unequal_shapes};
 use super::{Elaborator, Growth, Value};
 use crate::diagnostic::{Diagnostic, error, refuse};
 use crate::parse::{parenthesized, spell, spell_tokens};

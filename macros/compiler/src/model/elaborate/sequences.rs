@@ -3,7 +3,7 @@
 use clebsch_symbolic::Expr;
 use syn::{Expr as Syntax, ExprArray, ExprClosure, ExprMethodCall, ExprRange, ExprRepeat, ExprTuple, RangeLimits};
 
-use super::super::sizes::TERMS;
+use super::super::shapes::TERMS;
 use super::{Elaborator, Growth, Value};
 use crate::diagnostic::refuse;
 use crate::parse::{Pattern, spell};

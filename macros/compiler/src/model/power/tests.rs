@@ -1,6 +1,6 @@
 //! Indices are linear, and inside of the sites for every N.
 
-use super::bounds::{Linear, is_inside};
+use super::{Linear, is_inside};
 use clebsch_symbolic::{Expr, Graph, Property, Role, Shape};
 
 fn symbol<'g>(graph: &'g Graph, name: &str, role: Role) -> Expr<'g> {
