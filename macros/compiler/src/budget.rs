@@ -1,6 +1,5 @@
 //! The end of every expansion: within a budget of work, or with an error that says so; and what a panic of ours becomes.
 
-use std::any::Any;
 use std::cell::Cell;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
@@ -39,9 +38,6 @@ pub(crate) fn within<T>(
         .unwrap_or_else(|Exhausted| Err(too_large(declaration, stage.get()).into()))
 }
 
-/// What to write where the whole is too large.
-const LESS: &str = "use a smaller group or fewer factors, or a struct for each part that moves by itself";
-
 /// The error for a declaration on which the budget was used up.
 fn too_large(declaration: &Declaration, stage: CompilerStage) -> Diagnostic {
     let kinetic = &declaration.kinetic.closure().body;
@@ -52,10 +48,13 @@ fn too_large(declaration: &Declaration, stage: CompilerStage) -> Diagnostic {
             CompilerStage::Lower => (kinetic, "the code of a step with this takes"),
             CompilerStage::Emit => (kinetic, "the text of a step with this takes"),
         };
-        (body.into(), what.to_string(), LESS)
+        let less = "use a smaller group or fewer factors, or a struct for each part that moves by itself";
+        (body.into(), what.to_string(), less)
     });
-    let error = error!(place, "`{}` is too large to expand: {what} more than {WORK} terms", declaration.ident);
-    let error = smaller(declaration).into_iter().fold(error, |error, text| error.help(text));
+    let mut error = error!(place, "`{}` is too large to expand: {what} more than {WORK} terms", declaration.ident);
+    for text in smaller(declaration) {
+        error = error.help(text);
+    }
     error
         .help(instead)
         .note("formulas are written out at compile time, where products of sums have a term for each pair of terms")
@@ -92,7 +91,8 @@ fn smaller(declaration: &Declaration) -> Vec<&'static str> {
     let dials = &declaration.dials;
     let chart = dials.chart.as_ref().map(|chart| chart.value);
     let discretization = dials.discretization.as_ref().map(|discretization| discretization.value);
-    let is_lagrangian = matches!(declaration.kinetic, Kinetic::Lagrangian(_));
+    let is_other_lagrangian =
+        matches!(declaration.kinetic, Kinetic::Lagrangian(_)) && discretization != Some(Discretization::Exponential);
     let is_high = dials.order.as_ref().is_some_and(|order| !matches!(order.value, Order::First | Order::Second));
     // with a const generic it is in loops already
     let is_written_out = |ty: &Type| matches!(ty, Type::Array(array) if matches!(array.len, Expr::Lit(_)));
@@ -102,10 +102,7 @@ fn smaller(declaration: &Declaration) -> Vec<&'static str> {
         (is_product, crate::model::IN_LOOPS),
         (dials.emit.tangent, "leave `tangent` out of `emit`: it takes second derivatives of everything"),
         (chart == Some(ChartChoice::Exponential), "leave out `chart = exponential`: formulas in Cayley's are shorter"),
-        (
-            is_lagrangian && discretization != Some(Discretization::Exponential),
-            "write `discretization = exponential`, whose formulas are often much shorter",
-        ),
+        (is_other_lagrangian, "write `discretization = exponential`, whose formulas are often much shorter"),
         (is_high, "write `order = 2`"),
     ];
     rows.into_iter().filter_map(|(applies, text)| applies.then_some(text)).collect()
@@ -116,13 +113,12 @@ fn smaller(declaration: &Declaration) -> Vec<&'static str> {
 /// # Errors
 /// Where it panics.
 pub(crate) fn without_panic<T>(item: &TokenStream, make: impl FnOnce() -> T) -> Result<T, Diagnostics> {
-    catch_unwind(AssertUnwindSafe(make)).map_err(|payload| bug(item, &*payload).into())
-}
-
-fn bug(item: &TokenStream, payload: &(dyn Any + Send)) -> Diagnostic {
-    let text = payload.downcast_ref::<String>().map(String::as_str).or(payload.downcast_ref::<&str>().copied());
-    error!(name(item), "this declaration has found a bug in clebsch: {}", text.unwrap_or("a panic");
-        help "report it with the declaration, which need not be right: any declaration is to have an integrator or an error that helps")
+    catch_unwind(AssertUnwindSafe(make)).map_err(|payload| {
+        let text = payload.downcast_ref::<String>().map(String::as_str).or(payload.downcast_ref::<&str>().copied());
+        let error = error!(name(item), "this declaration has found a bug in clebsch: {}", text.unwrap_or("a panic");
+            help "report it with the declaration, which need not be right: any declaration is to have an integrator or an error that helps");
+        error.into()
+    })
 }
 
 /// The name of an item; its first token where it has none.

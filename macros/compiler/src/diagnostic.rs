@@ -78,13 +78,12 @@ pub struct Diagnostic {
     place: Location,
     message: String,
     lines: Vec<String>,
-    comes_later: bool,
 }
 
 impl Diagnostic {
     /// What is wrong: lower case, no full stop, the user's names in backticks.
     pub fn new(place: impl Into<Location>, message: impl fmt::Display) -> Diagnostic {
-        Diagnostic { place: place.into(), message: message.to_string(), lines: Vec::new(), comes_later: false }
+        Diagnostic { place: place.into(), message: message.to_string(), lines: Vec::new() }
     }
 
     /// The text to type instead.
@@ -107,10 +106,10 @@ impl Diagnostic {
         }
     }
 
-    /// Says that something is part of the language, but not of this version.
-    pub fn later(place: impl Into<Location>, what: impl fmt::Display) -> Diagnostic {
-        let error = Diagnostic::new(place, format!("{what} is not supported yet"));
-        Diagnostic { comes_later: true, ..error }
+    /// Says that something is part of the language, but not of this version, and what to write instead.
+    pub fn later(place: impl Into<Location>, what: impl fmt::Display, help: Option<&str>) -> Diagnostic {
+        let error = Diagnostic::new(place, format!("{what} is not supported yet")).maybe_help(help);
+        error.note("it belongs to the language and comes with a later version of clebsch")
     }
 
     fn to_compile_error(&self) -> TokenStream {
@@ -124,26 +123,20 @@ impl Diagnostic {
 impl fmt::Display for Diagnostic {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(&self.message)?;
-        let later =
-            self.comes_later.then_some("note: it belongs to the language and comes with a later version of clebsch");
-        let mut lines = self.lines.iter().map(String::as_str).chain(later).peekable();
-        if lines.peek().is_some() {
+        if !self.lines.is_empty() {
             f.write_str("\n")?;
         }
-        lines.try_for_each(|line| write!(f, "\n{line}"))
+        self.lines.iter().try_for_each(|line| write!(f, "\n{line}"))
     }
 }
 
 impl From<syn::Error> for Diagnostic {
     fn from(error: syn::Error) -> Diagnostic {
-        let text = error.to_string();
-        let plain = !text.contains("\n\nhelp: ");
-        let diagnostic = Diagnostic::new(error.span(), text);
-        if plain {
-            diagnostic.note("a declaration is `key = value, …`, and closures are written in Rust's syntax")
-        } else {
-            diagnostic
+        let diagnostic = Diagnostic::new(error.span(), &error);
+        if diagnostic.message.contains("\n\nhelp: ") {
+            return diagnostic;
         }
+        diagnostic.note("a declaration is `key = value, …`, and closures are written in Rust's syntax")
     }
 }
 
@@ -190,9 +183,12 @@ impl Diagnostics {
         self.found.borrow().len()
     }
 
-    /// Forgets all errors but the first ones.
-    pub fn truncate(&self, len: usize) {
-        self.found.borrow_mut().truncate(len);
+    /// Does something whose errors are forgotten.
+    pub fn quietly<T>(&self, attempt: impl FnOnce() -> T) -> T {
+        let reported = self.len();
+        let result = attempt();
+        self.found.borrow_mut().truncate(reported);
+        result
     }
 
     /// The errors.
@@ -246,6 +242,16 @@ pub fn nearest<'a>(name: &str, candidates: impl IntoIterator<Item = &'a str>) ->
         .filter(|&(distance, candidate)| distance <= allowed && distance < candidate.chars().count())
         .min_by_key(|&(distance, _)| distance)
         .map(|(_, candidate)| candidate)
+}
+
+/// The name that another one means: its synonym, or one that is spelled nearly like it.
+pub fn meant<'a>(
+    name: &str,
+    synonyms: &[(&str, &'a str)],
+    names: impl IntoIterator<Item = &'a str>,
+) -> Option<&'a str> {
+    let synonym = synonyms.iter().find(|(other, _)| *other == name).map(|&(_, meant)| meant);
+    synonym.or_else(|| nearest(name, names))
 }
 
 /// The number of insertions, deletions, replacements and swaps of neighbours that turn one word into the other.

@@ -1,7 +1,6 @@
 //! What is emitted beside an error: an implementation with the right types, so that the user sees that error alone and the
 //! editor keeps working. It is never run, because the error is there.
 
-use clebsch_symbolic::Group;
 use proc_macro2::TokenStream;
 use quote::{format_ident, quote};
 
@@ -17,21 +16,14 @@ pub fn stub(declaration: &Declaration, outline: &Outline) -> TokenStream {
     let paths = Paths::new(&krate, &outline.scalar);
     let target = Target::new(&declaration.ident, &declaration.generics, &outline.scalar, &paths.private);
     let Paths { private, scalar, .. } = &paths;
-    let configuration =
-        nested_type(&outline.configuration, |leaf| match (outline.shapes[leaf], outline.quaternions[leaf]) {
-            (shape, true) => paths.leaf(shape, true),
-            (shape, false) => paths.matrix_of_any_shape(shape.rows, shape.columns),
+    let [configuration, element, input] =
+        [&outline.configuration, &outline.element, &outline.input].map(|(layout, leaves)| {
+            nested_type(layout, |leaf| match leaves[leaf] {
+                (shape, true) => paths.leaf(shape, true),
+                (shape, false) => paths.matrix_of_any_shape(shape.rows, shape.columns),
+            })
         });
-    let element = nested_type(&outline.element, |factor| {
-        match (outline.groups[factor].element_shape(), outline.groups[factor]) {
-            (shape, Group::UnitQuaternions) => paths.leaf(shape, true),
-            (shape, _) => paths.matrix_of_any_shape(shape.rows, shape.columns),
-        }
-    });
-    let input = nested_type(&outline.input, |leaf| {
-        paths.matrix_of_any_shape(outline.inputs[leaf].rows, outline.inputs[leaf].columns)
-    });
-    let dimension: usize = outline.groups.iter().map(|group| group.dimension()).sum();
+    let dimension = outline.dimension;
     let momentum = paths.matrix_of_any_shape(dimension, 1);
     let of_sites = |ty: TokenStream| match &outline.sites {
         Some(length) => quote!([#ty; #length]),
@@ -45,7 +37,7 @@ pub fn stub(declaration: &Declaration, outline: &Outline) -> TokenStream {
     } else {
         (quote!((#configuration, #momentum)), 2 * dimension)
     };
-    let inputs = outline.inputs.iter().map(|shape| shape.len()).sum();
+    let inputs = outline.input.1.iter().map(|(shape, _)| shape.len()).sum();
     let controlled = controlled(declaration, &paths, place, inputs);
     let controlled = controlled.map(|(of, items)| unread(&target.implementation(Some(of), items)));
     if is_steered {

@@ -11,23 +11,15 @@ impl<'g> Action<'_, 'g> {
     /// The identity moves something.
     pub(super) fn identity_moves(&self) -> Diagnostic {
         let images = self.of_identity();
-        let moved = self.configurations.iter().zip(&images).find(|(leaf, image)| leaf.symbol != **image);
-        let error = self.no_action(None);
-        let error = match moved {
-            Some((leaf, &image)) => {
-                let identity = |group: Group| if group.is_translation() { "0" } else { "I" };
-                let names =
-                    joined(self.factors.iter().map(|factor| format!("{} = {}", factor.name, identity(factor.group))));
-                let place = self.formula(image).map_or("elsewhere".to_string(), |formula| format!("to {formula}"));
-                error.note(format!("the identity has to move nothing, but with {names} it moves {} {place}", leaf.name))
-            }
-            None => error.note("the identity has to move nothing"),
-        };
-        error.help(self.example(0))
-    }
-
-    fn name_of(&self, factor: &Factor) -> String {
-        factor.group.name(self.graph)
+        let mut moved = self.configurations.iter().zip(&images);
+        let found = moved.find(|(leaf, image)| leaf.symbol != **image).map(|(leaf, &image)| {
+            let identity = |group: Group| if group.is_translation() { "0" } else { "I" };
+            let names = self.factors.iter().map(|factor| format!("{} = {}", factor.name, identity(factor.group)));
+            let place = self.formula(image).map_or("elsewhere".to_string(), |formula| format!("to {formula}"));
+            format!(", but with {} it moves {} {place}", joined(names), leaf.name)
+        });
+        let found = found.unwrap_or_default();
+        self.no_action(None).note(format!("the identity has to move nothing{found}")).help(self.example(0))
     }
 
     /// A configuration does not stay where it is promised to be.
@@ -46,8 +38,8 @@ impl<'g> Action<'_, 'g> {
     pub(super) fn no_action(&self, factor: Option<usize>) -> Diagnostic {
         let names = joined(self.closure.arguments.iter().map(|argument| argument.pattern.spell()));
         let group = match (self.factors, factor) {
-            ([only], _) => self.name_of(only),
-            (factors, Some(k)) => format!("{} by its factor `{}`", self.name_of(&factors[k]), factors[k].name),
+            ([only], _) => only.group.name(self.graph),
+            (factors, Some(k)) => format!("{} by its factor `{}`", factors[k].group.name(self.graph), factors[k].name),
             _ => "the group".to_string(),
         };
         let body = &self.closure.body;
@@ -59,7 +51,7 @@ impl<'g> Action<'_, 'g> {
         let element = self.element(index, 1);
         // the first leaf that the factor moves shows the formula
         let shown = composed.iter().find(|image| image.depends_on(element)).unwrap_or(&composed[0]);
-        let formula = self.formula(*shown).map_or(String::new(), |text| format!(" gives {text}, which"));
+        let formula = self.formula(*shown).map(|text| format!(" gives {text}, which")).unwrap_or_default();
         let products = if self.factors[index].group.is_translation() {
             format!("is not the action of {name}1 + {name}2")
         } else {
@@ -107,9 +99,8 @@ impl<'g> Action<'_, 'g> {
         then_second: &[Expr<'g>],
         then_first: &[Expr<'g>],
     ) -> Diagnostic {
-        let differs = |(&a, &b): (&Expr<'g>, &Expr<'g>)| !identity::equal(&[a], &[b]);
-        let leaf = then_second.iter().zip(then_first).position(differs).unwrap_or(0);
-        let declared = |factor: &Factor| format!("`{}: {}`", factor.name, self.name_of(factor));
+        let leaf = first_difference(then_second, then_first);
+        let declared = |factor: &Factor| format!("`{}: {}`", factor.name, factor.group.name(self.graph));
         let [then_second, then_first] = [then_second[leaf], then_first[leaf]].map(ascii);
         let (leaf, first, second) = (&self.configurations[leaf], verb(one), verb(other));
         let orders = if self.is_readable(&format!("{then_second}{then_first}")) {
@@ -175,6 +166,11 @@ fn smallest_group(one: Group, other: Group) -> Option<Group> {
         _ if linear.element_shape().rows == n => Some(Group::Affine(n)),
         _ => None,
     }
+}
+
+/// The first leaf of which two images differ.
+pub(super) fn first_difference<'g>(one: &[Expr<'g>], other: &[Expr<'g>]) -> usize {
+    one.iter().zip(other).position(|(a, b)| !identity::equal(&[*a], &[*b])).unwrap_or(0)
 }
 
 fn verb(factor: &Factor) -> String {

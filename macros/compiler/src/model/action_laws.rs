@@ -34,31 +34,14 @@ pub(super) fn check(action: &Action, diagnostics: &Diagnostics) -> Option<Vec<La
     if !identity::equal(&action.of_identity(), &action.points()) {
         return diagnostics.refuse(action.identity_moves());
     }
-    let sides: Vec<Option<Sides>> = (0..action.factors.len()).map(|factor| action.sides(factor, diagnostics)).collect();
+    let sides: Vec<_> = (0..action.factors.len()).map(|factor| action.side(factor, diagnostics)).collect();
     action.factors_commute(diagnostics);
-    (diagnostics.len() == before).then(|| settle(&sides.into_iter().flatten().collect::<Vec<_>>()))
-}
-
-/// On which sides the composition law holds; on both for a factor that moves nothing.
-struct Sides {
-    left: bool,
-    right: bool,
-    moves: bool,
-}
-
-/// A factor on which both laws hold takes the side of the others, else left; so does one that moves nothing, which has none.
-fn settle(sides: &[Sides]) -> Vec<Law> {
-    let is_right = sides.iter().any(|sides| !sides.left) && sides.iter().all(|sides| sides.right);
-    let open = if is_right { Side::Right } else { Side::Left };
-    let law = |&Sides { left, right, moves }: &Sides| {
-        let side = match (left, right) {
-            (true, false) => Side::Left,
-            (false, true) => Side::Right,
-            _ => open,
-        };
-        Law { side, moves }
-    };
-    sides.iter().map(law).collect()
+    let sides: Vec<(Option<Side>, bool)> = sides.into_iter().collect::<Option<_>>()?;
+    // a factor on which both laws hold takes the side of the others, else left; so does one that moves nothing, which has none
+    let is_of = |side| sides.iter().any(|(found, _)| *found == Some(side));
+    let open = if is_of(Side::Right) && !is_of(Side::Left) { Side::Right } else { Side::Left };
+    let laws = sides.iter().map(|&(side, moves)| Law { side: side.unwrap_or(open), moves });
+    (diagnostics.len() == before).then(|| laws.collect())
 }
 
 impl<'g> Action<'_, 'g> {
@@ -105,22 +88,28 @@ impl<'g> Action<'_, 'g> {
         }
     }
 
-    fn sides(&self, index: usize, diagnostics: &Diagnostics) -> Option<Sides> {
+    /// The side from which a factor acts, `None` where the composition law holds on both; and whether it moves anything.
+    fn side(&self, index: usize, diagnostics: &Diagnostics) -> Option<(Option<Side>, bool)> {
         let Factor { group, symbol, .. } = &self.factors[index];
         let points = self.points();
         if identity::equal(&self.at(&[(index, *symbol)], &points), &points) {
-            return Some(Sides { left: true, right: true, moves: false });
+            return Some((None, false));
         }
         let (first, second) = (self.element(index, 1), self.element(index, 2));
         let composed = self.at(&[(index, second)], &self.at(&[(index, first)], &points));
         let is_action_of = |product: Expr<'g>| identity::equal(&composed, &self.at(&[(index, product)], &points));
         let left = is_action_of(group.compose(second, first));
         let right = is_action_of(group.compose(first, second));
-        if !left && !right {
-            let error = self.no_action(Some(index)).note(self.composition(index, &composed));
-            return diagnostics.refuse(error.help(self.example(index)));
-        }
-        Some(Sides { left, right, moves: true })
+        let side = match (left, right) {
+            (true, true) => None,
+            (true, false) => Some(Side::Left),
+            (false, true) => Some(Side::Right),
+            (false, false) => {
+                let error = self.no_action(Some(index)).note(self.composition(index, &composed));
+                return diagnostics.refuse(error.help(self.example(index)));
+            }
+        };
+        Some((side, true))
     }
 
     /// Any two factors commute, and all together act as one after the other.

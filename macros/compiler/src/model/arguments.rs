@@ -21,7 +21,6 @@ pub(super) struct Arguments<'d, 'g> {
     pub members: Vec<(Expr<'g>, Group)>,
     pub step_size: Expr<'g>,
     pub time: Expr<'g>,
-    pub diagnostics: &'d Diagnostics,
 }
 
 /// The two arguments of the action: the group element and the configuration, with their types. Those of a power are those of one site.
@@ -113,17 +112,17 @@ impl<'d, 'g> Arguments<'d, 'g> {
     /// The names in the action itself.
     pub fn action_scope(&self) -> Scope<'g> {
         let mut scope = Scope::new(&self.members);
-        scope.add_argument(self.names.element, self.element_value.clone(), self.diagnostics);
-        scope.add_argument(self.names.configuration, self.configuration_value.clone(), self.diagnostics);
+        scope.add_argument(self.names.element, self.element_value.clone(), self.names.diagnostics);
+        scope.add_argument(self.names.configuration, self.configuration_value.clone(), self.names.diagnostics);
         let (f, q) = (self.names.element.spell(), self.names.configuration.spell());
         let help = format!("the action depends on `{f}` and `{q}` alone");
-        scope.add_missing(["h", "t"].map(|name| (name.to_string(), help.clone())));
+        scope.missing = ["h", "t"].map(|name| (name.to_string(), help.clone())).into();
         scope
     }
 
     /// The arguments of a closure, with the slot that each takes.
     pub fn matched(&self, closure: &'d Closure, slots: &'static [Slot]) -> Matched<'d> {
-        Matched::new(self.names, closure, slots, self.diagnostics)
+        Matched::new(self.names, closure, slots)
     }
 
     /// The names in a closure that introduces none.
@@ -142,9 +141,9 @@ impl<'d, 'g> Arguments<'d, 'g> {
                 Slot::Element => self.element_value.clone(),
                 new => introduced.iter().find(|(slot, _)| *slot == new).and_then(|(_, value)| value.clone()),
             });
-            scope.add_argument(&argument.pattern, value, self.diagnostics);
+            scope.add_argument(&argument.pattern, value, self.names.diagnostics);
         }
-        scope.add_missing(matched.missing());
+        scope.missing = matched.missing();
         scope
     }
 }

@@ -172,9 +172,10 @@ pub(super) fn scalar<'g>(
     if let Some(expr) = value.matrix().filter(|expr| expr.shape().is_scalar()) {
         return Some(expr);
     }
-    let reason = elaborator.quietly(|elaborator| because(elaborator, tail, &value));
+    let diagnostics = elaborator.context.diagnostics;
+    let reason = diagnostics.quietly(|| because(&mut elaborator, tail, &value));
     let error = error!(tail, "the {key} is {}, but {needs}", value.describe()).maybe_help(to_scalar(tail, &value));
-    context.diagnostics.refuse(reason.into_iter().fold(error, |error, reason| error.note(reason)))
+    diagnostics.refuse(reason.into_iter().fold(error, |error, reason| error.note(reason)))
 }
 
 /// How a scalar is made from a value.

@@ -30,30 +30,24 @@ struct Row {
 /// A feature that a stage has found.
 #[derive(Clone)]
 pub(crate) struct Found {
-    place: Option<Location>,
+    place: Location,
     name: String,
 }
 
 impl Found {
     /// A feature with a place.
     pub fn at(place: impl Into<Location>) -> Found {
-        Found { place: Some(place.into()), name: String::new() }
+        Found { place: place.into(), name: String::new() }
     }
 
     /// A feature without a place of its own.
     pub fn somewhere() -> Found {
-        Found { place: None, name: String::new() }
+        Found::at(Span::call_site())
     }
 
     /// A feature without a place of its own, if it is there.
     pub fn when(found: bool) -> Option<Found> {
         found.then(Found::somewhere)
-    }
-
-    /// Where it is.
-    fn place(&self) -> Location {
-        // by construction: what is refused has a place
-        self.place.unwrap_or_else(|| Span::call_site().into())
     }
 
     /// The same with the name that messages give.
@@ -64,8 +58,8 @@ impl Found {
 }
 
 /// An error for each combination of found features that the table refuses, in the order of the table.
-pub(crate) fn refusals(found: impl Fn(Feature) -> Option<Found>) -> Vec<Diagnostic> {
-    combinations().filter_map(|combination| error(combination, &found)).collect()
+pub(crate) fn refusals(found: impl Fn(Feature) -> Option<Found>) -> impl Iterator<Item = Diagnostic> {
+    combinations().filter_map(move |combination| error(combination, &found))
 }
 
 /// The same for one feature: what else is found that it does not go with.
@@ -97,7 +91,7 @@ pub(crate) fn refusal(refused: (Feature, Found), beside: (Feature, Found)) -> Di
     match combinations().find(is_pair) {
         Some((row, ..)) => row.diagnostic(refused, beside),
         // by construction: a stage refuses what is in the table
-        None => error!(refused.1.place(), "{} does not go with {}", refused.0.words(), beside.0.words()),
+        None => error!(refused.1.place, "{} does not go with {}", refused.0.words(), beside.0.words()),
     }
 }
 
@@ -121,7 +115,7 @@ impl Row {
     fn diagnostic(&self, refused: (Feature, Found), beside: (Feature, Found)) -> Diagnostic {
         let name = if refused.1.name.is_empty() { &beside.1.name } else { &refused.1.name };
         let fill = |text: &str| filled(text, refused.0.words(), beside.0.words(), name);
-        let error = Diagnostic::new(refused.1.place(), fill(self.message)).help(fill(self.help));
+        let error = Diagnostic::new(refused.1.place, fill(self.message)).help(fill(self.help));
         if self.why.is_empty() { error } else { error.note(fill(self.why)) }
     }
 }

@@ -155,47 +155,39 @@ fn parameter<'g>(
     first_use: Span,
     first_leaf: usize,
 ) -> Result<Parameter<'g>, Diagnostic> {
-    let promise = field.promise.map(|(promise, _)| promise);
-    if let Some((promise, span)) = field.promise {
-        check_promise(promise, span, ty.shape, field)?;
-    }
+    let shape = ty.shape;
     let name = field.name();
-    // by itself a number would be one in formulas
-    let symbol_name = if name.starts_with(|c: char| c.is_ascii_digit()) { format!("self.{name}") } else { name };
-    let property = match promise {
+    let property = match field.promise {
         None => Property::General,
-        Some(Promise::Symmetric) => Property::Symmetric,
-        Some(Promise::Diagonal) => Property::Diagonal,
-        Some(Promise::Unit) => Property::Unit,
+        Some((promise, span)) => {
+            let (property, fits, needs) = match promise {
+                Promise::Symmetric => (Property::Symmetric, shape.is_square(), "square matrix can be symmetric"),
+                Promise::Diagonal => (Property::Diagonal, shape.is_square(), "square matrix can be diagonal"),
+                Promise::Unit => (Property::Unit, shape.is_column(), "vector can be a unit vector"),
+            };
+            if !fits || shape.is_scalar() {
+                bail!(span, "`{name}` is {shape}: only a {needs}"; help "remove the promise");
+            }
+            property
+        }
     };
+    // by itself a number would be one in formulas
+    let name = if name.starts_with(|c: char| c.is_ascii_digit()) { format!("self.{name}") } else { name };
     let leaf = |(position, accessor): (usize, Access)| {
         let role = Role::Parameter(first_leaf + position);
-        let symbol = graph.symbol(&format!("{symbol_name}{accessor}"), ty.shape, role, property);
-        Leaf { symbol, accessor, shape: ty.shape, is_scalar: ty.is_scalar }
+        let symbol = graph.symbol(&format!("{name}{accessor}"), shape, role, property);
+        Leaf { symbol, accessor, shape, is_scalar: ty.is_scalar }
     };
     let leaves = ty.structure.accessors().into_iter().enumerate().map(leaf).collect();
     Ok(Parameter {
         field: field.member.clone(),
-        name: symbol_name,
+        name,
         first_use,
-        promise,
+        promise: field.promise.map(|(promise, _)| promise),
         per_site: false,
         structure: ty.structure,
         leaves,
     })
-}
-
-/// A promise must make sense for the field's shape.
-fn check_promise(promise: Promise, span: Span, shape: Shape, field: &Field) -> Result<(), Diagnostic> {
-    let (fits, needs) = match promise {
-        Promise::Symmetric => (shape.is_square(), "only a square matrix can be symmetric"),
-        Promise::Diagonal => (shape.is_square(), "only a square matrix can be diagonal"),
-        Promise::Unit => (shape.is_column(), "only a vector can be a unit vector"),
-    };
-    if !fits || shape.is_scalar() {
-        bail!(span, "`{}` is {shape}: {needs}", field.name(); help "remove the promise");
-    }
-    Ok(())
 }
 
 /// Where each field is first read: `self.name` anywhere in a closure, macros included.

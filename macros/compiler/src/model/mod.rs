@@ -36,7 +36,7 @@ pub use crate::parse::{Located, Opaque};
 pub use features::features_as_markdown;
 pub use groups::is_large;
 pub use layout::{Access, Layout, Part};
-pub use outline::{Outline, outline};
+pub use outline::{Nested, Outline, outline};
 pub use power::{Linear, SiteIndex, Term};
 pub(crate) use shapes::IN_LOOPS;
 pub use types::*;
@@ -106,7 +106,13 @@ pub fn model<'g>(graph: &'g Graph, declaration: &Declaration) -> Result<Model<'g
     let dials = &declaration.dials;
     let mut system = System {
         graph,
-        item: item(declaration, fields.scalar),
+        item: Item {
+            ident: declaration.ident.clone(),
+            vis: declaration.vis.clone(),
+            generics: declaration.generics.clone(),
+            scalar: fields.scalar,
+            krate: dials.krate.clone().unwrap_or_else(|| syn::parse_quote!(::clebsch)),
+        },
         parameters: fields.parameters,
         constants,
         step_size,
@@ -217,16 +223,5 @@ impl<'g> ClosureValues<'g> {
             control,
             endpoint: endpoint?,
         })
-    }
-}
-
-/// The user's struct, as generated code has to name it.
-fn item(declaration: &Declaration, scalar: ScalarType) -> Item {
-    Item {
-        ident: declaration.ident.clone(),
-        vis: declaration.vis.clone(),
-        generics: declaration.generics.clone(),
-        scalar,
-        krate: declaration.dials.krate.clone().unwrap_or_else(|| syn::parse_quote!(::clebsch)),
     }
 }

@@ -16,23 +16,19 @@ pub(super) fn alone<'g>(
     force: Option<&Force<'g>>,
 ) -> Result<System<'g>, Diagnostics> {
     let diagnostics = Diagnostics::new();
-    check(&system, &[energy], &system.spans.kinetic, &diagnostics);
+    let check = |parts: &[Expr<'g>], written: &Written| {
+        let read = |part: &Expr<'g>| system.configurations.iter().find(|leaf| part.depends_on(leaf.symbol));
+        if let Some(leaf) = parts.iter().find_map(read) {
+            let dependent = (Feature::DependsOnConfiguration, Found::at(written.place).named(&leaf.name));
+            diagnostics.push(features::refusal(dependent, (Feature::Momentum, Found::somewhere())));
+        }
+    };
+    check(&[energy], &system.spans.kinetic);
     if let Some(force) = force {
         let parts = force.of_group.as_deref().unwrap_or_default();
-        force.written.iter().for_each(|written| check(&system, parts, written, &diagnostics));
+        force.written.iter().for_each(|written| check(parts, written));
     }
-    diagnostics.propagate(System {
-        configurations: Vec::new(),
-        configuration: Layout::Tuple(Vec::new()),
-        action: Vec::new(),
-        ..system
-    })
-}
-
-fn check<'g>(system: &System<'g>, parts: &[Expr<'g>], written: &Written, diagnostics: &Diagnostics) {
-    let read = |part: &Expr<'g>| system.configurations.iter().find(|leaf| part.depends_on(leaf.symbol));
-    let Some(leaf) = parts.iter().find_map(read) else { return };
-    let dependent = Found::at(written.place).named(&leaf.name);
-    diagnostics
-        .push(features::refusal((Feature::DependsOnConfiguration, dependent), (Feature::Momentum, Found::somewhere())));
+    diagnostics.propagate(())?;
+    let (configurations, configuration, action) = (Vec::new(), Layout::Tuple(Vec::new()), Vec::new());
+    Ok(System { configurations, configuration, action, ..system })
 }

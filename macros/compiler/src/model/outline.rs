@@ -4,7 +4,8 @@ use clebsch_symbolic::{Graph, Group, Shape};
 use quote::ToTokens;
 
 use super::groups::GroupNames;
-use super::{Layout, ScalarType, arguments, declared, spaces};
+use super::spaces::{self, Product, SpaceType};
+use super::{Layout, ScalarType, arguments, declared};
 use crate::diagnostic::Diagnostics;
 use crate::parse::{Argument, Declaration, Pattern, Potential};
 
@@ -12,25 +13,22 @@ use crate::parse::{Argument, Declaration, Pattern, Potential};
 pub struct Outline {
     /// The const generic that is the number of sites of a power, of which the rest says what one is.
     pub sites: Option<syn::Ident>,
-    /// How the factors nest.
-    pub element: Layout,
-    /// The groups of the factors.
-    pub groups: Vec<Group>,
-    /// How the leaves of the configuration nest.
-    pub configuration: Layout,
-    /// The shapes of the leaves of the configuration.
-    pub shapes: Vec<Shape>,
-    /// Which leaves of the configuration are quaternions.
-    pub quaternions: Vec<bool>,
-    /// How the leaves of the input nest.
-    pub input: Layout,
-    /// The shapes of the leaves of the input.
-    pub inputs: Vec<Shape>,
+    /// The group element.
+    pub element: Nested,
+    /// The configuration.
+    pub configuration: Nested,
+    /// The input.
+    pub input: Nested,
+    /// The number of components of a momentum.
+    pub dimension: usize,
     /// Whether a closure takes the time.
     pub takes_time: bool,
     /// The scalar, as far as it can be told.
     pub scalar: ScalarType,
 }
+
+/// A product: how its leaves nest, and the shape of each with whether it is a quaternion.
+pub type Nested = (Layout, Vec<(Shape, bool)>);
 
 /// The outline of a declaration whose action has readable types.
 pub fn outline(graph: &Graph, declaration: &Declaration) -> Option<Outline> {
@@ -39,21 +37,19 @@ pub fn outline(graph: &Graph, declaration: &Declaration) -> Option<Outline> {
     let names = GroupNames { generics: &declaration.generics, declared: &declared, diagnostics: &ignored };
     let types = arguments::of_action(declaration, &ignored)?;
     let groups = spaces::read_groups(types.group, names)?;
-    let mut spaces = spaces::read_spaces(types.space, names)?;
-    let input = declaration.input().and_then(|argument| argument.ty.as_ref());
-    let input = input.and_then(|ty| spaces::read_spaces(ty, names));
-    if declaration.dials.emit.momentum {
-        (spaces.layout, spaces.leaves) = (Layout::Tuple(Vec::new()), Vec::new());
-    }
+    let of_group = |(group, _): &(Group, _)| (group.element_shape(), *group == Group::UnitQuaternions);
+    let nested = |spaces: Product<SpaceType>| {
+        (spaces.layout, spaces.leaves.iter().map(|(leaf, _)| (leaf.shape, leaf.is_quaternion)).collect())
+    };
+    let point = || (Layout::Tuple(Vec::new()), Vec::new());
+    let spaces = spaces::read_spaces(types.space, names)?;
+    let input = declaration.input().and_then(|argument| spaces::read_spaces(argument.ty.as_ref()?, names));
     Some(Outline {
         sites: types.sites.cloned(),
-        inputs: input.iter().flat_map(|input| input.leaves.iter().map(|(leaf, _)| leaf.shape)).collect(),
-        input: input.map_or(Layout::Tuple(Vec::new()), |input| input.layout),
-        element: groups.layout,
-        groups: groups.leaves.iter().map(|(group, _)| *group).collect(),
-        configuration: spaces.layout,
-        shapes: spaces.leaves.iter().map(|(space, _)| space.shape).collect(),
-        quaternions: spaces.leaves.iter().map(|(space, _)| space.is_quaternion).collect(),
+        input: input.map_or_else(point, nested),
+        dimension: groups.leaves.iter().map(|(group, _)| group.dimension()).sum(),
+        element: (groups.layout, groups.leaves.iter().map(of_group).collect()),
+        configuration: if declaration.dials.emit.momentum { point() } else { nested(spaces) },
         takes_time: takes_time(declaration),
         scalar: scalar(declaration),
     })

@@ -2,10 +2,11 @@
 
 use std::fmt;
 
+use clebsch_symbolic::Group;
+
 use super::scalar::spell_scalar;
 use super::{
-    Configuration, Factor, Isotropy, Kinetic, LeafSpace, Mechanics, Model, Motion, OfferedSymmetry, Order, Parameter,
-    Side, Steered, System,
+    Isotropy, Kinetic, LeafSpace, Mechanics, Model, Motion, OfferedSymmetry, Order, Parameter, Side, Steered, System,
 };
 use crate::parse::joined;
 
@@ -50,7 +51,10 @@ impl fmt::Display for Mechanics<'_> {
             force.on_configuration.iter().flatten().try_for_each(|part| writeln!(f, "  force on   {part}"))?;
         }
         self.system.print_inputs(f)?;
-        self.symmetries.iter().try_for_each(|symmetry| writeln!(f, "  {symmetry}"))?;
+        for OfferedSymmetry { group, name, side, configurations, elements, .. } in &self.symmetries {
+            let images = joined(configurations.iter().chain(elements));
+            writeln!(f, "  symmetry {name}: {}, {side}: {images}", group.name(self.graph))?;
+        }
         if self.isotropy == Isotropy::Free {
             writeln!(f, "  isotropy   {}", self.isotropy)?;
         }
@@ -76,10 +80,21 @@ impl fmt::Display for Steered<'_> {
 
 impl System<'_> {
     fn print_action(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let name = |group: Group| group.name(self.graph);
         self.parameters.iter().try_for_each(|parameter| write!(f, "{parameter}"))?;
         self.constants.iter().try_for_each(|constant| writeln!(f, "  constant {}", constant.symbol))?;
-        self.factors.iter().try_for_each(|factor| writeln!(f, "  {factor}"))?;
-        self.configurations.iter().try_for_each(|leaf| writeln!(f, "  {leaf}"))?;
+        for factor in &self.factors {
+            let side = if factor.moves { factor.side.to_string() } else { "moves nothing".to_string() };
+            writeln!(f, "  factor {}: {}, {side}", factor.name, name(factor.group))?;
+        }
+        for leaf in &self.configurations {
+            let space = match leaf.space {
+                LeafSpace::Vectors => String::new(),
+                LeafSpace::Unit => ", unit".to_string(),
+                LeafSpace::Group(group) => format!(" in {}", name(group)),
+            };
+            writeln!(f, "  configuration {}: {}{space}", leaf.name, leaf.shape)?;
+        }
         let mut images = self.configurations.iter().zip(&self.action);
         images.try_for_each(|(leaf, image)| writeln!(f, "  action     {} -> {image}", leaf.name))
     }
@@ -106,32 +121,6 @@ impl fmt::Display for Parameter<'_> {
             writeln!(f, "  parameter {}: {shape}{promise}", leaf.symbol)?;
         }
         Ok(())
-    }
-}
-
-impl fmt::Display for Factor<'_> {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "factor {}: {}, ", self.name, self.group.name(self.symbol.graph()))?;
-        if self.moves { write!(f, "{}", self.side) } else { f.write_str("moves nothing") }
-    }
-}
-
-impl fmt::Display for Configuration<'_> {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "configuration {}: {}", self.name, self.shape)?;
-        match self.space {
-            LeafSpace::Vectors => Ok(()),
-            LeafSpace::Unit => f.write_str(", unit"),
-            LeafSpace::Group(group) => write!(f, " in {}", group.name(self.symbol.graph())),
-        }
-    }
-}
-
-impl fmt::Display for OfferedSymmetry<'_> {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let group = self.group.name(self.symbol.graph());
-        let images = joined(self.configurations.iter().chain(&self.elements));
-        write!(f, "symmetry {}: {group}, {}: {images}", self.name, self.side)
     }
 }
 

@@ -15,12 +15,14 @@ const RESERVED: [&str; 4] = ["h", "t", "I", "self"];
 /// The names of one closure.
 #[derive(Default)]
 pub(super) struct Scope<'g> {
-    names: Vec<(String, Option<Value<'g>>)>,
+    /// Every name with its value, the latest last.
+    pub names: Vec<(String, Option<Value<'g>>)>,
     arguments: usize,
     /// Names of the declaration that are not arguments here, and what to do about it.
-    missing: Vec<(String, String)>,
+    pub missing: Vec<(String, String)>,
     velocities: Vec<(Expr<'g>, Group)>,
-    elements: Vec<(Expr<'g>, Group)>,
+    /// The symbols that lie on a group.
+    pub elements: Vec<(Expr<'g>, Group)>,
 }
 
 /// The names of a pattern with the parts of a value; a value with an error, which was reported, is `None`.
@@ -84,11 +86,6 @@ impl<'g> Scope<'g> {
         self.names.push((name, value));
     }
 
-    /// Notes which names of the declaration are not arguments here, and what to do about each.
-    pub fn add_missing(&mut self, names: impl IntoIterator<Item = (String, String)>) {
-        self.missing.extend(names);
-    }
-
     /// Notes which symbols are velocities, each of one factor.
     pub fn set_velocities(&mut self, velocities: &[Expr<'g>], factors: &[Factor<'g>]) {
         self.velocities = velocities.iter().copied().zip(factors.iter().map(|factor| factor.group)).collect();
@@ -99,32 +96,8 @@ impl<'g> Scope<'g> {
         self.velocities.iter().find(|(velocity, _)| *velocity == expr).map(|(_, group)| *group)
     }
 
-    /// The symbols that lie on a group.
-    pub fn elements(&self) -> impl Iterator<Item = (Expr<'g>, Group)> {
-        self.elements.iter().copied()
-    }
-
     /// The value of a name, the latest first.
     pub fn value(&self, name: &str) -> Option<&Option<Value<'g>>> {
         self.names.iter().rev().find(|(known, _)| known == name).map(|(_, value)| value)
-    }
-
-    /// What to do about a name that is no argument here.
-    pub fn missing(&self, name: &str) -> Option<String> {
-        self.missing.iter().find(|(known, _)| known == name).map(|(_, help)| help.clone())
-    }
-
-    pub fn names(&self) -> impl Iterator<Item = &str> {
-        self.names.iter().map(|(name, _)| name.as_str())
-    }
-
-    /// A point to come back to.
-    pub fn mark(&self) -> usize {
-        self.names.len()
-    }
-
-    /// Forgets the names since a mark.
-    pub fn release(&mut self, mark: usize) {
-        self.names.truncate(mark);
     }
 }

@@ -59,7 +59,7 @@ pub(super) fn size(expr: &Expr, generics: &Generics) -> Result<usize, Diagnostic
 
 fn no_size(place: Location, text: &str, generics: &Generics) -> Diagnostic {
     if const_generic(text, generics).is_some() {
-        return Diagnostic::later(place, format!("the const generic `{text}` as a size")).help("write a number");
+        return Diagnostic::later(place, format!("the const generic `{text}` as a size"), Some("write a number"));
     }
     error!(place, "the size `{text}` is not a number";
         help "write a number"; note "a macro sees the text of the declaration, not the values of constants")

@@ -2,7 +2,6 @@
 
 use clebsch_symbolic::{Expr, Graph, Property, Role, Shape};
 use proc_macro2::Ident;
-use syn::Generics;
 
 use super::features::{self, Feature, Found};
 use super::power::{SiteIndex, Term, index_name, is_inside};
@@ -155,8 +154,7 @@ pub(super) fn check(declaration: &Declaration, diagnostics: &Diagnostics) {
         Feature::Momentum => emitted(dials.emit.momentum),
         dial => dials.given().find(|(name, _)| dial.is_key(name)).map(|(_, value)| Found::at(value.span)),
     };
-    let refused = features::refusals_of((Feature::Power, Found::somewhere()), found);
-    refused.for_each(|error| diagnostics.push(error));
+    diagnostics.extend(features::refusals_of((Feature::Power, Found::somewhere()), found));
 }
 
 /// What ties sites to each other; the system becomes that of one site.
@@ -198,7 +196,11 @@ pub(super) fn power_of<'g>(
     let site = Item {
         ident: quote::format_ident!("{}Site", system.item.ident),
         vis: syn::Visibility::Public(Default::default()),
-        generics: generics_of_site(&system.item),
+        // the scalar alone
+        generics: match &system.item.scalar {
+            ScalarType::Parameter(ident) => syn::parse_quote!(<#ident>),
+            _ => syn::Generics::default(),
+        },
         scalar: system.item.scalar.clone(),
         krate: system.item.krate.clone(),
     };
@@ -206,12 +208,4 @@ pub(super) fn power_of<'g>(
     let Sites { count, places, .. } = sites;
     system.parameters = of_site;
     Power { item, length: length.clone(), sites: count, places, terms, parameters, copied, is_uniform }
-}
-
-/// The scalar alone.
-fn generics_of_site(item: &Item) -> Generics {
-    match &item.scalar {
-        ScalarType::Parameter(ident) => syn::parse_quote!(<#ident>),
-        _ => Generics::default(),
-    }
 }

@@ -41,6 +41,7 @@ pub(super) struct SharedNames<'d> {
     pub configuration: &'d Pattern,
     /// The input, as the closure that introduces it calls it.
     pub input: Option<&'d Pattern>,
+    pub diagnostics: &'d Diagnostics,
 }
 
 impl<'d> SharedNames<'d> {
@@ -93,12 +94,7 @@ pub(super) struct Matched<'d> {
 
 impl<'d> Matched<'d> {
     /// Finds the slot that each argument takes, and reports what is wrong with them.
-    pub fn new(
-        names: SharedNames<'d>,
-        closure: &'d Closure,
-        slots: &'static [Slot],
-        diagnostics: &Diagnostics,
-    ) -> Matched<'d> {
+    pub fn new(names: SharedNames<'d>, closure: &'d Closure, slots: &'static [Slot]) -> Matched<'d> {
         let arguments = &closure.arguments;
         let mut taken: Vec<Option<Slot>> =
             arguments.iter().map(|argument| names.find(&argument.pattern, slots)).collect();
@@ -118,10 +114,10 @@ impl<'d> Matched<'d> {
             taken[0] = Some(Slot::Offered);
         }
         let matched = Matched { closure, names, slots, taken };
-        (0..arguments.len()).for_each(|position| matched.check_argument(position, diagnostics));
-        matched.check_order(diagnostics);
+        (0..arguments.len()).for_each(|position| matched.check_argument(position));
+        matched.check_order();
         if slots == LAGRANGIAN && !matched.has(Slot::Velocity) && !matched.has_error() {
-            report!(diagnostics, closure.head, "the lagrangian has no velocity";
+            report!(names.diagnostics, closure.head, "the lagrangian has no velocity";
                 help "write `{} …`", matched.head(Some(Slot::Velocity)));
         }
         matched
@@ -150,7 +146,8 @@ impl<'d> Matched<'d> {
         self.closure.arguments.iter().zip(self.taken.iter().copied())
     }
 
-    fn check_argument(&self, position: usize, diagnostics: &Diagnostics) {
+    fn check_argument(&self, position: usize) {
+        let diagnostics = self.names.diagnostics;
         let argument = &self.closure.arguments[position];
         let slot = self.taken[position];
         let (name, place) = (argument.pattern.spell(), argument.pattern.place());
@@ -163,21 +160,21 @@ impl<'d> Matched<'d> {
             Some(slot) if self.taken[..position].contains(&Some(slot)) => {
                 report!(diagnostics, place, "`{name}` is given twice"; help "remove one of the two");
             }
-            Some(Slot::Velocity) => self.check_new(argument, "the velocity", diagnostics),
-            Some(Slot::Offered) => self.check_new(argument, "the symmetry", diagnostics),
-            Some(Slot::Input) => self.check_new(argument, "the input", diagnostics),
+            Some(Slot::Velocity) => self.check_new(argument, "the velocity"),
+            Some(Slot::Offered) => self.check_new(argument, "the symmetry"),
+            Some(Slot::Input) => self.check_new(argument, "the input"),
             Some(_) => {}
             None => diagnostics.push(self.unknown(position)),
         }
     }
 
     /// A name that a closure introduces is no name of the action.
-    fn check_new(&self, argument: &Argument, what: &str, diagnostics: &Diagnostics) {
-        let of_action = || self.names.element.names().into_iter().chain(self.names.configuration.names());
+    fn check_new(&self, argument: &Argument, what: &str) {
+        let of_action = [self.names.element.names(), self.names.configuration.names()].concat();
         for ident in argument.pattern.names() {
-            let free = check_reserved(ident, what, diagnostics);
-            if free && of_action().any(|known| known.unraw() == ident.unraw()) {
-                report!(diagnostics, ident, "`{ident}` is an argument of the action and cannot be the name of {what}";
+            let free = check_reserved(ident, what, self.names.diagnostics);
+            if free && of_action.iter().any(|known| known.unraw() == ident.unraw()) {
+                report!(self.names.diagnostics, ident, "`{ident}` is an argument of the action and cannot be the name of {what}";
                     help "choose another name");
             }
         }
@@ -234,10 +231,11 @@ impl<'d> Matched<'d> {
         format!("|{}|", joined(wanted.map(name)))
     }
 
-    fn check_order(&self, diagnostics: &Diagnostics) {
+    fn check_order(&self) {
         let order: Vec<usize> = self.taken.iter().flatten().filter_map(|slot| self.index(*slot)).collect();
         if !self.has_error() && !order.is_sorted() {
-            report!(diagnostics, self.closure.head, "the arguments of the {} are in another order", self.closure.key;
+            let key = &self.closure.key;
+            report!(self.names.diagnostics, self.closure.head, "the arguments of the {key} are in another order";
                 help "write `{}`", self.head(None));
         }
     }
@@ -265,21 +263,20 @@ impl<'d> Matched<'d> {
     /// What the closure may depend on.
     fn dependence(&self) -> String {
         let (key, q) = (&self.closure.key, self.names.configuration.spell());
-        let [step, velocity, input, chosen, offered] =
-            [Slot::Step, Slot::Velocity, Slot::Input, Slot::Chosen, Slot::Offered]
-                .map(|slot| self.slots.contains(&slot));
-        if chosen || (input && !velocity) {
-            let step = if step { "the step `h`, " } else { "" };
-            format!("the {key} may depend on the time `t`, {step}the configuration `{q}` and the input alone")
-        } else if offered {
-            let f = self.names.element.spell();
-            format!("the {key} depends on its own element, on `{q}` and on `{f}` alone")
-        } else if input {
-            format!("the {key} depends on the time `t`, the configuration `{q}`, the velocity and an input alone")
-        } else if velocity {
-            format!("the {key} depends on the time `t`, the configuration `{q}` and the velocity alone")
-        } else {
-            format!("the {key} depends on the time `t` and the configuration `{q}` alone")
+        let has = |slot| self.slots.contains(&slot);
+        if has(Slot::Chosen) || (has(Slot::Input) && !has(Slot::Velocity)) {
+            let step = if has(Slot::Step) { "the step `h`, " } else { "" };
+            return format!("the {key} may depend on the time `t`, {step}the configuration `{q}` and the input alone");
         }
+        if has(Slot::Offered) {
+            let f = self.names.element.spell();
+            return format!("the {key} depends on its own element, on `{q}` and on `{f}` alone");
+        }
+        let [before, after] = match (has(Slot::Input), has(Slot::Velocity)) {
+            (true, _) => [",", ", the velocity and an input"],
+            (false, true) => [",", " and the velocity"],
+            (false, false) => [" and", ""],
+        };
+        format!("the {key} depends on the time `t`{before} the configuration `{q}`{after} alone")
     }
 }

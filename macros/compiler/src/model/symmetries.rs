@@ -3,7 +3,7 @@
 use clebsch_symbolic::{Expr, Group, Role, identity};
 use syn::Type;
 
-use super::action_errors::ascii;
+use super::action_errors::{ascii, first_difference};
 use super::action_laws::{self, Action};
 use super::closures;
 use super::groups::known_group;
@@ -136,8 +136,7 @@ impl<'g> ActedSystem<'_, '_, 'g> {
         let stepped_then_moved = substituted(points, self.action);
         let moved_then_stepped = substituted(self.action, &value);
         if !identity::equal(&stepped_then_moved, &moved_then_stepped) {
-            let differs = |(a, b): (&Expr<'g>, &Expr<'g>)| !identity::equal(&[*a], &[*b]);
-            let leaf = stepped_then_moved.iter().zip(&moved_then_stepped).position(differs).unwrap_or(0);
+            let leaf = first_difference(&stepped_then_moved, &moved_then_stepped);
             let (q, s, f) = (&self.space.leaves[leaf].name, &offered.name, self.arguments.names.element.spell());
             let [one, other] = [&stepped_then_moved, &moved_then_stepped].map(|images| ascii(images[leaf]));
             refuse!(diagnostics, &closure.body, "the symmetry does not agree with the action";

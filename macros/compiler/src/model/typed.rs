@@ -76,13 +76,12 @@ impl<'g> Typed<'g> {
         }
         let input = input.map(|argument| &argument.pattern);
         Arguments {
-            names: SharedNames { element: typed.element, configuration: typed.configuration, input },
+            names: SharedNames { element: typed.element, configuration: typed.configuration, input, diagnostics },
             element_value: self.factors.as_ref().map(element),
             configuration_value: self.space.as_ref().map(Space::value),
             members,
             step_size,
             time,
-            diagnostics,
         }
     }
 }

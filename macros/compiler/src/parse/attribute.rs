@@ -3,7 +3,7 @@
 use proc_macro2::Ident;
 use syn::ext::IdentExt;
 use syn::parse::ParseStream;
-use syn::{Attribute, DeriveInput, Meta, Token};
+use syn::{DeriveInput, Meta, Token};
 
 use super::keys::{KEYS, Key, Keys};
 use super::spelling::listed;
@@ -14,28 +14,32 @@ use crate::diagnostic::{Diagnostic, Diagnostics, bail, nearest, report};
 pub(super) fn read<'d>(input: &DeriveInput, diagnostics: &'d Diagnostics) -> Keys<'d> {
     let mut keys = Keys::new(diagnostics);
     for attribute in input.attrs.iter().filter(|attribute| attribute.path().is_ident("clebsch")) {
-        read_attribute(attribute, &mut keys);
+        let Meta::List(list) = &attribute.meta else {
+            report!(diagnostics, attribute, "the declaration stands in parentheses";
+                help "write `#[clebsch(action = …, cost = …, potential = …)]`");
+            continue;
+        };
+        // by construction: the parser consumes everything, and its own errors are among the diagnostics
+        let _ = list.parse_args_with(|stream: ParseStream| {
+            read_items(stream, &mut keys, read_item);
+            Ok(())
+        });
     }
     keys
 }
 
-fn read_attribute(attribute: &Attribute, keys: &mut Keys) {
-    let Meta::List(list) = &attribute.meta else {
-        report!(keys.diagnostics, attribute, "the declaration stands in parentheses";
-            help "write `#[clebsch(action = …, cost = …, potential = …)]`");
-        return;
-    };
-    let items = |stream: ParseStream| {
-        while !stream.is_empty() {
-            if let Err(error) = read_item(stream, keys) {
-                keys.diagnostics.push(error);
-                skip_to_next_item(stream);
-            }
+/// Reads items to the end, each by a function that leaves an item with an error where that is.
+pub(super) fn read_items(
+    stream: ParseStream,
+    keys: &mut Keys,
+    read: fn(ParseStream, &mut Keys) -> Result<(), Diagnostic>,
+) {
+    while !stream.is_empty() {
+        if let Err(error) = read(stream, keys) {
+            keys.diagnostics.push(error);
+            skip_to_next_item(stream);
         }
-        Ok(())
-    };
-    // by construction: the parser consumes everything, and its own errors are among the diagnostics
-    let _ = list.parse_args_with(items);
+    }
 }
 
 /// `key = value` and the comma after it; after an error the rest of the item is still to be skipped.
@@ -48,13 +52,13 @@ fn read_item(stream: ParseStream, keys: &mut Keys) -> Result<(), Diagnostic> {
         read(&key, stream, keys)?;
         return end_of_item(&key, stream);
     }
-    let Some(found) = find(&key) else {
-        let known = KEYS.iter().filter(|key| !key.comes_later()).map(|key| key.name);
-        let similar = nearest(&key.to_string(), KEYS.iter().map(|key| key.name)).map(|key| format!("write `{key}`"));
-        let help = similar.unwrap_or_else(|| format!("the keys are {}", listed(known)));
-        bail!(&key, "unknown key `{key}`"; help "{help}");
-    };
-    read_value(&key, found, stream, keys)
+    if let Some(found) = find(&key) {
+        return read_value(&key, found, stream, keys);
+    }
+    let known = KEYS.iter().filter(|key| !key.comes_later()).map(|key| key.name);
+    let similar = nearest(&key.to_string(), KEYS.iter().map(|key| key.name)).map(|key| format!("write `{key}`"));
+    let help = similar.unwrap_or_else(|| format!("the keys are {}", listed(known)));
+    bail!(&key, "unknown key `{key}`"; help "{help}")
 }
 
 /// What follows on a key that takes one value, and the comma after it.
@@ -63,7 +67,7 @@ pub(super) fn read_value(key: &Ident, found: &Key, stream: ParseStream, keys: &m
         bail!(key, "`{key}` is given twice"; help "remove one of the two");
     }
     if found.comes_later() {
-        return Err(Diagnostic::later(key, format!("the key `{key}`")));
+        return Err(Diagnostic::later(key, format!("the key `{key}`"), None));
     }
     if stream.parse::<Token![=]>().is_err() {
         bail!(key, "the key `{key}` has no value"; help "write `{key} = {}`", found.example);
@@ -90,7 +94,7 @@ pub(super) fn is_named(key: &Ident) -> bool {
 }
 
 /// Goes on behind the next comma that is followed by `key =`.
-pub(super) fn skip_to_next_item(stream: ParseStream) {
+fn skip_to_next_item(stream: ParseStream) {
     let is_assigned = |stream: ParseStream| stream.peek(Token![=]) && !stream.peek(Token![==]);
     let starts_item = |stream: ParseStream| {
         let key = stream.call(Ident::parse_any);

@@ -49,12 +49,6 @@ fn too(what: &str, span: Span, how: String) -> Diagnostics {
     error.into()
 }
 
-fn is_long_number(token: &TokenTree) -> bool {
-    let TokenTree::Literal(literal) = token else { return false };
-    let text = literal.to_string();
-    text.len() > DIGITS && text.starts_with(|first: char| first.is_ascii_digit())
-}
-
 /// The tokens since the last separator.
 #[derive(Default)]
 struct Run {
@@ -73,7 +67,10 @@ struct Run {
 impl Run {
     fn add(&mut self, token: &TokenTree, outside: usize) -> Result<(), Diagnostics> {
         self.length += 1;
-        if is_long_number(token) {
+        if let TokenTree::Literal(literal) = token
+            && literal.to_string().len() > DIGITS
+            && literal.to_string().starts_with(|first: char| first.is_ascii_digit())
+        {
             bail!(token, "this number is beyond the range of `f64`: it has more than {DIGITS} digits";
                 help "round it, and write it with an exponent, as in `6.674e-11`");
         }
@@ -92,10 +89,8 @@ impl Run {
         if outside + (levels + inside) * LEVEL + self.length * LINK <= DEPTH * LEVEL {
             return Ok(());
         }
-        let how = format!(
-            "brackets and operators nest {DEPTH} levels deep, or fewer with long chains of operators on the way"
-        );
-        Err(too("deep", token.span(), how))
+        let how = "levels deep, or fewer with long chains of operators on the way";
+        Err(too("deep", token.span(), format!("brackets and operators nest {DEPTH} {how}")))
     }
 
     /// Counts the levels of the grammar that a token may start and that no bracket marks.

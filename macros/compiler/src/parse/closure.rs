@@ -54,9 +54,16 @@ impl Closure {
             refuse!(diagnostics, head, "the {key} is a plain closure, without `move`, `async` or a return type";
                 help "write `|{}| …`", joined(closure.inputs.iter().map(tokens)));
         }
-        let arguments: Vec<_> = closure.inputs.into_iter().map(|input| Argument::read(input, diagnostics)).collect();
-        let arguments = arguments.into_iter().collect::<Option<_>>()?;
-        Some(Closure { key: key.clone(), arguments, head, body: *closure.body })
+        let mut arguments = Vec::new();
+        for input in &closure.inputs {
+            let (pattern, ty) = match input {
+                Pat::Type(typed) => (&*typed.pat, Some(*typed.ty.clone())),
+                other => (other, None),
+            };
+            arguments.extend(Pattern::read(pattern, diagnostics).map(|pattern| Argument { pattern, ty }));
+        }
+        let is_readable = arguments.len() == closure.inputs.len();
+        is_readable.then(|| Closure { key: key.clone(), arguments, head, body: *closure.body })
     }
 
     /// The arguments with their bars, `|h, F|`.
@@ -71,14 +78,6 @@ impl Closure {
 }
 
 impl Argument {
-    fn read(input: Pat, diagnostics: &Diagnostics) -> Option<Argument> {
-        let (pattern, ty) = match input {
-            Pat::Type(typed) => (*typed.pat, Some(*typed.ty)),
-            other => (other, None),
-        };
-        Some(Argument { pattern: Pattern::read(&pattern, diagnostics)?, ty })
-    }
-
     /// The text of the argument.
     pub fn spell(&self) -> String {
         let ty = self.ty.as_ref().map(|ty| format!(": {}", spell_type(ty))).unwrap_or_default();

@@ -2,16 +2,17 @@
 
 use proc_macro2::Span;
 
-use super::keys::{KEYS, Key, Keys};
+use super::keys::{KEYS, Keys};
 use super::{Closure, Order};
 use crate::model::features::{self, Feature, Found};
 
 /// Reports all combinations of keys that the table of features refuses.
 pub(super) fn check(keys: &Keys) {
     let refuse = |of_steps: &Keys, of_system: fn(Feature) -> bool| {
+        // messages about an order name it
+        let order = of_steps.dials.order.as_ref().map(|order| order.value.to_string()).unwrap_or_default();
         let place = |feature| if of_system(feature) { None } else { place(keys, of_steps, feature) };
-        let found = |feature| place(feature).map(|place| named(of_steps, Found::at(place)));
-        keys.diagnostics.extend(features::refusals(found));
+        keys.diagnostics.extend(features::refusals(|feature| Some(Found::at(place(feature)?).named(&order))));
         keys.diagnostics.is_empty()
     };
     // what is wrong with the system is said once
@@ -28,14 +29,6 @@ fn is_declared_alone(feature: Feature) -> bool {
         feature,
         Feature::Effort | Feature::Bounds | Feature::Endpoint | Feature::Tangent | Feature::Boundary | Feature::Inputs
     )
-}
-
-/// Messages about an order name it.
-fn named(of_steps: &Keys, found: Found) -> Found {
-    match &of_steps.dials.order {
-        Some(order) => found.named(order.value.number()),
-        None => found,
-    }
 }
 
 /// Where a key was given, or a value of one. What a method takes stands in `of_steps`.
@@ -59,13 +52,8 @@ fn place(keys: &Keys, of_steps: &Keys, feature: Feature) -> Option<Span> {
         Feature::Discretization => dials.discretization.as_ref().map(|discretization| discretization.span),
         Feature::Method => keys.place_of("method"),
         _ => {
-            let key = key(feature)?;
+            let key = KEYS.iter().find(|key| feature.is_key(key.name))?;
             if key.of_method { of_steps.place_of(key.name) } else { keys.place_of(key.name) }
         }
     }
-}
-
-/// The key that a feature is, if it is one.
-fn key(feature: Feature) -> Option<&'static Key> {
-    KEYS.iter().find(|key| feature.is_key(key.name))
 }

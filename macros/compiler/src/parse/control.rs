@@ -17,19 +17,14 @@ pub struct Choice {
     pub bounds: Option<Closure>,
 }
 
-/// What has been read of a declaration's motion.
-pub(super) struct Motion {
-    pub action: Option<Closure>,
-    pub kinetic: Option<Kinetic>,
-    pub control: Option<Choice>,
-}
-
-/// Takes the keys that say what is steered, and with them action and cost where inputs, not momenta, move the configuration.
-pub(super) fn read(keys: &mut Keys) -> Option<Motion> {
+/// What moves the configuration, and by what its inputs are chosen: the keys that say what is steered are taken. Where inputs, not momenta,
+/// move the configuration, its cost is the price.
+pub(super) fn read(keys: &mut Keys) -> (Option<Kinetic>, Option<Choice>) {
     let bounds = keys.take("bounds");
     let Some(motion) = keys.take("controls").or_else(|| keys.take("dynamics")) else {
         let control = control_of_forces(keys, bounds);
-        return control.map(|control| Motion { action: keys.take("action"), kinetic: None, control: Some(control) });
+        let lagrangian = keys.take("lagrangian").map(Kinetic::Lagrangian);
+        return (keys.take("cost").map(Kinetic::Cost).or(lagrangian), control);
     };
     let price = keys.take("cost");
     if price.is_none() && !keys.was_given("cost") {
@@ -37,13 +32,8 @@ pub(super) fn read(keys: &mut Keys) -> Option<Motion> {
         report!(keys.diagnostics, &motion.key, "there are `{}`, but no cost to choose them by", motion.key;
             help "write `cost = |h, {input}| h * {input}.norm_squared() / 2`");
     }
-    let (action, kinetic) = if motion.key == "controls" {
-        (keys.take("action"), Some(Kinetic::Controls(motion)))
-    } else {
-        moved(keys, motion).map(|(action, dynamics)| (action, Kinetic::Dynamics(dynamics))).unzip()
-    };
-    let control = price.map(|price| Choice { price, bounds });
-    Some(Motion { action, kinetic, control })
+    let kinetic = if motion.key == "controls" { Some(Kinetic::Controls(motion)) } else { moved(keys, motion) };
+    (kinetic, price.map(|price| Choice { price, bounds }))
 }
 
 fn control_of_forces(keys: &mut Keys, bounds: Option<Closure>) -> Option<Choice> {
@@ -69,10 +59,12 @@ pub(super) fn check_endpoint(keys: &Keys, control: Option<&Choice>) {
     }
 }
 
-/// The translations that `dynamics` are made of: the action x ↦ x + a, and the closure without the type of x.
-fn moved(keys: &mut Keys, mut dynamics: Closure) -> Option<(Closure, Closure)> {
-    // an action beside it has been refused
-    keys.take("action").is_none().then_some(())?;
+/// The translations that `dynamics` are made of: the action is x ↦ x + a, and the closure loses the type of x.
+fn moved(keys: &mut Keys, mut dynamics: Closure) -> Option<Kinetic> {
+    if keys.take("action").is_some() {
+        // it has been refused beside them
+        return None;
+    }
     let example = "|h, x: Vector2, u: Vector1| x + h * vector![x.y, u.x]";
     let typed: Vec<usize> = (0..dynamics.arguments.len()).filter(|&i| dynamics.arguments[i].ty.is_some()).collect();
     let &[state, _] = typed.as_slice() else {
@@ -96,7 +88,8 @@ fn moved(keys: &mut Keys, mut dynamics: Closure) -> Option<(Closure, Closure)> {
     ];
     let key = Ident::new("action", dynamics.key.span());
     let action = Closure { key, arguments, head: dynamics.head, body: parse_quote!(#name + #shift) };
-    Some((action, dynamics))
+    keys.closures.insert("action", action);
+    Some(Kinetic::Dynamics(dynamics))
 }
 
 /// A name for the translation that the closure does not use.

@@ -127,7 +127,7 @@ impl Kinetic {
 pub(super) fn assemble(input: &DeriveInput, mut keys: Keys, fields: Vec<Field>) -> Result<Declaration, Diagnostics> {
     let diagnostics = keys.diagnostics;
     combinations::check(&keys);
-    let steered = control::read(&mut keys);
+    let (kinetic, control) = control::read(&mut keys);
     // a closure that was given and could not be read has its own error
     let nothing_readable = keys.is_empty() && !diagnostics.is_empty();
     let moved_by_inputs = keys.was_given("controls") || keys.was_given("dynamics");
@@ -136,14 +136,8 @@ pub(super) fn assemble(input: &DeriveInput, mut keys: Keys, fields: Vec<Field>) 
     } else if !nothing_readable && !moved_by_inputs && !keys.was_given("cost") && !keys.was_given("lagrangian") {
         diagnostics.push(missing_kinetic(&input.ident));
     }
-    let lagrangian = keys.take("lagrangian").map(Kinetic::Lagrangian);
-    let kinetic = keys.take("cost").map(Kinetic::Cost).or(lagrangian);
-    let (action, kinetic, control) = match steered {
-        Some(steered) => (steered.action, steered.kinetic.or(kinetic), steered.control),
-        None => (keys.take("action"), kinetic, None),
-    };
     control::check_endpoint(&keys, control.as_ref());
-    let [force, force_on, endpoint] = ["force", "force_on", "endpoint"].map(|name| keys.take(name));
+    let [action, force, force_on, endpoint] = ["action", "force", "force_on", "endpoint"].map(|name| keys.take(name));
     let Keys { potential, symmetries, groups, dials, methods, .. } = keys;
     let methods = methods::checked(&input.ident, methods, diagnostics);
     // by construction: what is missing has an error

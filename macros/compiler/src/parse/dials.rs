@@ -208,24 +208,22 @@ pub struct Emit {
     pub momentum: bool,
 }
 
-/// What may be emitted beside the integrator, and where it is asked for; `None` for what comes later.
-pub(super) const EMITTED: [(&str, Option<EmittedPart>); 6] = [
-    ("generated", Some(|emit| &mut emit.generated)),
-    ("latex", Some(|emit| &mut emit.latex)),
-    ("tangent", Some(|emit| &mut emit.tangent)),
-    ("boundary", Some(|emit| &mut emit.boundary)),
-    ("momentum", Some(|emit| &mut emit.momentum)),
-    ("connection", None),
-];
-
 /// Whether something is emitted.
-pub(super) type EmittedPart = fn(&mut Emit) -> &mut bool;
+type EmittedPart = fn(&mut Emit) -> &mut bool;
+
+/// What may be emitted beside the integrator, and where it is asked for.
+pub(super) const EMITTED: [(&str, EmittedPart); 5] = [
+    ("generated", |emit| &mut emit.generated),
+    ("latex", |emit| &mut emit.latex),
+    ("tangent", |emit| &mut emit.tangent),
+    ("boundary", |emit| &mut emit.boundary),
+    ("momentum", |emit| &mut emit.momentum),
+];
 
 impl Emit {
     /// The list of words that asks for it; `None` for nothing.
     pub(super) fn text(mut self) -> Option<String> {
-        let asked = EMITTED.iter().filter(|(_, part)| part.is_some_and(|part| *part(&mut self)));
-        let words = joined(asked.map(|(word, _)| word));
+        let words = joined(EMITTED.iter().filter(|(_, part)| *part(&mut self)).map(|(word, _)| word));
         (!words.is_empty()).then(|| format!("[{words}]"))
     }
 

@@ -7,7 +7,7 @@ use std::collections::BTreeMap;
 
 use proc_macro2::{Ident, Span};
 
-use super::dials::{Dials, EMITTED};
+use super::dials::Dials;
 use super::methods::MethodKeys;
 use super::values::Reader;
 use super::{Closure, DeclaredGroup, Potential};
@@ -91,7 +91,7 @@ pub(super) const KEYS: [Key; 27] = [
     dial("summation", Dial(|dials, value| value.word(&mut dials.summation), |dials| text(&dials.summation)), "compensated", "`plain`", MECHANICS),
     dial("code", Dial(|dials, value| value.word(&mut dials.code), |dials| text(&dials.code)), "matrices", "by the size", ALL),
     key("isotropy", Dial(|dials, value| value.word(&mut dials.isotropy), |dials| text(&dials.isotropy)), "free", "`fixed`", MECHANICS),
-    key("emit", Dial(|dials, value| value.words(&EMITTED, &mut dials.emit), |dials| dials.emit.text().map(somewhere)), "[generated]", "`[]`", ALL),
+    key("emit", Dial(|dials, value| value.words(&mut dials.emit), |dials| dials.emit.text().map(somewhere)), "[generated]", "`[]`", ALL),
     key("scalar", Dial(|dials, value| value.ident(&mut dials.scalar), |dials| dials.scalar.as_ref().map(Ident::to_string).map(somewhere)), "f64", "`f64`", "structs without fields"),
     key("crate", Dial(|dials, value| value.path(&mut dials.krate), |dials| dials.krate.as_ref().map(super::spelling::tokens).map(somewhere)), "::clebsch", "`::clebsch`", ALL),
     key("constraint", Later, "…", "", ""),

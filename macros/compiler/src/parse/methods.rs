@@ -46,12 +46,7 @@ pub(super) fn read(word: &Ident, stream: ParseStream, keys: &mut Keys) -> Result
             help "write `method {name} = (order = 6)`; a method takes {}", listed(dials()));
     }
     let mut own = Keys::new(keys.diagnostics);
-    while !content.is_empty() {
-        if let Err(error) = read_dial(&content, &mut own) {
-            keys.diagnostics.push(error);
-            attribute::skip_to_next_item(&content);
-        }
-    }
+    attribute::read_items(&content, &mut own, read_dial);
     keys.methods.push(MethodKeys { name, keys: own });
     Ok(())
 }

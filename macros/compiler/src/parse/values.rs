@@ -8,7 +8,7 @@ use syn::parse::{Parse, ParseBuffer, ParseStream};
 use syn::punctuated::Punctuated;
 use syn::{Expr, ExprClosure, Path, Token, bracketed, parenthesized};
 
-use super::dials::{Emit, EmittedPart, Word};
+use super::dials::{EMITTED, Emit, Word};
 use super::keys::{Key, Keys, Kind, Located};
 use super::spelling::tokens;
 use super::{Closure, Potential, opaque};
@@ -76,21 +76,24 @@ impl Reader<'_, '_> {
     pub fn word<T: Word>(self, dial: &mut Option<Located<T>>) -> Result<(), Diagnostic> {
         let stream = self.stream;
         let word = stream.call(Ident::parse_any).map_err(|_| self.expected(stream, "a name"))?;
-        let words: Vec<(&str, Option<T>)> = T::WORDS.iter().map(|&(word, value)| (word, Some(value))).collect();
-        let value = choose(self.name, &word, &words, self.diagnostics);
-        *dial = value.map(|value| Located { value, span: word.span() });
+        *dial = self.choose(&word, T::WORDS).map(|value| Located { value, span: word.span() });
         Ok(())
     }
 
     /// `[a, b]`, of the words for what is emitted.
-    pub fn words(self, table: &[(&str, Option<EmittedPart>)], dial: &mut Emit) -> Result<(), Diagnostic> {
+    pub fn words(self, dial: &mut Emit) -> Result<(), Diagnostic> {
         if !self.stream.peek(syn::token::Bracket) {
             return Err(self.expected(self.stream, "a list"));
         }
         let list = bracket(self.stream)?;
         let words: Punctuated<Ident, Token![,]> = Punctuated::parse_terminated_with(&list, Ident::parse_any)?;
-        let chosen = words.iter().filter_map(|word| choose(self.name, word, table, self.diagnostics));
-        chosen.for_each(|part| *part(dial) = true);
+        for word in &words {
+            if word == "connection" {
+                self.diagnostics.push(Diagnostic::later(word, "`connection` as `emit`", None));
+            } else if let Some(part) = self.choose(word, &EMITTED) {
+                *part(dial) = true;
+            }
+        }
         Ok(())
     }
 
@@ -108,6 +111,19 @@ impl Reader<'_, '_> {
             self.diagnostics.push(error(place, tokens(&literal)));
         }
         Ok(())
+    }
+
+    /// The value that a name stands for, or an error that lists the names.
+    fn choose<T: Copy>(&self, name: &Ident, table: &[(&str, T)]) -> Option<T> {
+        if let Some((_, value)) = table.iter().find(|(word, _)| name == word) {
+            return Some(*value);
+        }
+        let words = table.iter().map(|&(word, _)| word);
+        let help = match nearest(&name.to_string(), words.clone()) {
+            Some(similar) => format!("write `{similar}`"),
+            None => format!("it is {}", words.map(|word| format!("`{word}`")).collect::<Vec<_>>().join(" or ")),
+        };
+        refuse!(self.diagnostics, name, "unknown {} `{name}`", self.name; help "{help}")
     }
 
     pub fn ident(self, dial: &mut Option<Ident>) -> Result<(), Diagnostic> {
@@ -144,20 +160,4 @@ pub(super) fn arguments(stream: ParseStream) -> syn::Result<(Vec<Expr>, DelimSpa
     let parenthesis = parenthesized!(content in stream);
     let arguments = Punctuated::<Expr, Token![,]>::parse_terminated_with(&content, Expr::parse)?;
     Ok((arguments.into_iter().collect(), parenthesis.span))
-}
-
-/// The value that a name stands for, or an error that lists the names.
-fn choose<T: Copy>(key: &Ident, name: &Ident, table: &[(&str, Option<T>)], diagnostics: &Diagnostics) -> Option<T> {
-    match table.iter().find(|(word, _)| name == word) {
-        Some((_, Some(value))) => Some(*value),
-        Some((_, None)) => diagnostics.refuse(Diagnostic::later(name, format!("`{name}` as `{key}`"))),
-        None => {
-            let words = table.iter().filter(|(_, value)| value.is_some()).map(|&(word, _)| word);
-            let help = match nearest(&name.to_string(), words.clone()) {
-                Some(similar) => format!("write `{similar}`"),
-                None => format!("it is {}", words.map(|word| format!("`{word}`")).collect::<Vec<_>>().join(" or ")),
-            };
-            refuse!(diagnostics, name, "unknown {key} `{name}`"; help "{help}")
-        }
-    }
 }

@@ -100,8 +100,8 @@ fn not_literal(place: Location, key: &str, what: &str) -> Diagnostic {
 /// A scope with nothing in it, in which names of other closures have a reason to be missing.
 fn empty_scope<'g>() -> Scope<'g> {
     let mut scope = Scope::default();
-    let help = "a group is declared by numbers alone".to_string();
-    scope.add_missing(["h", "t"].map(|name| (name.to_string(), help.clone())));
+    let help = "a group is declared by numbers alone";
+    scope.missing = ["h", "t"].map(|name| (name.to_string(), help.to_string())).into();
     scope
 }
 

@@ -14,9 +14,9 @@ impl<'g> Elaborator<'_, '_, 'g> {
 
     /// Does something after which the names that it introduces are forgotten.
     pub(super) fn with_names<T>(&mut self, work: impl FnOnce(&mut Self) -> T) -> T {
-        let mark = self.scope.mark();
+        let known = self.scope.names.len();
         let value = work(self);
-        self.scope.release(mark);
+        self.scope.names.truncate(known);
         value
     }
 

@@ -7,34 +7,27 @@ use syn::{Expr as Syntax, ExprCall, ExprPath, GenericArgument, Generics, Ident, 
 
 use super::super::shapes::{LARGEST, arguments, named_shape, size_argument};
 use super::access::strip;
+use super::methods::wrong_count;
 use super::tables::METHODS;
 use super::{Elaborator, Growth, Value};
-use crate::diagnostic::{Diagnostic, error, nearest, refuse};
+use crate::diagnostic::{Diagnostic, error, meant, refuse};
 use crate::parse::{listed, parenthesized, spell};
 
-#[derive(Copy, Clone, PartialEq, Eq)]
-enum Constructor {
-    New,
-    Zeros,
-    Identity,
-    FromDiagonal,
-    FromColumns,
-    FromRows,
-    Axis(usize),
-}
+/// A constructor: its number of arguments, the shapes that have it, and its value.
+type Constructor =
+    (usize, fn(Shape) -> bool, for<'g> fn(&mut Elaborator<'_, '_, 'g>, &ExprCall, Shape) -> Option<Value<'g>>);
 
-/// Constructors with their number of arguments; `new` has one for each entry.
+/// Constructors by name, beside `new`, which has one argument for each entry.
 #[rustfmt::skip]
-const CONSTRUCTORS: [(&str, usize, Constructor); 9] = [
-    ("new",           0, Constructor::New),
-    ("zeros",         0, Constructor::Zeros),
-    ("identity",      0, Constructor::Identity),
-    ("from_diagonal", 1, Constructor::FromDiagonal),
-    ("from_columns",  1, Constructor::FromColumns),
-    ("from_rows",     1, Constructor::FromRows),
-    ("x",             0, Constructor::Axis(0)),
-    ("y",             0, Constructor::Axis(1)),
-    ("z",             0, Constructor::Axis(2)),
+const CONSTRUCTORS: [(&str, Constructor); 8] = [
+    ("zeros",         (0, |_| true, |this, _, shape| Some(Value::Matrix(this.graph().zero(shape))))),
+    ("identity",      (0, |shape| shape.is_square(), |this, _, shape| Some(Value::Matrix(this.graph().identity(shape.rows))))),
+    ("from_diagonal", (1, |shape| shape.is_square(), |this, call, shape| this.diagonal(call, shape))),
+    ("from_columns",  (1, |_| true, |this, call, shape| this.joined(call, shape, Shape::new(shape.rows, 1), shape.columns))),
+    ("from_rows",     (1, |_| true, |this, call, shape| this.joined(call, shape, Shape::new(1, shape.columns), shape.rows))),
+    ("x",             (0, |shape| shape.is_column(), |this, _, shape| Some(Value::Matrix(this.graph().unit(shape, 0, 0))))),
+    ("y",             (0, |shape| shape.is_column() && shape.rows > 1, |this, _, shape| Some(Value::Matrix(this.graph().unit(shape, 1, 0))))),
+    ("z",             (0, |shape| shape.is_column() && shape.rows > 2, |this, _, shape| Some(Value::Matrix(this.graph().unit(shape, 2, 0))))),
 ];
 
 /// Constructors by other names.
@@ -92,32 +85,21 @@ impl<'g> Elaborator<'_, '_, 'g> {
     }
 
     fn construct(&mut self, call: &ExprCall, method: &Ident, shape: Shape) -> Option<Value<'g>> {
-        let Some(&(_, arity, constructor)) = CONSTRUCTORS.iter().find(|(name, ..)| method == name) else {
-            return self.unknown_constructor(method);
-        };
-        if constructor == Constructor::New {
+        if method == "new" {
             return self.entries(call, method, shape);
         }
+        let Some(&(_, (arity, exists, make))) = CONSTRUCTORS.iter().find(|(name, _)| method == name) else {
+            return self.unknown_constructor(method);
+        };
+        let function = spell(&call.func);
         if call.args.len() != arity {
-            let plural = if arity == 1 { "" } else { "s" };
-            let argument = if arity == 0 { "" } else { "…" };
-            let function = spell(&call.func);
-            refuse!(self, method, "`{function}` has {arity} argument{plural}, not {}", call.args.len();
-                help "write `{function}({argument})`");
+            return self.refuse(wrong_count(method, "", &function, arity, call.args.len()));
         }
-        let graph = self.graph();
-        match constructor {
-            Constructor::Zeros => Some(Value::Matrix(graph.zero(shape))),
-            Constructor::Identity if shape.is_square() => Some(Value::Matrix(graph.identity(shape.rows))),
-            Constructor::Axis(index) if shape.is_column() && index < shape.rows => {
-                Some(Value::Matrix(graph.unit(shape, index, 0)))
-            }
-            Constructor::FromDiagonal if shape.is_square() => self.diagonal(call, shape),
-            Constructor::FromColumns => self.joined(call, shape, Shape::new(shape.rows, 1), shape.columns),
-            Constructor::FromRows => self.joined(call, shape, Shape::new(1, shape.columns), shape.rows),
-            _ => refuse!(self, method, "`{}` does not exist: the type is {shape}", spell(&call.func);
-                note "`identity` and `from_diagonal` are of square matrices, `x`, `y` and `z` of vectors"),
+        if !exists(shape) {
+            refuse!(self, method, "`{function}` does not exist: the type is {shape}";
+                note "`identity` and `from_diagonal` are of square matrices, `x`, `y` and `z` of vectors");
         }
+        make(self, call, shape)
     }
 
     fn diagonal(&mut self, call: &ExprCall, shape: Shape) -> Option<Value<'g>> {
@@ -179,10 +161,9 @@ impl<'g> Elaborator<'_, '_, 'g> {
 
     fn unknown_constructor(&mut self, method: &Ident) -> Option<Value<'g>> {
         let name = method.to_string();
-        let names = CONSTRUCTORS.iter().map(|&(name, ..)| name);
-        let synonym = SYNONYMS.iter().find(|(other, _)| *other == name).map(|&(_, meant)| meant);
+        let names = ["new"].into_iter().chain(CONSTRUCTORS.iter().map(|&(name, _)| name));
         let error = error!(method, "unknown constructor `{name}`");
-        self.refuse(match synonym.or_else(|| nearest(&name, names.clone())) {
+        self.refuse(match meant(&name, &SYNONYMS, names.clone()) {
             Some(meant) => error.help(format!("write `{meant}`")),
             None => error.note(format!("the constructors are {}", listed(names))),
         })

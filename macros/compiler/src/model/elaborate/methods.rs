@@ -1,13 +1,13 @@
 //! Method calls: the table looked up, shapes checked, the expression made.
 
 use clebsch_symbolic::{Expr, Function, Rational, Shape, integer};
-use syn::{Expr as Syntax, ExprMethodCall};
+use syn::{Expr as Syntax, ExprMethodCall, Ident};
 
 use super::access::{is_self, strip};
 use super::quaternions::is_of_quaternions;
 use super::tables::{Binary, METHODS, NEEDLESS, REFUSED, Rule, SYNONYMS, Unary};
 use super::{Elaborator, Growth, Value, open_identity};
-use crate::diagnostic::{Diagnostic, error, nearest, refuse};
+use crate::diagnostic::{Diagnostic, error, meant, refuse};
 use crate::parse::{listed, parenthesized, shortened, spell};
 
 impl<'g> Elaborator<'_, '_, 'g> {
@@ -15,8 +15,8 @@ impl<'g> Elaborator<'_, '_, 'g> {
     pub(super) fn method_call(&mut self, call: &ExprMethodCall) -> Option<Value<'g>> {
         let name = call.method.to_string();
         if is_self(&call.receiver) {
-            let error = Diagnostic::later(&call.method, format!("the method `{name}` of the struct in a formula"));
-            return self.refuse(error.help("write its formula here"));
+            let what = format!("the method `{name}` of the struct in a formula");
+            return self.refuse(Diagnostic::later(&call.method, what, Some("write its formula here")));
         }
         let receiver = self.elaborate(&call.receiver);
         if let Some(Value::Quaternion(q)) = receiver {
@@ -26,10 +26,7 @@ impl<'g> Elaborator<'_, '_, 'g> {
             return self.unknown_method(call, &name, receiver);
         };
         if call.args.len() != arity {
-            let plural = if arity == 1 { "" } else { "s" };
-            let form = if arity == 0 { "()" } else { "(…)" };
-            refuse!(self, &call.method, "`{name}` has {arity} argument{plural}, not {}", call.args.len();
-                help "write `.{name}{form}`");
+            return self.refuse(wrong_count(&call.method, ".", &name, arity, call.args.len()));
         }
         match (rule, receiver?) {
             (Rule::Map | Rule::Sum, receiver) => self.sequence_method(call, receiver),
@@ -62,8 +59,7 @@ impl<'g> Elaborator<'_, '_, 'g> {
             return self.refuse(error.note("every value is copied, and arrays are mapped as they are"));
         }
         let names = METHODS.iter().map(|&(method, ..)| method);
-        let synonym = SYNONYMS.iter().find(|(method, _)| *method == name).map(|&(_, meant)| meant);
-        self.refuse(match synonym.or_else(|| nearest(name, names.clone())) {
+        self.refuse(match meant(name, &SYNONYMS, names.clone()) {
             Some(meant) if meant.contains('(') => error.help(format!("write `{receiver}.{meant}`")),
             Some(meant) => error.help(format!("a method with a similar name exists: `{meant}`")),
             None => error.note(format!("the methods are {}", listed(names))),
@@ -161,6 +157,13 @@ impl<'g> Elaborator<'_, '_, 'g> {
             }
         }
     }
+}
+
+/// The error for a function or a method with another number of arguments.
+pub(super) fn wrong_count(place: &Ident, dot: &str, name: &str, arity: usize, found: usize) -> Diagnostic {
+    let plural = if arity == 1 { "" } else { "s" };
+    let argument = if arity == 0 { "" } else { "…" };
+    error!(place, "`{name}` has {arity} argument{plural}, not {found}"; help "write `{dot}{name}({argument})`")
 }
 
 pub(super) fn no_real_value(call: &ExprMethodCall) -> Diagnostic {

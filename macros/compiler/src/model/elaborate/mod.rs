@@ -100,7 +100,7 @@ enum Growth {
 impl<'e, 'c, 'g> Elaborator<'e, 'c, 'g> {
     /// An elaborator for the closure of a key, with the names that its arguments introduce.
     pub fn new(context: &'e mut Context<'c, 'g>, key: &'e str, scope: Scope<'g>) -> Elaborator<'e, 'c, 'g> {
-        let members = scope.elements().collect();
+        let members = scope.elements.iter().copied().collect();
         Elaborator { context, key, scope, members, sizes: Table::default(), depth: 0, work: 0 }
     }
 
@@ -260,14 +260,6 @@ impl<'e, 'c, 'g> Elaborator<'e, 'c, 'g> {
             self.sizes.insert(expr, size);
         }
         Some(expr)
-    }
-
-    /// Tries something without reporting its errors.
-    pub fn quietly<T>(&mut self, attempt: impl FnOnce(&mut Self) -> T) -> T {
-        let reported = self.context.diagnostics.len();
-        let result = attempt(self);
-        self.context.diagnostics.truncate(reported);
-        result
     }
 }
 

@@ -62,19 +62,20 @@ impl<'g> Elaborator<'_, '_, 'g> {
 
     fn unknown_name(&mut self, ident: &Ident, name: &str) -> Option<Value<'g>> {
         let error = error!(ident.span(), "cannot find `{name}` in the {}", self.key);
-        let help = self.scope.missing(name).or_else(|| self.similar(name));
-        self.refuse(match help {
+        let names = || self.scope.names.iter().map(|(name, _)| name.as_str());
+        let missing = self.scope.missing.iter().find(|(known, _)| known == name).map(|(_, help)| help.clone());
+        self.refuse(match missing.or_else(|| self.similar(name, names())) {
             Some(help) => error.help(help),
-            None => error.note(format!("known here are {}", listed(self.scope.names().chain(["I", "self"])))),
+            None => error.note(format!("known here are {}", listed(names().chain(["I", "self"])))),
         })
     }
 
-    fn similar(&self, name: &str) -> Option<String> {
+    fn similar<'s>(&self, name: &str, names: impl Iterator<Item = &'s str>) -> Option<String> {
         let fields: Vec<&str> = self.context.fields.names().collect();
         if fields.contains(&name) {
             return Some(format!("write `self.{name}` for the field"));
         }
-        if let Some(similar) = nearest(name, self.scope.names()) {
+        if let Some(similar) = nearest(name, names) {
             return Some(format!("a similar name exists: `{similar}`"));
         }
         nearest(name, fields).map(|similar| format!("a field with a similar name exists: `self.{similar}`"))

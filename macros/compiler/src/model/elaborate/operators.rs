@@ -81,14 +81,29 @@ impl<'g> Elaborator<'_, '_, 'g> {
             }
             (_, left, _) if !left.is_operand() => self.no_matrix(operator, &link.left, &left),
             (_, _, right) if !right.is_operand() => self.no_matrix(operator, &link.right, &right),
+            (Operator::Multiply, Value::Identity(scale), other)
+            | (Operator::Multiply, other, Value::Identity(scale)) => self.scaled(link, scale, other),
             (_, left @ Value::Quaternion(_), right) | (_, left, right @ Value::Quaternion(_)) => {
                 self.quaternions(operator, link, left, right)
             }
             (Operator::Add | Operator::Subtract, left, right) => self.sum(operator, link, left, right),
-            (Operator::Multiply, left, right) => self.product(link, left, right),
+            // by construction: identities, quaternions, tuples and arrays have been dealt with
+            (Operator::Multiply, left, right) => self.product(link, left.matrix()?, right.matrix()?),
             (Operator::Divide, left, right) => self.quotient(link, left, right),
             (Operator::Remainder, left, right) => self.remainder(link, left, right),
         }
+    }
+
+    /// A multiple of the identity, whose size is open, times anything.
+    fn scaled(&mut self, at: &ExprBinary, scale: Expr<'g>, other: Value<'g>) -> Option<Value<'g>> {
+        let (expr, make): (_, fn(Expr<'g>) -> Value<'g>) = match other {
+            Value::Matrix(expr) if !expr.shape().is_scalar() => (expr, Value::Matrix),
+            Value::Quaternion(expr) => (expr, Value::Quaternion),
+            Value::Matrix(expr) | Value::Identity(expr) => (expr, Value::Identity),
+            // by construction: tuples and arrays have been dealt with
+            _ => return None,
+        };
+        self.grow(at, &[scale, expr], Growth::Sum, || scale * expr).map(make)
     }
 
     fn no_matrix(&mut self, operator: Operator, syntax: &Syntax, value: &Value<'g>) -> Option<Value<'g>> {
@@ -133,18 +148,7 @@ impl<'g> Elaborator<'_, '_, 'g> {
             note "the identity of a group of translations is the zero vector")
     }
 
-    fn product(&mut self, at: &ExprBinary, left: Value<'g>, right: Value<'g>) -> Option<Value<'g>> {
-        let (left, right) = match (left, right) {
-            (Value::Identity(a), Value::Identity(b)) => {
-                return self.grow(at, &[a, b], Growth::Sum, || a * b).map(Value::Identity);
-            }
-            (Value::Identity(scale), Value::Matrix(other)) | (Value::Matrix(other), Value::Identity(scale)) => {
-                let product = self.grow(at, &[scale, other], Growth::Sum, || scale * other)?;
-                return Some(if other.shape().is_scalar() { Value::Identity(product) } else { Value::Matrix(product) });
-            }
-            // by construction: quaternions, tuples and arrays have been dealt with
-            (left, right) => (left.matrix()?, right.matrix()?),
-        };
+    fn product(&mut self, at: &ExprBinary, left: Expr<'g>, right: Expr<'g>) -> Option<Value<'g>> {
         let (l, r) = (left.shape(), right.shape());
         if !l.is_scalar() && !r.is_scalar() && l.columns != r.rows {
             let is_point = r.is_column() && self.group_of(left).and_then(Group::linear_part) == Some(r.rows);

@@ -6,7 +6,7 @@ use syn::{ExprBinary, ExprCall, ExprField, ExprMethodCall, Ident};
 use super::super::quaternion as algebra;
 use super::operators::{Operator, division_by_zero};
 use super::{Elaborator, Growth, Value};
-use crate::diagnostic::{Diagnostic, error, nearest, refuse};
+use crate::diagnostic::{Diagnostic, error, meant, refuse};
 use crate::parse::{listed, parenthesized, spell};
 
 /// A method of a quaternion q: how many operands it counts as, how it grows, its value, and whether that is a quaternion.
@@ -51,46 +51,38 @@ impl<'g> Elaborator<'_, '_, 'g> {
         right: Value<'g>,
     ) -> Option<Value<'g>> {
         use Operator::{Add, Divide, Multiply, Subtract};
+        let graph = self.graph();
+        let coordinates = |value: &Value<'g>| match value {
+            Value::Quaternion(q) => Some(*q),
+            Value::Identity(s) => Some(algebra::real(graph, *s)),
+            _ => None,
+        };
+        if let (Add | Subtract, Some((a, b))) = (operator, coordinates(&left).zip(coordinates(&right))) {
+            return self.grow(link, &[a, b], Growth::Sum, || operator.combine(a, b)).map(Value::Quaternion);
+        }
         match (operator, left, right) {
-            (Add | Subtract, Value::Quaternion(a), Value::Quaternion(b)) => self.quaternion_sum(operator, link, a, b),
-            (Add | Subtract, Value::Quaternion(a), Value::Identity(s)) => {
-                self.quaternion_sum(operator, link, a, algebra::real(self.graph(), s))
-            }
-            (Add | Subtract, Value::Identity(s), Value::Quaternion(b)) => {
-                self.quaternion_sum(operator, link, algebra::real(self.graph(), s), b)
-            }
             (Multiply, Value::Quaternion(a), Value::Quaternion(b)) => {
                 let product = self.grow(link, &[a, b], Growth::Pairs, || algebra::product(a, b))?;
                 self.note_product(a, b, product);
                 Some(Value::Quaternion(product))
             }
-            (Multiply, Value::Quaternion(a), Value::Identity(s))
-            | (Multiply, Value::Identity(s), Value::Quaternion(a)) => self.scaled(link, a, s),
             (Multiply, Value::Quaternion(a), Value::Matrix(s)) | (Multiply, Value::Matrix(s), Value::Quaternion(a))
                 if s.shape().is_scalar() =>
             {
-                self.scaled(link, a, s)
+                self.grow(link, &[a, s], Growth::Sum, || s * a).map(Value::Quaternion)
             }
             (Multiply, Value::Quaternion(a), Value::Matrix(v)) if v.shape() == Shape::vector(3) => {
                 let turn = if self.is_unit_quaternion(a) { algebra::turn } else { algebra::turn_by_any };
                 self.build(link, &[a, a, v], Growth::Pairs, || turn(a, v))
             }
-            (Divide, Value::Quaternion(_), Value::Matrix(s)) if s.is_zero() && s.shape().is_scalar() => {
-                self.refuse(division_by_zero(&link.right).note("it simplifies to 0"))
-            }
             (Divide, Value::Quaternion(a), Value::Matrix(s)) if s.shape().is_scalar() => {
+                if s.is_zero() {
+                    return self.refuse(division_by_zero(&link.right).note("it simplifies to 0"));
+                }
                 self.grow(link, &[a, s], Growth::Product, || a / s).map(Value::Quaternion)
             }
             (operator, left, right) => self.refuse(misfit(operator, link, &left, &right)),
         }
-    }
-
-    fn quaternion_sum(&mut self, operator: Operator, link: &ExprBinary, a: Expr<'g>, b: Expr<'g>) -> Option<Value<'g>> {
-        self.grow(link, &[a, b], Growth::Sum, || operator.combine(a, b)).map(Value::Quaternion)
-    }
-
-    fn scaled(&mut self, link: &ExprBinary, a: Expr<'g>, scale: Expr<'g>) -> Option<Value<'g>> {
-        self.grow(link, &[a, scale], Growth::Sum, || scale * a).map(Value::Quaternion)
     }
 
     /// `Quaternion::new(w, i, j, k)`.
@@ -164,8 +156,7 @@ fn no_method(call: &ExprMethodCall, name: &str) -> Diagnostic {
         return error!(method, "`{name}` has {arity} arguments, not {}", call.args.len(); help "write `{receiver}.{name}()`");
     }
     let error = error!(method, "`{}` is a quaternion and has no `{name}`", spell(&call.receiver));
-    let synonym = SYNONYMS.iter().find(|(other, _)| *other == name).map(|&(_, meant)| meant);
-    match synonym.or_else(|| nearest(name, names.clone())) {
+    match meant(name, &SYNONYMS, names.clone()) {
         Some(meant) => error.help(format!("write `{receiver}.{meant}()`")),
         None => error.note(format!("the methods of quaternions are {}", listed(names))),
     }

@@ -43,7 +43,7 @@ fn with_value<R>(expression: &str, look: impl FnOnce(&Value) -> R) -> Result<R, 
     let symbol = |name, shape, role, property| Value::Matrix(graph.symbol(name, shape, role, property));
     let point = |index, name| symbol(name, Shape::vector(2), Role::Configuration(index), Property::General);
     let arguments = Arguments {
-        names: SharedNames { element, configuration, input: None },
+        names: SharedNames { element, configuration, input: None, diagnostics: &diagnostics },
         element_value: Some(Value::Tuple(vec![
             symbol("F", Shape::square(3), Role::Element(0), Property::Orthogonal),
             symbol("a", Shape::vector(2), Role::Element(1), Property::General),
@@ -57,7 +57,6 @@ fn with_value<R>(expression: &str, look: impl FnOnce(&Value) -> R) -> Result<R, 
         members: Vec::new(),
         step_size: graph.symbol("h", Shape::scalar(), Role::StepSize, Property::General),
         time: graph.symbol("t", Shape::scalar(), Role::Time, Property::General),
-        diagnostics: &diagnostics,
     };
     let closure = declaration.kinetic.closure();
     let scope = arguments.scope_of(closure, COST);
