@@ -9,6 +9,11 @@ impl<'g> Expr<'g> {
         self.block(i, j, Shape::scalar())
     }
 
+    /// All entries, row by row.
+    pub fn entries(self) -> Vec<Expr<'g>> {
+        self.shape().positions().map(|(i, j)| self.entry(i, j)).collect()
+    }
+
     /// The block of the given shape whose first entry is (row, column).
     pub fn block(self, row: usize, column: usize, shape: Shape) -> Expr<'g> {
         assert!(

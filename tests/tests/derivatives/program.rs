@@ -97,7 +97,7 @@ fn element(graph: &Graph, group: Group, random: &mut Random) -> Matrix<f64> {
     let coordinates: Vec<Expr<'_>> = (graph.blocks(group).iter().zip(0..))
         .map(|(block, index)| {
             let name = format!("coordinates of a random element {index}");
-            let shape = Shape::vector(block.algebra.dimension());
+            let shape = Shape::vector(block.algebra.dimension);
             graph.symbol(&name, shape, Role::Direction(index), Property::General)
         })
         .collect();

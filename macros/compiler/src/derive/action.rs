@@ -1,8 +1,9 @@
 //! What follows from the action alone: generator, momentum map, Ad*, cotangent lift.
 
-use clebsch_symbolic::{Expr, Shape, identity};
+use clebsch_symbolic::{Expr, identity};
 
 use super::SystemFormulas;
+use super::symbols::of_columns;
 use crate::model::Side;
 
 impl<'g> SystemFormulas<'g> {
@@ -106,17 +107,13 @@ impl<'g> SystemFormulas<'g> {
 
     /// The matrix of ξ ↦ ξ_Q(q), a row for each entry of the configuration.
     pub(super) fn matrix_of_generator(&self) -> Expr<'g> {
-        let columns = self.generator_columns();
-        let shape = Shape::new(columns[0].len(), columns.len());
-        self.model.graph.stack(shape, shape.positions().map(|(i, j)| columns[j][i]).collect())
+        of_columns(self.model.graph, &self.generator_columns())
     }
 
     /// For each basis element of the algebra, the entries of (E_i)_Q(q), leaf after leaf.
     pub(super) fn generator_columns(&self) -> Vec<Vec<Expr<'g>>> {
-        let column = |element: Vec<(Expr<'g>, Expr<'g>)>| {
-            let images = self.generator.iter().map(|velocity| velocity.substitute(&element));
-            images.flat_map(|image| image.shape().positions().map(move |(i, j)| image.entry(i, j))).collect()
-        };
-        self.symbols.basis().into_iter().map(column).collect()
+        let column =
+            |motion: Vec<(Expr<'g>, Expr<'g>)>| motion.into_iter().flat_map(|(_, leaf)| leaf.entries()).collect();
+        self.symbols.along_basis(&self.leaves_by_generator()).into_iter().map(column).collect()
     }
 }

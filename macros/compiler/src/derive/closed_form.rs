@@ -2,25 +2,11 @@
 
 use clebsch_symbolic::{Chart, Expr, Group, Shape, identity};
 
-use super::equation::{SineForm, Sources};
+use super::equation::{MomentumEquation, SineForm, Solution, Sources};
 use super::trivialisation::Covector;
-
-/// x = a/(1 + √(1 − |a|²)) with a = hμ/Σ: the equation hM = ½κ(F − Fᵀ) of a bi-invariant kinetic energy, whose rotation by θ
-/// in one plane has sin θ = |a| and tan(θ/2) = |x|.
-pub(super) struct ClosedForm<'g> {
-    /// x(μ).
-    pub(super) coordinates: Expr<'g>,
-    /// |a|², which has to be below one.
-    pub(super) sine_squared: Expr<'g>,
-    /// The same in the chart of the sine, where the group has it.
-    pub(super) sine: Option<SineForm<'g>>,
-}
 
 /// Whether x = s·h·Σ⁻¹μ solves the equation: on a sphere with the exponential, for one.
 pub(super) fn is_solved_by_predictor<'g>(sources: &Sources<'_, 'g>, blocks: &[usize], residual: Expr<'g>) -> bool {
-    if sources.is_moving(sources.inertia) {
-        return false;
-    }
     let velocity = sources.inertia.inverse() * sources.model.graph.below(&sources.symbols.momenta);
     let solution = |&i: &usize| {
         let block = sources.symbols.blocks[i];
@@ -32,13 +18,17 @@ pub(super) fn is_solved_by_predictor<'g>(sources: &Sources<'_, 'g>, blocks: &[us
 }
 
 /// The closed form for a block of rotations with kinetic energy ½κ|ξ|² whose momenta turn one plane: SO(n) or the rotations of
-/// SE(n) for n ≤ 3, spheres for every n, and unit quaternions.
+/// SE(n) for n ≤ 3, spheres for every n, and unit quaternions. `None` if there is none.
+///
+/// x = a/(1 + √(1 − |a|²)) with a = hμ/Σ: the equation hM = ½κ(F − Fᵀ) of a bi-invariant kinetic energy, whose rotation by θ in one plane
+/// has sin θ = |a| and tan(θ/2) = |x|.
 pub(super) fn closed_form<'g>(
     sources: &Sources<'_, 'g>,
     before: &[Covector<'g>],
-    residual: Expr<'g>,
+    equation: &MomentumEquation<'g>,
     i: usize,
-) -> Option<ClosedForm<'g>> {
+) -> Option<MomentumEquation<'g>> {
+    let residual = equation.residual;
     let (model, block) = (sources.model, sources.symbols.blocks[i]);
     let factor = &model.factors[block.factor];
     let start = block.offset - model.offset(block.factor);
@@ -78,6 +68,11 @@ pub(super) fn closed_form<'g>(
         residual: kappa * block.coordinates / step - mu,
         directional: kappa * block.direction / step,
     };
-    let coordinates = sine / (one + (one - sine_squared).sqrt());
-    Some(ClosedForm { coordinates, sine_squared, sine: is_rotation.then(in_sine) })
+    Some(MomentumEquation {
+        solution: Solution::ClosedForm,
+        formula: Some(sine / (one + (one - sine_squared).sqrt())),
+        sine_squared: Some(sine_squared),
+        sine: is_rotation.then(in_sine),
+        ..equation.clone()
+    })
 }

@@ -3,9 +3,10 @@
 
 use clebsch_symbolic::{Expr, identity};
 
-use super::symbols::{identities, logarithm, moved};
-use super::trivialisation;
-use crate::model::{Factor, Mechanics, Order, System};
+use super::symbols::{identities, logarithm, moved, moved_on};
+use super::{exact, trivialisation, velocity};
+use crate::diagnostic::Diagnostics;
+use crate::model::{Discretization, Factor, Kinetic, Mechanics, Order, System};
 
 /// ℓd = K(t, h, q, F) + U₀(t, q) + U₁(t + h, Φ_F q), with U₀ and U₁ written as functions of a configuration and of its time.
 #[derive(Copy, Clone, PartialEq, Eq)]
@@ -18,6 +19,30 @@ pub struct DiscreteLagrangian<'g> {
     pub end: Expr<'g>,
     /// Whether K depends on the configuration.
     pub couples: bool,
+}
+
+/// The cost K(t, h, q, F): as declared, or h ℓ(ξ) or h/2 (ℓ(q, ξ) + ℓ(Φ_F q, ξ)) of a Lagrangian, with the velocity ξ made from F and h.
+pub(super) fn cost<'g>(model: &Mechanics<'g>) -> Result<Expr<'g>, Diagnostics> {
+    let (energy, velocities, discretization) = match &model.kinetic {
+        Kinetic::Cost(cost) => return Ok(*cost),
+        Kinetic::Lagrangian { energy, velocities, discretization, .. } => (*energy, velocities, *discretization),
+    };
+    let h = model.step_size;
+    if discretization == Discretization::Exact {
+        exact::check(model, energy, velocities)?;
+    }
+    let mut discrete = Vec::new();
+    for (k, symbol) in velocities.iter().enumerate() {
+        discrete.push((*symbol, velocity::of_element(model, k, h, exact::stand_in(model, k, discretization))));
+    }
+    let at = |energy: Expr<'g>| match discretization {
+        Discretization::MoserVeselov => velocity::moser_veselov(model, energy, velocities),
+        _ => Ok(h * energy.substitute(&discrete)),
+    };
+    if !model.reads_configuration(energy) && !energy.depends_on(model.time) {
+        return at(energy);
+    }
+    Ok((at(energy)? + at(energy.substitute(&moved_on(model)))?) / 2)
 }
 
 /// Separates the cost into a part of F and a part of q where it is such a sum, and places the potential.

@@ -41,7 +41,7 @@ pub(super) fn equations<'g>(
         }
     }
     let depends = |i: usize, j: usize| residuals[i].rows.depends_on(symbols.blocks[j].coordinates);
-    groups(residuals.len(), depends)
+    structure::connected(residuals.len(), |i, j| depends(i, j) || depends(j, i))
         .into_iter()
         .map(|group| equation(sources, before, &residuals, group))
         .flat_map(|equation| structure::specialised(sources, equation))
@@ -160,21 +160,6 @@ pub(super) fn at_identity<'g>(
     if identity::vanishes(value) { value.graph().zero(value.shape()) } else { value }
 }
 
-/// The finest partition of 0..count in which what depends on each other is together.
-fn groups(count: usize, depends: impl Fn(usize, usize) -> bool) -> Vec<Vec<usize>> {
-    let mut label: Vec<usize> = (0..count).collect();
-    for k in 0..count {
-        for j in 0..count {
-            if depends(k, j) && label[k] != label[j] {
-                let (keep, merge) = (label[k].min(label[j]), label[k].max(label[j]));
-                label.iter_mut().filter(|entry| **entry == merge).for_each(|entry| *entry = keep);
-            }
-        }
-    }
-    let members = |leader: usize| (0..count).filter(|&k| label[k] == leader).collect::<Vec<_>>();
-    (0..count).map(members).filter(|group| !group.is_empty()).collect()
-}
-
 fn equation<'g>(
     sources: &Sources<'_, 'g>,
     before: &[Covector<'g>],
@@ -192,22 +177,16 @@ fn equation<'g>(
     let residual = sources.model.graph.below(&rows);
     let cleared = blocks.iter().all(|&i| residuals[i].cleared);
     let mut equation = MomentumEquation::new(sources, components, residual, cleared);
-    let moves = equation.moves;
-    let closed_form = match blocks[..] {
-        [only] if !moves && !sources.forced => closed_form(sources, before, residual, only),
-        _ => None,
-    };
-    equation.solution = match &closed_form {
-        Some(_) => Solution::ClosedForm,
-        // where Σ changes with the configuration there is no predictor
-        _ if sources.is_moving(sources.inertia) => Solution::Newton,
-        None if !moves && is_solved_by_predictor(sources, &blocks, residual) => Solution::Explicit,
-        None => Solution::Newton,
-    };
-    if let Some(closed_form) = closed_form {
-        equation.formula = Some(closed_form.coordinates);
-        equation.sine = closed_form.sine;
-        equation.sine_squared = Some(closed_form.sine_squared);
+    if let [only] = blocks[..]
+        && !equation.moves
+        && !sources.forced
+        && let Some(closed_form) = closed_form(sources, before, &equation, only)
+    {
+        return closed_form;
+    }
+    // where Σ changes with the configuration there is no predictor
+    if !sources.is_moving(sources.inertia) && !equation.moves && is_solved_by_predictor(sources, &blocks, residual) {
+        equation.solution = Solution::Explicit;
     }
     equation
 }

@@ -18,38 +18,28 @@ pub(super) fn is_free_rotation(model: &Mechanics<'_>, k: usize) -> bool {
     is_exact(model) && !model.factors[k].group.is_translation()
 }
 
-/// A cost with the same kinetic energy and the same symmetries as the action of the free motion, which is no formula of F: what does not
-/// depend on the discretisation is derived from it.
-///
-/// # Errors
-/// A group or an energy whose free motion is not known.
-pub(super) fn stand_in<'g>(
-    model: &Mechanics<'g>,
-    energy: Expr<'g>,
-    velocities: &[Expr<'g>],
-) -> Result<Expr<'g>, Diagnostics> {
-    check(model, energy, velocities)?;
-    let h = model.step_size;
-    let velocity = |k: usize| match model.factors[k].group {
-        Group::UnitQuaternions => velocity::of_element(model, k, h, Discretization::Cayley),
-        _ => velocity::of_element(model, k, h, Discretization::Projection),
-    };
-    let discrete: Vec<_> = velocities.iter().enumerate().map(|(k, symbol)| (*symbol, velocity(k))).collect();
-    Ok(h * energy.substitute(&discrete))
+/// What velocities are made by: for the action of the free motion, which is no formula of F, in a cost with the same kinetic energy and
+/// the same symmetries. What does not depend on the discretisation is derived from that.
+pub(super) fn stand_in(model: &Mechanics<'_>, k: usize, discretization: Discretization) -> Discretization {
+    match (discretization, model.factors[k].group) {
+        (Discretization::Exact, Group::UnitQuaternions) => Discretization::Cayley,
+        (Discretization::Exact, _) => Discretization::Projection,
+        _ => discretization,
+    }
 }
 
-fn check<'g>(model: &Mechanics<'g>, energy: Expr<'g>, velocities: &[Expr<'g>]) -> Result<(), Diagnostics> {
-    let known = |group: Group| {
-        group.is_translation() || matches!(group, Group::SpecialOrthogonal(3 | 4) | Group::UnitQuaternions)
-    };
+/// An exact step needs a group and an energy whose free motion is known.
+pub(super) fn check<'g>(model: &Mechanics<'g>, energy: Expr<'g>, velocities: &[Expr<'g>]) -> Result<(), Diagnostics> {
+    use Group::{SpecialOrthogonal, Translation, UnitQuaternions};
+    let is_known = |group: Group| matches!(group, Translation(_) | SpecialOrthogonal(3 | 4) | UnitQuaternions);
     let velocity = || Found::somewhere().named(velocities[0]);
     features::check((Feature::ExactDiscretization, Found::at(model.spans.kinetic.place)), |feature| match feature {
         Feature::UnknownFreeMotion => {
-            let factor = model.factors.iter().find(|factor| !known(factor.group))?;
+            let factor = model.factors.iter().find(|factor| !is_known(factor.group))?;
             Some(Found::somewhere().named(factor.group.name(model.graph)))
         }
         Feature::RotationsOfFourSpace => {
-            let turns = model.factors.iter().any(|factor| factor.group == Group::SpecialOrthogonal(4));
+            let turns = model.factors.iter().any(|factor| factor.group == SpecialOrthogonal(4));
             let is_alone = model.factors.len() == 1 && model.potential.is_none() && model.opaque.is_none();
             Found::when(turns && !is_alone)
         }

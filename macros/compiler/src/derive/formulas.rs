@@ -132,16 +132,10 @@ impl MechanicsFormulas<'_> {
         self.model.order.stages().filter(|_| self.splitting.is_none() && !self.is_exact)
     }
 
-    /// Whether F of a factor has its momentum from the constants of free rotation.
-    pub(super) fn is_free_rotation(&self, k: usize) -> bool {
-        exact::is_free_rotation(&self.model, k)
-    }
-
     /// The factors whose chart coordinates x/w are given by x and w, so that F − I = 2 (w x^ + (x^)²)/(w² + |x|²) holds the only division.
     pub fn weighted(&self) -> Vec<usize> {
-        let rotates =
-            |k: &usize| self.model.factors[*k].group == Group::SpecialOrthogonal(3) && self.is_free_rotation(*k);
-        (0..self.model.factors.len()).filter(rotates).collect()
+        let rotates = |k: &usize| self.model.factors[*k].group == Group::SpecialOrthogonal(3);
+        (0..self.model.factors.len()).filter(|k| rotates(k) && exact::is_free_rotation(&self.model, *k)).collect()
     }
 
     /// Whether the step is found as F − I and the next momentum themselves, not by chart coordinates.

@@ -13,7 +13,6 @@ mod clearing;
 mod closed_form;
 mod collocation;
 mod control;
-mod cost;
 mod derivation;
 mod discrete_lagrangian;
 mod displacement;
@@ -92,7 +91,7 @@ pub fn derive(model: Model<'_>) -> Result<Formulas<'_>, Diagnostics> {
 fn mechanics(model: Mechanics<'_>) -> Result<MechanicsFormulas<'_>, Diagnostics> {
     variation::check(&model)?;
     let mut system = system(model.system.clone(), model.kinetic.discretization());
-    let cost = cost::kinetic_cost(&model)?;
+    let cost = discrete_lagrangian::cost(&model)?;
     let energy = energy::kinetic(&model, &system, cost)?;
     let lagrangian = discrete_lagrangian::separate(&model, cost);
     substep::check_unmoved(&model, &lagrangian)?;

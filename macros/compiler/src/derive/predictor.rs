@@ -1,6 +1,6 @@
 //! What iterations start from, and equations in the form in which they are solved.
 
-use clebsch_symbolic::{Expr, Property, Role, Shape};
+use clebsch_symbolic::{Expr, Shape};
 
 use super::exact::{by_inertia, inertia_inverse};
 use super::symbols::{at_zero, entries, rows_at};
@@ -37,18 +37,18 @@ impl<'g> MechanicsFormulas<'g> {
     pub fn whole_predictor(&self, index: usize, number: usize) -> Option<Vec<Expr<'g>>> {
         let substep = self.substeps.get(index)?;
         let equation = substep.equations.get(number).filter(|equation| self.is_predicted(equation))?;
-        self.predictor_by_blocks(substep, equation, inertia_inverse(self.model.graph, self.inertia.shape()))
+        Some(self.predictor_by_blocks(substep, equation, inertia_inverse(self.model.graph, self.inertia.shape())))
     }
 
     /// The same with an inverse of Σ.
-    fn predictor_by_blocks(
+    pub(super) fn predictor_by_blocks(
         &self,
         substep: &Substep<'g>,
         equation: &MomentumEquation<'g>,
         inverse: Expr<'g>,
-    ) -> Option<Vec<Expr<'g>>> {
+    ) -> Vec<Expr<'g>> {
         let all = self.model.graph.below(&self.symbols.momenta);
-        let (first, count) = (*equation.components.first()?, equation.components.len());
+        let (first, count) = (equation.components[0], equation.components.len());
         let is_run = equation.coupled.is_empty() && equation.components.iter().copied().eq(first..first + count);
         // of the momentum those components are read that the equation is about
         let (start, momentum) = if is_run { (first, all.block(first, 0, Shape::vector(count))) } else { (0, all) };
@@ -56,24 +56,14 @@ impl<'g> MechanicsFormulas<'g> {
             Some(kappa) => momentum / kappa,
             None => inverse.block(start, start, Shape::square(momentum.shape().rows)) * momentum,
         };
-        let blocks = self.symbols.blocks_of(&equation.components).into_iter().map(|i| {
+        let part = |i: usize| {
             // an equation may be about some components of a block
             let block = self.symbols.blocks[i].components();
-            let within: Vec<usize> = equation.components.iter().copied().filter(|c| block.contains(c)).collect();
-            let positions: Vec<usize> = within.iter().map(|component| component - start).collect();
+            let within = equation.components.iter().filter(|component| block.contains(component));
+            let positions: Vec<usize> = within.map(|component| component - start).collect();
             self.chart_step(i, substep.divisor) * rows_at(velocity, &positions)
-        });
-        Some(blocks.collect())
-    }
-
-    /// The predictor as it is printed, with Σ for the inertia.
-    pub(super) fn printed_predictor(
-        &self,
-        substep: &Substep<'g>,
-        equation: &MomentumEquation<'g>,
-    ) -> Option<Vec<Expr<'g>>> {
-        let inertia = self.model.graph.symbol("Σ", self.inertia.shape(), Role::Letter, Property::Symmetric);
-        self.predictor_by_blocks(substep, equation, inertia.inverse())
+        };
+        self.symbols.blocks_of(&equation.components).into_iter().map(part).collect()
     }
 
     /// The chart coordinates of the motion by the velocity of the start of a step that is collocated, to first order in h.

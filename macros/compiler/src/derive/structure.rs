@@ -11,6 +11,7 @@ use clebsch_symbolic::{Expr, Shape, identity};
 use super::equation::{MomentumEquation, Solution, Sources};
 use super::symbols::{ChartBlock, rows_at};
 use pattern::Pattern;
+pub(super) use pattern::connected;
 
 /// Jacobians of more unknowns are taken as they are: those of large groups are full.
 const LARGEST: usize = 20;

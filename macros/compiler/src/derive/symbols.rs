@@ -1,6 +1,6 @@
 //! The symbols of the derivation: covectors, momenta, algebra elements, chart coordinates, increments.
 
-use clebsch_symbolic::{Chart, Expr, Property, Role, Shape};
+use clebsch_symbolic::{Chart, Expr, Graph, Property, Role, Shape};
 
 use crate::model::{ChartChoice, Configuration, Discretization, Factor, System};
 
@@ -172,6 +172,12 @@ pub(super) fn rows_at<'g>(vector: Expr<'g>, positions: &[usize]) -> Expr<'g> {
         [first, .., last] if last - first + 1 == positions.len() => vector.block(*first, 0, shape),
         _ => vector.graph().stack(shape, positions.iter().map(|&i| vector.entry(i, 0)).collect()),
     }
+}
+
+/// A matrix of scalars from its columns.
+pub(super) fn of_columns<'g>(graph: &'g Graph, columns: &[Vec<Expr<'g>>]) -> Expr<'g> {
+    let shape = Shape::new(columns[0].len(), columns.len());
+    graph.stack(shape, shape.positions().map(|(i, j)| columns[j][i]).collect())
 }
 
 /// The entries of vectors, one after the other.

@@ -26,8 +26,12 @@ impl<'g> Covector<'g> {
     }
 }
 
-/// T* ∂_F K before the step and after it: T*_id L_F then R_F for a left action, R_F then L_F for a right one.
-pub(super) fn trivialisations<'g>(model: &System<'g>, kinetic: Expr<'g>, k: usize) -> (Covector<'g>, Covector<'g>) {
+/// T* ∂_F K of each factor before the step and after it: T*_id L_F then R_F for a left action, R_F then L_F for a right one.
+pub(super) fn of_all<'g>(model: &System<'g>, kinetic: Expr<'g>) -> (Vec<Covector<'g>>, Vec<Covector<'g>>) {
+    (0..model.factors.len()).map(|k| of_factor(model, kinetic, k)).unzip()
+}
+
+fn of_factor<'g>(model: &System<'g>, kinetic: Expr<'g>, k: usize) -> (Covector<'g>, Covector<'g>) {
     let factor = &model.factors[k];
     let gradient = kinetic.gradient(factor.symbol);
     let y = logarithm(model, k);
@@ -45,15 +49,7 @@ pub(super) fn trivialisations<'g>(model: &System<'g>, kinetic: Expr<'g>, k: usiz
     };
     let left = Covector { array: left, logarithmic: along(y, -1), rational: rational(false) };
     let right = Covector { array: right, logarithmic: along(y, 1), rational: rational(true) };
-    match factor.side {
-        Side::Left => (left, right),
-        Side::Right => (right, left),
-    }
-}
-
-/// Both for each factor.
-pub(super) fn of_all<'g>(model: &System<'g>, kinetic: Expr<'g>) -> (Vec<Covector<'g>>, Vec<Covector<'g>>) {
-    (0..model.factors.len()).map(|k| trivialisations(model, kinetic, k)).unzip()
+    if factor.side == Side::Left { (left, right) } else { (right, left) }
 }
 
 /// The components of each factor.

@@ -5,7 +5,7 @@ use clebsch_symbolic::{Expr, Property, Role, Shape};
 use super::{Names, tuple};
 use crate::derive::formula::Wording;
 use crate::derive::symbols::moved_on;
-use crate::derive::{Formula, Id, MechanicsFormulas};
+use crate::derive::{Formula, Id, MechanicsFormulas, exact};
 
 impl<'g> MechanicsFormulas<'g> {
     /// The discrete Lagrangian, part by part, and its Legendre transforms.
@@ -13,7 +13,7 @@ impl<'g> MechanicsFormulas<'g> {
         let end = self.end_of_step(self.lagrangian.end);
         let next = tuple(self.symbols.images.iter().map(Expr::to_string));
         // the factors that move freely, with the symbols of their momenta and of their elements
-        let free = (0..self.model.factors.len()).filter(|&k| self.is_free_rotation(k));
+        let free = (0..self.model.factors.len()).filter(|&k| exact::is_free_rotation(&self.model, k));
         let free: Vec<_> = free.map(|k| (k, self.symbols.momenta[k], self.model.factors[k].symbol)).collect();
         let legendre = Formula::shorter(Id::Legendre, format!("F⁻ℓd({q}, {f})"), self.legendre.clone());
         let mut legendre_next = Formula::new(Id::LegendreNext, format!("F⁺ℓd({q}, {f})"), self.legendre_next.clone());

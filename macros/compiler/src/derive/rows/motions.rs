@@ -1,9 +1,10 @@
 //! The rows of small motions: how they retract, follow each other, and move a configuration.
 
-use clebsch_symbolic::{Chart, Expr, Shape};
+use clebsch_symbolic::{Chart, Expr};
 
 use super::Names;
 use crate::derive::increments::from_increment;
+use crate::derive::symbols::of_columns;
 use crate::derive::{Formula, Id, MatrixForm, MechanicsFormulas, SystemFormulas};
 use crate::model::Side;
 
@@ -85,16 +86,13 @@ impl<'g> MechanicsFormulas<'g> {
     /// them stands a row for each component of such a factor.
     pub fn generator_matrix(&self) -> Expr<'g> {
         let (graph, factors) = (self.model.graph, &self.model.factors);
-        let columns = self.generator_columns();
-        let still = (0..factors.len()).filter(|&k| !factors[k].moves);
-        let components = |k: usize| self.model.offset(k)..self.model.offset(k) + factors[k].group.dimension();
-        let still: Vec<usize> = still.flat_map(components).collect();
-        let rows = columns[0].len();
-        let entry = |(i, j): (usize, usize)| match i.checked_sub(rows) {
-            Some(extra) => graph.integer((still[extra] == j) as i64),
-            None => columns[j][i],
-        };
-        let shape = Shape::new(rows + still.len(), columns.len());
-        graph.stack(shape, shape.positions().map(entry).collect())
+        let mut columns = self.generator_columns();
+        for k in (0..factors.len()).filter(|&k| !factors[k].moves) {
+            for component in self.model.offset(k)..self.model.offset(k + 1) {
+                let extra = columns.iter_mut().enumerate();
+                extra.for_each(|(j, column)| column.push(graph.integer((j == component) as i64)));
+            }
+        }
+        of_columns(graph, &columns)
     }
 }

@@ -1,6 +1,6 @@
 //! The rows of a step: kicks, the momentum equation, the momentum after the move, splittings and collocation.
 
-use clebsch_symbolic::Expr;
+use clebsch_symbolic::{Expr, Property, Role};
 
 use super::Names;
 use crate::derive::{Formula, Id, MechanicsFormulas, MomentumEquation, Solution};
@@ -83,7 +83,8 @@ impl<'g> MechanicsFormulas<'g> {
         let coordinates = self.coordinates_of(equation);
         rows.extend(equation.formula.map(|x| Formula::new(Id::Solution(index, number), &coordinates, [x])));
         if self.is_predicted(equation) {
-            let printed = self.printed_predictor(substep, equation).unwrap_or_default();
+            let inertia = self.model.graph.symbol("Σ", self.inertia.shape(), Role::Letter, Property::Symmetric);
+            let printed = self.predictor_by_blocks(substep, equation, inertia.inverse());
             let row = Formula::shorter(Id::Predictor(index, number), coordinates, printed);
             rows.push(row.computed_as(self.predictor(substep, equation)));
         }

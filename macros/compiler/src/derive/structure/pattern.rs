@@ -103,14 +103,13 @@ impl Pattern {
 
     /// The sets of unknowns that depend on each other, one way or the other.
     pub(super) fn connected(&self) -> Vec<Vec<usize>> {
-        let reaches = self.closure(|i, j| !self.is_zero(i, j) || !self.is_zero(j, i));
-        classes(self.count(), |i, j| reaches[i][j])
+        connected(self.count(), |i, j| !self.is_zero(i, j) || !self.is_zero(j, i))
     }
 
     /// What linear systems with this Jacobian are solved by.
     pub(super) fn structure(&self) -> Structure {
         let count = self.count();
-        let needs = self.closure(|i, j| !self.is_zero(i, j));
+        let needs = closure(count, |i, j| !self.is_zero(i, j));
         let mut blocks = classes(count, |i, j| needs[i][j] && needs[j][i]);
         let regular = (0..count).all(|i| !self.is_zero(i, i));
         match blocks.len() {
@@ -123,25 +122,35 @@ impl Pattern {
             _ => Structure::Dense,
         }
     }
+}
 
-    /// The reflexive and transitive closure of a relation.
-    fn closure(&self, relates: impl Fn(usize, usize) -> bool) -> Vec<Vec<bool>> {
-        let count = self.count();
-        let mut closed: Vec<Vec<bool>> =
-            (0..count).map(|i| (0..count).map(|j| i == j || relates(i, j)).collect()).collect();
-        for k in 0..count {
-            let through = closed[k].clone();
-            for row in closed.iter_mut().filter(|row| row[k]) {
-                row.iter_mut().zip(&through).for_each(|(reached, next)| *reached |= *next);
-            }
+/// The sets of what is related, directly or by way of others.
+pub(in crate::derive) fn connected(count: usize, relates: impl Fn(usize, usize) -> bool) -> Vec<Vec<usize>> {
+    let reaches = closure(count, relates);
+    classes(count, |i, j| reaches[i][j])
+}
+
+/// The reflexive and transitive closure of a relation.
+fn closure(count: usize, relates: impl Fn(usize, usize) -> bool) -> Vec<Vec<bool>> {
+    let mut closed = vec![vec![false; count]; count];
+    Shape::square(count).positions().for_each(|(i, j)| closed[i][j] = i == j || relates(i, j));
+    for k in 0..count {
+        let through = closed[k].clone();
+        for row in closed.iter_mut().filter(|row| row[k]) {
+            row.iter_mut().zip(&through).for_each(|(reached, next)| *reached |= *next);
         }
-        closed
     }
+    closed
 }
 
 /// The classes of an equivalence, in the order of their first members.
 fn classes(count: usize, same: impl Fn(usize, usize) -> bool) -> Vec<Vec<usize>> {
-    let leader = |i: usize| (0..=i).find(|&j| same(i, j));
-    let members = |first: usize| (0..count).filter(|&i| leader(i) == Some(first)).collect::<Vec<_>>();
-    (0..count).filter(|&i| leader(i) == Some(i)).map(members).collect()
+    let mut classes: Vec<Vec<usize>> = Vec::new();
+    for i in 0..count {
+        match classes.iter_mut().find(|class| same(i, class[0])) {
+            Some(class) => class.push(i),
+            None => classes.push(vec![i]),
+        }
+    }
+    classes
 }

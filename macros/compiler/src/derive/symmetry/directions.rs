@@ -18,7 +18,7 @@ pub(super) struct Directions<'a, 'g> {
 impl<'a, 'g> Directions<'a, 'g> {
     pub(super) fn of(model: &'a Mechanics<'g>, system: &'a SystemFormulas<'g>) -> Directions<'a, 'g> {
         let mut directions = Directions { model, system, families: Vec::new(), all: Vec::new() };
-        let several = |count: usize, name: &str| if count > 1 { format!(" of `{name}`") } else { String::new() };
+        let several = |count: usize, name: &str| if count > 1 { format!(" of {name}") } else { String::new() };
         for (k, factor) in model.factors.iter().enumerate() {
             let of = several(model.factors.len(), &factor.name);
             directions.add(factor.group, of, factor.side, None, |own, index| Some(own.own(k, index)));
@@ -32,7 +32,7 @@ impl<'a, 'g> Directions<'a, 'g> {
             }
         }
         for (offer, offered) in model.symmetries.iter().enumerate() {
-            let of = format!(" of `{}`", offered.name);
+            let of = format!(" of {}", offered.name);
             directions.add(offered.group, of, offered.side, Some(offer), |own, index| own.offered(offer, index));
         }
         directions
@@ -118,9 +118,7 @@ impl<'a, 'g> Directions<'a, 'g> {
     fn commuting(&self, j: usize, k: usize, side: Side, index: usize) -> Direction<'g> {
         let (group, q) = (self.model.factors[k].group, self.model.configurations[j].symbol);
         let w = self.basis_element(group, index);
-        let mut leaves: Vec<_> =
-            self.model.configurations.iter().map(|leaf| self.model.graph.zero(leaf.shape)).collect();
-        leaves[j] = multiplied(group, q, group.wedge(w), side);
+        let leaves = alone(&self.model.action, j, multiplied(group, q, group.wedge(w), side));
         // ⟨N, q⁻¹wq⟩ = ⟨Ad*_{q⁻¹}N, w⟩
         let element = if side == Side::Left { group.inverse(q) } else { q };
         let momentum = group.coadjoint(element, self.system.symbols.momenta[k]).entry(index, 0);
@@ -147,7 +145,7 @@ impl<'a, 'g> Directions<'a, 'g> {
     /// ξ with ξ_Q(q) = δq, by least squares in the entries of q; `None` where the group cannot move q so.
     fn velocity_of(&self, motion: &[Expr<'g>]) -> Option<Vec<Expr<'g>>> {
         let (graph, matrix) = (self.model.graph, self.system.matrix_of_generator());
-        let entries = motion.iter().flat_map(|leaf| leaf.shape().positions().map(|(i, j)| leaf.entry(i, j)));
+        let entries = motion.iter().flat_map(|leaf| leaf.entries());
         let given = graph.stack(Shape::vector(matrix.shape().rows), entries.collect());
         let solved = if matrix.is_identity() {
             given
@@ -166,10 +164,11 @@ impl<'a, 'g> Directions<'a, 'g> {
     }
 }
 
-/// The motion of leaf j alone, of leaves of these shapes.
-fn alone<'g>(leaves: &[Expr<'g>], j: usize, motion: Expr<'g>) -> Vec<Expr<'g>> {
-    let still = |leaf: &Expr<'g>| leaf.graph().zero(leaf.shape());
-    leaves.iter().enumerate().map(|(i, leaf)| if i == j { motion } else { still(leaf) }).collect()
+/// The motion of part j alone, of parts with these shapes.
+fn alone<'g>(parts: &[Expr<'g>], j: usize, motion: Expr<'g>) -> Vec<Expr<'g>> {
+    let mut motions: Vec<_> = parts.iter().map(|part| part.graph().zero(part.shape())).collect();
+    motions[j] = motion;
+    motions
 }
 
 /// w q, or q w.
@@ -187,9 +186,7 @@ fn transported<'g>(group: Group, q: Expr<'g>, w: Expr<'g>, side: Side) -> Expr<'
 impl<'g> SystemFormulas<'g> {
     /// The velocity that is `xi` in factor k and zero in the others.
     pub(super) fn in_factor(&self, k: usize, xi: Expr<'g>) -> Vec<Expr<'g>> {
-        let zero = |symbol: &Expr<'g>| symbol.graph().zero(symbol.shape());
-        let factors = self.symbols.algebra.iter().enumerate();
-        factors.map(|(other, symbol)| if other == k { xi } else { zero(symbol) }).collect()
+        alone(&self.symbols.algebra, k, xi)
     }
 
     /// ξF − Fξ, the motion of F by gFg⁻¹.

@@ -11,17 +11,14 @@ use super::{ConservedMomentum, Symmetries};
 use crate::derive::{DiscreteLagrangian, SystemFormulas, naming};
 use crate::model::Side;
 
-/// As many points decide whether a component vanishes: one does but for a chance of about 10⁻¹⁴.
-const POINTS: u64 = 1;
-
 /// The momenta of the basis elements of the group along which the discrete Lagrangian is invariant.
 pub(super) fn find<'g>(system: &SystemFormulas<'g>, lagrangian: &DiscreteLagrangian<'g>) -> Symmetries<'g> {
     let mut conserved = Vec::new();
     for (k, factor) in system.model.factors.iter().enumerate() {
-        let slopes = slopes(system, lagrangian, k);
+        // one point decides whether a component vanishes, but for a chance of about 10⁻¹⁴
+        let slopes = slopes(system, lagrangian, k).into_iter();
+        let values: Vec<_> = slopes.map(|slope| Point::new(0).evaluate(slope)).collect();
         let zero = Residue::from_rational(&integer(0));
-        let points = (0..POINTS).flat_map(|seed| slopes.iter().map(move |slope| (seed, *slope)));
-        let values: Vec<_> = points.map(|(seed, slope)| Point::new(seed).evaluate(slope)).collect();
         let of = if system.model.factors.len() > 1 { format!(" of {}", factor.name) } else { String::new() };
         let holds = |i: &usize| values.iter().all(|value| value.at(*i, 0) == zero);
         conserved.extend((0..factor.group.dimension()).filter(holds).map(|i| {

@@ -13,6 +13,7 @@ use clebsch_symbolic::{Expr, Group, Rational, Shape, Zero, identity};
 
 use super::equation::Sources;
 use super::power::{self, SiteTerm};
+use super::symbols::of_columns;
 use super::{DiscreteLagrangian, naming};
 use crate::model::{Isotropy, is_large};
 use directions::Directions;
@@ -107,39 +108,31 @@ fn variations<'g>(
     let parts = [lagrangian.kinetic, lagrangian.start, lagrangian.end];
     let logarithms: Vec<Expr<'g>> =
         sources.symbols.logarithms.iter().map(|y| lagrangian.kinetic.gradient(*y)).collect();
-    let gradients: Vec<(Vec<Expr<'g>>, Vec<Expr<'g>>)> = parts
-        .iter()
-        .map(|part| {
-            let factors = model.factors.iter().map(|factor| part.gradient(factor.symbol));
-            (sources.gradients(*part), factors.collect())
-        })
-        .collect();
+    let gradients = parts.map(|part| -> (Vec<Expr<'g>>, Vec<Expr<'g>>) {
+        let factors = model.factors.iter().map(|factor| part.gradient(factor.symbol));
+        (sources.gradients(part), factors.collect())
+    });
     let pairing = |gradients: &[Expr<'g>], motions: &[Expr<'g>]| {
         graph.total(Shape::scalar(), gradients.iter().zip(motions).map(|(gradient, motion)| gradient.pairing(*motion)))
     };
     let momenta = sources.symbols.momenta.iter().copied();
     let impulse: Vec<_> = momenta.zip(force.unwrap_or_default().iter().copied()).collect();
-    let own = parts.len() + usize::from(force.is_some());
-    let of_links: Vec<Vec<Expr<'g>>> =
-        directions.iter().map(|direction| power::moved(model, links, &direction.leaves)).collect();
-    let shape = Shape::new(own + links.len(), directions.len());
-    let entry = |(part, column): (usize, usize)| {
-        if part >= own {
-            return of_links[column][part - own];
+    let column = |direction: &Direction<'g>| -> Vec<Expr<'g>> {
+        let mut column = Vec::new();
+        for (part, (leaves, factors)) in gradients.iter().enumerate() {
+            let moved = pairing(leaves, &direction.leaves) + pairing(factors, &direction.factors);
+            column.push(match &direction.logarithms {
+                _ if part > 0 || logarithms.iter().all(|gradient| gradient.is_zero()) => moved,
+                Some(motions) => moved + pairing(&logarithms, motions),
+                // a motion of log F that is not known is taken for a change
+                None => graph.integer(1),
+            });
         }
-        if part == parts.len() {
-            return directions[column].momentum.substitute(&impulse);
-        }
-        let ((leaves, factors), direction) = (&gradients[part], &directions[column]);
-        let moved = pairing(leaves, &direction.leaves) + pairing(factors, &direction.factors);
-        match &direction.logarithms {
-            _ if part > 0 || logarithms.iter().all(|gradient| gradient.is_zero()) => moved,
-            Some(motions) => moved + pairing(&logarithms, motions),
-            // a motion of log F that is not known is taken for a change
-            None => graph.integer(1),
-        }
+        column.extend(force.map(|_| direction.momentum.substitute(&impulse)));
+        column.extend(power::moved(model, links, &direction.leaves));
+        column
     };
-    graph.stack(shape, shape.positions().map(entry).collect())
+    of_columns(graph, &directions.iter().map(column).collect::<Vec<_>>())
 }
 
 /// Everything that names and checks directions.
@@ -186,16 +179,15 @@ impl<'g> Finder<'_, 'g> {
         let mut parts: Vec<(String, String)> = Vec::new();
         let mut frames: Vec<&str> = Vec::new();
         for (index, family) in self.families.iter().enumerate() {
-            let members = self.directions.iter().zip(combination);
             let mut weights = vec![Rational::zero(); family.group.dimension()];
-            members
-                .filter(|(direction, _)| direction.family == index)
-                .for_each(|(direction, weight)| weights[direction.index] = weight.clone());
-            if weights.iter().all(Rational::is_zero) {
-                continue;
+            let members = self.directions.iter().zip(combination);
+            for (direction, weight) in members.filter(|(direction, _)| direction.family == index) {
+                weights[direction.index] = weight.clone();
             }
-            parts.push((naming::combination(self.sources.model, family.group, &weights), family.of.replace('`', "")));
-            frames.push(family.frame);
+            if !weights.iter().all(Rational::is_zero) {
+                parts.push((naming::combination(self.sources.model, family.group, &weights), family.of.clone()));
+                frames.push(family.frame);
+            }
         }
         frames.dedup();
         let frames = frames.join(" and ");
@@ -210,13 +202,12 @@ impl<'g> Finder<'_, 'g> {
 
     /// The offered symmetries of which some direction is no symmetry.
     fn refused(&self, found: &[Vec<Rational>]) -> Vec<usize> {
-        let complete = |offer: &usize| {
-            let of_offer = |i: &usize| self.families[self.directions[*i].family].offered == Some(*offer);
-            let positions: Vec<usize> = (0..self.directions.len()).filter(of_offer).collect();
-            let dimension = self.sources.model.symmetries[*offer].group.dimension();
-            positions.len() == dimension && positions.iter().all(|&position| holds(found, position))
+        let is_whole = |offer: usize| {
+            let is_of_offer = |i: usize| self.families[self.directions[i].family].offered == Some(offer);
+            let held = (0..self.directions.len()).filter(|&i| is_of_offer(i) && holds(found, i));
+            held.count() == self.sources.model.symmetries[offer].group.dimension()
         };
-        (0..self.sources.model.symmetries.len()).filter(|offer| !complete(offer)).collect()
+        (0..self.sources.model.symmetries.len()).filter(|&offer| !is_whole(offer)).collect()
     }
 }
 

@@ -1,47 +1,50 @@
 //! Symmetries beyond constant directions: along vector parameters, along the configuration, and for special parameters.
 
 use clebsch_symbolic::identity::Point;
-use clebsch_symbolic::{Expr, Group, Property, Rational, Role, Shape, Zero, identity, integer};
+use clebsch_symbolic::{Expr, Group, Property, Rational, Role, Shape, identity, integer};
 
-use super::{ConservedMomentum, Direction, Finder, holds};
+use super::{ConservedMomentum, Direction, Family, Finder, holds};
 use crate::derive::naming;
+use crate::model::Parameter;
 
 impl<'g> Finder<'_, 'g> {
     /// Directions along vector parameters: in one family of rotations, or in all of them at once.
     pub(super) fn along_parameters(&self, found: &[Vec<Rational>]) -> Vec<ConservedMomentum<'g>> {
+        let (model, graph) = (self.sources.model, self.sources.model.graph);
         let is_turn = |family: &usize| turns_in_space(self.families[*family].group);
         let turns: Vec<usize> = (0..self.families.len()).filter(is_turn).collect();
         let mut choices: Vec<Vec<usize>> = turns.iter().map(|&family| vec![family]).collect();
         if turns.len() > 1 {
-            choices.push(turns.clone());
+            choices.push(turns);
+        }
+        // what a site and the terms both read is one
+        let mut read: Vec<&Parameter<'g>> = model.parameters.iter().collect();
+        for parameter in model.power.iter().flat_map(|power| &power.parameters) {
+            if read.iter().all(|other| other.name != parameter.name) {
+                read.push(parameter);
+            }
         }
         let mut momenta = Vec::new();
-        let own = |parameter: &&crate::model::Parameter<'g>| !parameter.per_site;
-        let of_terms = self.sources.model.power.iter().flat_map(|power| &power.parameters);
-        let of_site = self.sources.model.parameters.iter();
-        // what both read is one
-        let read = of_site.clone().chain(of_terms.filter(|one| of_site.clone().all(|other| other.name != one.name)));
-        let leaves = read.filter(own).flat_map(|parameter| parameter.leaves.iter().map(move |leaf| (parameter, leaf)));
-        for (parameter, leaf) in leaves.filter(|(_, leaf)| leaf.shape == Shape::vector(3)) {
-            for choice in &choices {
-                let graph = self.sources.model.graph;
-                let weight = |direction: &Direction<'g>| {
-                    let is_of_choice = choice.contains(&direction.family);
-                    if is_of_choice { leaf.symbol.entry(direction.index, 0) } else { graph.integer(0) }
-                };
-                let weights: Vec<_> = self.directions.iter().map(weight).collect();
-                let general = self.matrix * graph.stack(Shape::vector(weights.len()), weights.clone());
-                let whole = choice.iter().all(|family| self.is_whole(found, *family));
-                if whole || !identity::vanishes(general) {
-                    continue;
+        for parameter in read.into_iter().filter(|parameter| !parameter.per_site) {
+            for leaf in parameter.leaves.iter().filter(|leaf| leaf.shape == Shape::vector(3)) {
+                for choice in choices.iter().filter(|choice| !choice.iter().all(|family| self.is_whole(found, *family)))
+                {
+                    let weight = |direction: &Direction<'g>| {
+                        let is_of_choice = choice.contains(&direction.family);
+                        if is_of_choice { leaf.symbol.entry(direction.index, 0) } else { graph.integer(0) }
+                    };
+                    let weights: Vec<_> = self.directions.iter().map(weight).collect();
+                    let change = self.matrix * graph.stack(Shape::vector(weights.len()), weights.clone());
+                    if !identity::vanishes(change) {
+                        continue;
+                    }
+                    let terms = self.directions.iter().zip(weights);
+                    let terms = terms.map(|(direction, weight)| weight * direction.momentum);
+                    let Family { of, frame, .. } = &self.families[choice[0]];
+                    let of = if choice.len() == 1 { of } else { " of all factors" };
+                    let name = format!("about {}{of}, {frame}", parameter.name);
+                    momenta.push(ConservedMomentum { name, value: graph.total(Shape::scalar(), terms) });
                 }
-                let terms =
-                    self.directions.iter().zip(&weights).map(|(direction, weight)| *weight * direction.momentum);
-                let value = terms.reduce(|sum, term| sum + term).unwrap_or(leaf.symbol.entry(0, 0));
-                let family = &self.families[choice[0]];
-                let of = if choice.len() == 1 { family.of.replace('`', "") } else { " of all factors".to_string() };
-                momenta
-                    .push(ConservedMomentum { name: format!("about {}{of}, {}", parameter.name, family.frame), value });
             }
         }
         momenta
@@ -73,15 +76,13 @@ impl<'g> Finder<'_, 'g> {
     pub(super) fn special(&self, found: &[Vec<Rational>]) -> Vec<String> {
         let mut sentences = Vec::new();
         for (position, direction) in self.directions.iter().enumerate() {
-            let family = &self.families[direction.family];
-            if !turns_in_space(family.group) || holds(found, position) {
-                continue;
-            }
-            if let Some(conditions) = self.conditions(position, direction.index) {
-                let mut weights = vec![Rational::zero(); family.group.dimension()];
-                weights[direction.index] = integer(1);
-                let words = naming::combination(self.sources.model, family.group, &weights);
-                sentences.push(format!("{words}{}, {}, where {conditions}", family.of.replace('`', ""), family.frame));
+            let Family { group, of, frame, .. } = &self.families[direction.family];
+            if turns_in_space(*group)
+                && !holds(found, position)
+                && let Some(conditions) = self.conditions(position, direction.index)
+            {
+                let words = naming::basis_element(self.sources.model, *group, direction.index);
+                sentences.push(format!("{words}{of}, {frame}, where {conditions}"));
             }
         }
         sentences
@@ -90,14 +91,9 @@ impl<'g> Finder<'_, 'g> {
     /// What has to be special for a direction to be a symmetry; `None` where nothing of this kind makes it one.
     fn conditions(&self, position: usize, axis: usize) -> Option<String> {
         let column = self.matrix.block(0, position, Shape::new(self.matrix.shape().rows, 1));
-        let leaves: Vec<Expr<'g>> = self
-            .sources
-            .model
-            .parameters
-            .iter()
-            .flat_map(|parameter| parameter.leaves.iter().map(|leaf| leaf.symbol))
-            .filter(|symbol| [Shape::vector(3), Shape::square(3)].contains(&symbol.shape()))
-            .collect();
+        let leaves = self.sources.model.parameters.iter().flat_map(|parameter| &parameter.leaves);
+        let leaves = leaves.filter(|leaf| [Shape::vector(3), Shape::square(3)].contains(&leaf.shape));
+        let leaves: Vec<Expr<'g>> = leaves.map(|leaf| leaf.symbol).collect();
         if leaves.is_empty() || leaves.len() > 4 {
             return None;
         }
@@ -105,11 +101,9 @@ impl<'g> Finder<'_, 'g> {
         let matrices = (0..leaves.len()).filter(|&index| leaves[index].shape() == Shape::square(3));
         let fixed: usize = matrices.map(|index| 1 << index).sum();
         (0..1_usize << leaves.len()).filter(|choice| choice & fixed == 0).find_map(|choice| {
-            let special: Vec<Special<'g>> = leaves
-                .iter()
-                .enumerate()
-                .map(|(index, symbol)| Special::new(*symbol, axis, index, choice >> index & 1 == 0))
-                .collect();
+            let is_along = |index: usize| choice >> index & 1 == 0;
+            let special = |(index, symbol): (usize, &Expr<'g>)| Special::new(*symbol, axis, index, is_along(index));
+            let special: Vec<Special<'g>> = leaves.iter().enumerate().map(special).collect();
             self.least(column, special)
         })
     }
