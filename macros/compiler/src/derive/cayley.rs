@@ -3,9 +3,9 @@
 //! Lagrangians that are discretised by Cayley's map are functions of z, and z moves by polynomials: along δF = ηF by
 //! δZ = ½ (I − Z) η (I + Z), along δF = Fη by δZ = ½ (I + Z) η (I − Z). Derivatives of what is written with z hold no inverse.
 
-use clebsch_symbolic::{Expr, Group, Property, Role, Shape};
+use clebsch_symbolic::{Block, Expr, Group, Property, Role, Shape};
 
-use crate::model::{Factor, System};
+use crate::model::System;
 
 /// The symbol z of a factor.
 pub(crate) fn symbol<'g>(model: &System<'g>, k: usize) -> Expr<'g> {
@@ -31,20 +31,17 @@ pub(crate) fn of_increment<'g>(model: &System<'g>, k: usize, increment: Expr<'g>
 
 /// The replacements of the components of (F − I)(F + I)⁻¹, block by block, by those of Z.
 pub(super) fn replacements<'g>(model: &System<'g>) -> Vec<(Expr<'g>, Expr<'g>)> {
-    let rational = model.factors.iter().enumerate().filter(|(_, factor)| is_rational(model, factor.group));
-    rational.flat_map(|(k, factor)| of_factor(model, k, factor)).collect()
-}
-
-fn of_factor<'g>(model: &System<'g>, k: usize, factor: &Factor<'g>) -> Vec<(Expr<'g>, Expr<'g>)> {
-    let (group, f, z) = (factor.group, factor.symbol, symbol(model, k));
-    let identity = group.identity(model.graph);
-    let whole = (f - identity) * (f + identity).inverse();
-    let block = |block: &clebsch_symbolic::Block| {
-        let part = whole.block(block.row, block.column, block.algebra.shape).components(block.algebra);
-        let coordinates = z.block(block.offset, 0, Shape::vector(block.algebra.dimension));
-        (part, coordinates.wedge(block.algebra).components(block.algebra))
-    };
-    model.graph.blocks(group).iter().map(block).collect()
+    let mut replacements = Vec::new();
+    for (k, factor) in model.factors.iter().enumerate().filter(|(_, factor)| is_rational(model, factor.group)) {
+        let (f, z, identity) = (factor.symbol, symbol(model, k), factor.group.identity(model.graph));
+        let whole = (f - identity) * (f + identity).inverse();
+        for Block { algebra, row, column, offset } in model.graph.blocks(factor.group).iter().copied() {
+            let part = whole.block(row, column, algebra.shape).components(algebra);
+            let coordinates = z.block(offset, 0, Shape::vector(algebra.dimension));
+            replacements.push((part, coordinates.wedge(algebra).components(algebra)));
+        }
+    }
+    replacements
 }
 
 /// δz along δF = ηF, or along δF = Fη.

@@ -4,7 +4,7 @@
 //! exp η′ = (F⁻¹ exp(η) F)(F⁻¹ F(w)) for a right action and (F(w) F⁻¹)(F exp(η) F⁻¹) for a left one, w = (η, u): to first order
 //! η′ = Ad η + b(w), and to second order ½ b″ + ½ [Ad η, b] or ½ [b, Ad η] more (Baker, Campbell, Hausdorff).
 
-use clebsch_symbolic::{Chart, Expr, Group, Property, Role, Shape};
+use clebsch_symbolic::{Block, Chart, Expr, Property, Role, Shape};
 
 use super::SystemFormulas;
 use super::prices::{Direction, Endpoint, Jet, Steering};
@@ -27,10 +27,12 @@ pub struct InputStep<'g> {
 impl<'g> SystemFormulas<'g> {
     /// Each entry of the input.
     fn inputs(&self) -> Vec<Direction<'g>> {
-        let entries = |symbol: Expr<'g>| {
-            symbol.shape().positions().map(move |(i, j)| vec![(symbol, symbol.graph().unit(symbol.shape(), i, j))])
-        };
-        self.model.inputs.iter().flat_map(|leaf| entries(leaf.symbol)).collect()
+        let mut inputs = Vec::new();
+        for leaf in &self.model.inputs {
+            let units = leaf.shape.positions().map(|(i, j)| self.model.graph.unit(leaf.shape, i, j));
+            inputs.extend(units.map(|unit| vec![(leaf.symbol, unit)]));
+        }
+        inputs
     }
 
     /// The derivatives with respect to h and t.
@@ -44,13 +46,13 @@ impl<'g> SystemFormulas<'g> {
         let control = self.model.control.as_ref()?;
         let all = [self.symbols.along_basis(&self.leaves_by_generator()), self.inputs()].concat();
         let count = Shape::vector(control.bounds.len().max(1));
-        let leaves = self.model.configurations.iter().zip(&self.symbols.images);
+        let apart = self.images_of_leaves().into_iter().map(|(q, image)| image - q);
         Some(Steering {
             price: Jet::of(control.price, &all),
             price_of_time: self.by_time(control.price),
             bounds: control.bounds.iter().map(|bound| Jet::of(bound.value, &all)).collect(),
             weights: self.model.graph.symbol("z", count, Role::Weight, Property::General),
-            approach: self.momenta_of(leaves.map(|(leaf, image)| *image - leaf.symbol)),
+            approach: self.momenta_of(apart),
         })
     }
 
@@ -77,29 +79,26 @@ fn element<'g>(model: &Steered<'g>) -> Vec<Expr<'g>> {
             Discretization::Exponential => Chart::Exponential,
             _ => Chart::Cayley,
         };
-        let blocks = model.graph.blocks(factor.group);
-        let coordinates = blocks.iter().map(|block| {
+        let coordinates = |block: &Block| {
             let (numerator, denominator) = chart.slope_at_identity(block);
             let part = xi.block(block.offset, 0, Shape::vector(block.algebra.dimension));
             model.graph.rational(numerator, denominator) * model.step_size * part
-        });
-        chart.increment(factor.group, &coordinates.collect::<Vec<_>>())
+        };
+        let coordinates: Vec<_> = model.graph.blocks(factor.group).iter().map(coordinates).collect();
+        chart.increment(factor.group, &coordinates)
     };
     model.factors.iter().zip(velocity).map(increment).collect()
 }
 
-/// The logarithmic derivative b along a direction, an element of the Lie algebra: F⁻¹δF for a right action, δF F⁻¹ for a left one.
+/// The coordinates of the logarithmic derivative b along a direction: of F⁻¹δF for a right action, of δF F⁻¹ for a left one.
 fn logarithmic<'g>(factor: &Factor<'g>, change: Expr<'g>) -> Expr<'g> {
-    let (group, f) = (factor.group, factor.symbol);
-    match (group, factor.side) {
-        (Group::Translation(_), _) => change,
-        (_, Side::Right) => group.compose(group.inverse(f), change),
-        (_, Side::Left) => group.compose(change, group.inverse(f)),
-    }
+    if factor.group.is_translation() { change } else { factor.group.projected_coordinates(divided(factor, change)) }
 }
 
-fn coordinates<'g>(group: Group, element: Expr<'g>) -> Expr<'g> {
-    if group.is_translation() { element } else { group.projected_coordinates(element) }
+/// F⁻¹δF for a right action, δF F⁻¹ for a left one, as an element of the Lie algebra.
+fn divided<'g>(factor: &Factor<'g>, change: Expr<'g>) -> Expr<'g> {
+    let (group, inverse) = (factor.group, factor.group.inverse(factor.symbol));
+    if factor.side == Side::Right { group.compose(inverse, change) } else { group.compose(change, inverse) }
 }
 
 /// The step that inputs make, with its derivatives.
@@ -116,7 +115,7 @@ pub(super) fn step<'g>(model: &Steered<'g>, formulas: &SystemFormulas<'g>) -> In
     let parts: Vec<Factored<'g>> = model.factors.iter().enumerate().map(factored).collect();
     let column = |i: usize| {
         let of_factor = parts.iter().map(|part| {
-            let change = coordinates(part.factor.group, logarithmic(&part.factor, part.changes[i]));
+            let change = logarithmic(&part.factor, part.changes[i]);
             if i < dimension { part.moved[i] + change } else { change }
         });
         graph.below(&of_factor.collect::<Vec<_>>())
@@ -124,13 +123,11 @@ pub(super) fn step<'g>(model: &Steered<'g>, formulas: &SystemFormulas<'g>) -> In
     let second =
         |i: usize, j: usize| graph.total(Shape::scalar(), parts.iter().map(|part| part.curvature(&directions, i, j)));
     let by_time = [model.step_size, model.time].map(|symbol| {
-        graph.total(
-            Shape::scalar(),
-            parts.iter().zip(&increment).map(|(part, increment)| {
-                let change = increment.differential(&[(symbol, graph.integer(1))]);
-                part.costate.dot(coordinates(part.factor.group, logarithmic(&part.factor, change)))
-            }),
-        )
+        let slope = |(part, increment): (&Factored<'g>, &Expr<'g>)| {
+            let change = increment.differential(&[(symbol, graph.integer(1))]);
+            part.costate.dot(logarithmic(&part.factor, change))
+        };
+        graph.total(Shape::scalar(), parts.iter().zip(&increment).map(slope))
     });
     InputStep {
         by_place: (0..dimension).map(column).collect(),
@@ -156,11 +153,11 @@ impl<'g> Factored<'g> {
     fn curvature(&self, directions: &[Direction<'g>], i: usize, j: usize) -> Expr<'g> {
         let group = self.factor.group;
         let second = (self.changes[i].differential(&directions[j]) + self.changes[j].differential(&directions[i])) / 2;
-        let mut sum = coordinates(group, logarithmic(&self.factor, second));
+        let mut sum = logarithmic(&self.factor, second);
         if !group.is_translation() {
-            let [a, b] = [i, j].map(|i| logarithmic(&self.factor, self.changes[i]));
+            let [a, b] = [i, j].map(|i| divided(&self.factor, self.changes[i]));
             let product = (group.compose(a, b) + group.compose(b, a)) / 2;
-            sum = sum - coordinates(group, product) + self.bracket(i, b) + self.bracket(j, a);
+            sum = sum - group.projected_coordinates(product) + self.bracket(i, b) + self.bracket(j, a);
         }
         self.costate.dot(sum)
     }
@@ -169,7 +166,7 @@ impl<'g> Factored<'g> {
     fn bracket(&self, i: usize, b: Expr<'g>) -> Expr<'g> {
         let group = self.factor.group;
         let Some(moved) = self.moved.get(i) else { return self.costate.graph().zero(self.costate.shape()) };
-        let bracket = group.ad(*moved) * coordinates(group, b) / 2;
+        let bracket = group.ad(*moved) * group.projected_coordinates(b) / 2;
         if self.factor.side == Side::Right { bracket } else { -bracket }
     }
 }

@@ -49,19 +49,19 @@ pub(super) fn on_edge<'g>(model: &Mechanics<'g>, covector: &[Expr<'g>], divisor:
         Order::First => (model.graph.integer(0), part),
         _ => (part / 2, part / 2),
     };
-    let rest = at_zero(velocities(model).iter().copied());
+    let velocities = velocities(model);
+    let rest = at_zero(velocities.iter().copied());
     let at_rest = |f: &Expr<'g>| f.substitute(&rest);
     let moving = moving(model, part);
-    let of = |weight: Expr<'g>, f: &dyn Fn(&Expr<'g>) -> Expr<'g>| -> Vec<Expr<'g>> {
-        covector.iter().map(|component| weight * f(component)).collect()
-    };
+    let moved = |f: &Expr<'g>| f.substitute(&moving);
     let acts = |impulse: Vec<Expr<'g>>| impulse.iter().any(|part| !identity::vanishes(*part)).then_some(impulse);
-    let depends = velocities(model).iter().any(|xi| covector.iter().any(|component| component.depends_on(*xi)));
-    let start_moving = of(first, &|f| (f.substitute(&moving) - at_rest(f).substitute(&moving)).expand());
+    let depends = velocities.iter().any(|xi| covector.iter().any(|component| component.depends_on(*xi)));
+    let beyond_rest = |f: &Expr<'g>| first * (moved(f) - moved(&at_rest(f))).expand();
+    let start_moving: Vec<_> = covector.iter().map(beyond_rest).collect();
     EdgeForce {
-        start: acts(of(first, &at_rest)),
+        start: acts(covector.iter().map(|f| first * at_rest(f)).collect()),
         start_moving: if depends { acts(start_moving) } else { None },
-        end: of(last, &|f| f.substitute(&moving)),
+        end: covector.iter().map(|f| last * moved(f)).collect(),
     }
 }
 

@@ -3,21 +3,20 @@
 use clebsch_symbolic::{Expr, Group};
 
 use super::{SystemFormulas, cayley};
-use crate::model::Factor;
 
 impl<'g> SystemFormulas<'g> {
     /// The replacement of each group element by I + D (D for translations), and of its inverse by that of I + D.
     pub(super) fn increments(&self) -> Vec<(Expr<'g>, Expr<'g>)> {
-        let symbols = &self.symbols;
-        let factors = self.model.factors.iter().zip(symbols.increments.iter().zip(&symbols.logarithms));
-        let element = |(factor, (increment, y)): (&Factor<'g>, (&Expr<'g>, &Expr<'g>))| {
-            let element = from_increment(factor.group, *increment);
-            let logarithm = (*y, factor.group.logarithm(element));
-            inverse_by(factor.group, factor.symbol, element).into_iter().chain([logarithm, (factor.symbol, element)])
-        };
-        let coordinates = symbols.increments.iter().enumerate();
-        let coordinates = coordinates.filter_map(|(k, d)| cayley::of_increment(&self.model, k, *d));
-        factors.flat_map(element).chain(coordinates).collect()
+        let mut replacements = Vec::new();
+        for (k, factor) in self.model.factors.iter().enumerate() {
+            let element = from_increment(factor.group, self.symbols.increments[k]);
+            let logarithm = (self.symbols.logarithms[k], factor.group.logarithm(element));
+            replacements.extend(inverse_by(factor.group, factor.symbol, element));
+            replacements.extend([logarithm, (factor.symbol, element)]);
+        }
+        let increments = self.symbols.increments.iter().enumerate();
+        replacements.extend(increments.filter_map(|(k, d)| cayley::of_increment(&self.model, k, *d)));
+        replacements
     }
 
     /// Expressions with I + D put in for F, products distributed.

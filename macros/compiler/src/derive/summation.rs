@@ -24,18 +24,18 @@ impl<'g> MechanicsFormulas<'g> {
 
     /// Φ_{I+D}(q) − q for each leaf of the configuration.
     pub(super) fn displacements(&self) -> Vec<Expr<'g>> {
-        let (inverses, added) = (self.inverses(), self.displacements_by_letters());
-        added.into_iter().map(|added| added.substitute(&inverses)).collect()
+        let inverses = self.inverses();
+        self.displacements_by_letters().into_iter().map(|added| added.substitute(&inverses)).collect()
     }
 
     /// What the move adds to the momentum M, for each factor; `None` where it adds nothing.
     pub(super) fn momentum_increments(&self, substep: &Substep<'g>) -> Option<Vec<Expr<'g>>> {
-        let (inverses, momenta) = (self.inverses(), self.symbols.momenta.iter().zip(&substep.unchanged).enumerate());
-        let added = |(k, (m, unchanged)): (usize, (&Expr<'g>, &bool))| {
+        let inverses = self.inverses();
+        let added = |(k, m): (usize, &Expr<'g>)| {
             let change = || self.beside(self.carried(k, *m), *m).substitute(&inverses);
-            if *unchanged { self.model.graph.zero(m.shape()) } else { change() }
+            if substep.unchanged[k] { self.model.graph.zero(m.shape()) } else { change() }
         };
-        substep.unchanged.contains(&false).then(|| momenta.map(added).collect())
+        substep.unchanged.contains(&false).then(|| self.symbols.momenta.iter().enumerate().map(added).collect())
     }
 
     /// Whether the move leaves the momentum as it is.
@@ -46,14 +46,13 @@ impl<'g> MechanicsFormulas<'g> {
 
     /// M⁺ = Ad*_{F⁻¹} M for a left action, Ad*_F M for a right one, of M = μ + r(I) for each factor; `None` where it is μ.
     pub(super) fn carried_on(&self, substep: &Substep<'g>) -> Option<Vec<Expr<'g>>> {
-        if substep.unchanged.iter().all(|unchanged| *unchanged) && substep.rest.is_none() {
-            return None;
-        }
-        // what is solved for is M − r(I)
-        let momenta = self.symbols.momenta.iter().enumerate();
-        let momenta = momenta.map(|(k, mu)| substep.rest.as_ref().map_or(*mu, |rest| *mu - rest[k]));
-        let carried = momenta.enumerate().map(|(k, m)| if substep.unchanged[k] { m } else { self.carried(k, m) });
-        Some(carried.collect())
+        let carried = |(k, mu): (usize, &Expr<'g>)| {
+            // what is solved for is M − r(I)
+            let m = substep.rest.as_ref().map_or(*mu, |rest| *mu - rest[k]);
+            if substep.unchanged[k] { m } else { self.carried(k, m) }
+        };
+        let changes = substep.unchanged.contains(&false) || substep.rest.is_some();
+        changes.then(|| self.symbols.momenta.iter().enumerate().map(carried).collect())
     }
 
     /// Φ_{I+D}(q) − q, where letters stand for F⁻¹.
@@ -69,13 +68,8 @@ impl<'g> MechanicsFormulas<'g> {
         for (k, factor) in self.model.factors.iter().enumerate().filter(|(_, factor)| has_letter(factor)) {
             let written = factor.group.identity(self.model.graph) - self.symbols.increments[k] * self.inverse_letter(k);
             let (inverse, transposed) = (factor.symbol.inverse(), factor.symbol.transpose().inverse());
-            for (letter, replacement) in &mut near {
-                match *letter {
-                    letter if letter == inverse => *replacement = written,
-                    letter if letter == transposed => *replacement = written.transpose(),
-                    _ => {}
-                }
-            }
+            near.retain(|(letter, _)| *letter != inverse && *letter != transposed);
+            near.extend([(inverse, written), (transposed, written.transpose())]);
         }
         (moved.substitute(&near).expand() - from).expand()
     }
@@ -115,8 +109,8 @@ pub(super) fn check(formulas: &MechanicsFormulas<'_>) -> Result<(), Diagnostics>
         Feature::OtherSum => {
             // Ad*_F M = Fᵀ M F⁻ᵀ always does: M cancels with F = I + D and F⁻¹ = I − D S
             let near = formulas.symbols.increments.as_slice();
-            let leaves = formulas.model.configurations.iter().zip(formulas.displacements_by_letters());
-            let (leaf, _) = leaves.into_iter().find(|(leaf, added)| !cancels(*added, leaf.symbol, near))?;
+            let mut leaves = formulas.model.configurations.iter().zip(formulas.displacements_by_letters());
+            let (leaf, _) = leaves.find(|(leaf, added)| !cancels(*added, leaf.symbol, near))?;
             Some(Found::somewhere().named(&leaf.name))
         }
         _ => None,
@@ -126,11 +120,7 @@ pub(super) fn check(formulas: &MechanicsFormulas<'_>) -> Result<(), Diagnostics>
 /// Whether `from` is in no term without D, or cancels in their sum.
 fn cancels<'g>(added: Expr<'g>, from: Expr<'g>, increments: &[Expr<'g>]) -> bool {
     let graph = added.graph();
-    let term = |term: WordTerm<'g>| -> Expr<'g> {
-        let word = term.word.iter().copied().reduce(|product, letter| product * letter);
-        let scale = term.scale(graph);
-        word.map_or(scale, |word| scale * word)
-    };
+    let term = |term: WordTerm<'g>| term.word.iter().fold(term.scale(graph), |product, letter| product * *letter);
     let terms = added.word_terms().into_iter().map(term);
     let left = terms.filter(|term| !increments.iter().any(|d| term.depends_on(*d)));
     let left = graph.total(added.shape(), left);

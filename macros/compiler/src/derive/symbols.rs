@@ -1,6 +1,6 @@
 //! The symbols of the derivation: covectors, momenta, algebra elements, chart coordinates, increments.
 
-use clebsch_symbolic::{Chart, Expr, Graph, Property, Role, Shape};
+use clebsch_symbolic::{Block, Chart, Expr, Graph, Property, Role, Shape};
 
 use crate::model::{ChartChoice, Configuration, Discretization, Factor, System};
 
@@ -182,7 +182,7 @@ pub(super) fn of_columns<'g>(graph: &'g Graph, columns: &[Vec<Expr<'g>>]) -> Exp
 
 /// The entries of vectors, one after the other.
 pub(super) fn entries<'g>(vectors: &[Expr<'g>]) -> Vec<Expr<'g>> {
-    vectors.iter().flat_map(|vector| (0..vector.shape().rows).map(|i| vector.entry(i, 0))).collect()
+    vectors.iter().flat_map(|vector| vector.entries()).collect()
 }
 
 /// The replacement of symbols by zero.
@@ -220,30 +220,29 @@ fn chart(model: &System<'_>, factor: &Factor<'_>, discretization: Option<Discret
 /// The chart coordinates and their directions, numbered through all factors.
 fn blocks<'g>(model: &System<'g>, letters: [&'static str; 2]) -> Vec<ChartBlock<'g>> {
     let graph = model.graph;
-    let of_factor = |(factor, data): (usize, &Factor<'g>)| {
-        let blocks = graph.blocks(data.group);
-        (0..blocks.len()).map(move |block| (factor, block, blocks[block].algebra.dimension))
-    };
-    let places: Vec<_> = model.factors.iter().enumerate().flat_map(of_factor).collect();
-    let mut end = 0;
-    let block = |(index, &(factor, block, size)): (usize, &(usize, usize, usize))| {
-        let symbol = |letter: &str, role: Role| {
-            graph.symbol(&subscripted(letter, index, places.len()), Shape::vector(size), role, Property::General)
-        };
-        let coordinates = symbol(letters[0], Role::Chart(index));
-        let direction = symbol(letters[1], Role::Direction(index));
-        end += size;
-        ChartBlock { factor, block, offset: end - size, coordinates, direction }
-    };
-    places.iter().enumerate().map(block).collect()
+    let count: usize = model.factors.iter().map(|factor| graph.blocks(factor.group).len()).sum();
+    let (mut made, mut offset) = (Vec::new(), 0);
+    for (factor, data) in model.factors.iter().enumerate() {
+        for (block, Block { algebra, .. }) in graph.blocks(data.group).iter().enumerate() {
+            let shape = Shape::vector(algebra.dimension);
+            let symbol = |letter: &str, role: Role| {
+                graph.symbol(&subscripted(letter, made.len(), count), shape, role, Property::General)
+            };
+            let coordinates = symbol(letters[0], Role::Chart(made.len()));
+            let direction = symbol(letters[1], Role::Direction(made.len()));
+            made.push(ChartBlock { factor, block, offset, coordinates, direction });
+            offset += algebra.dimension;
+        }
+    }
+    made
 }
 
 /// The first letters of the user's own names, which the derivation does not take.
 fn taken(model: &System<'_>) -> Vec<String> {
-    let base = |name: &str| name.split('[').next().unwrap_or(name).to_string();
-    let leaves = model.configurations.iter().map(|leaf| base(&leaf.name));
-    let factors = model.factors.iter().map(|factor| base(&factor.name));
-    leaves.chain(factors).chain(model.parameters.iter().map(|parameter| parameter.name.clone())).collect()
+    let leaves = model.configurations.iter().map(|leaf| &leaf.name);
+    let factors = model.factors.iter().map(|factor| &factor.name);
+    let variables = leaves.chain(factors).map(|name| name.split('[').next().unwrap_or(name).to_string());
+    variables.chain(model.parameters.iter().map(|parameter| parameter.name.clone())).collect()
 }
 
 /// The first letter that the user has not taken; the last one if all are.
