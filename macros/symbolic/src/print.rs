@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use num_traits::One;
+use num_traits::{One, Signed};
 
 use crate::node::{Analytic, Exponent, ExprNode, Function, Id, Operation, Term};
 use crate::{Expr, Graph, Rational, Shape, work};
@@ -222,15 +222,15 @@ impl Printer<'_> {
     }
 
     fn scalar_power(&self, base: Id, exponent: Exponent) -> String {
-        if exponent.parts() == (1, 2) {
+        if exponent.into_raw() == (1, 2) {
             return self.enclosed(&self.print(base, Binding::Sum), ["√(", ")"], ["\\sqrt{", "}"]);
         }
         if exponent.is_one() {
             return self.print(base, Binding::Product);
         }
-        let in_unicode = match exponent.as_integer() {
-            Some(whole) => in_digits(whole, "⁻⁰¹²³⁴⁵⁶⁷⁸⁹"),
-            None => format!("^({exponent})"),
+        let in_unicode = match exponent.into_raw() {
+            (whole, 1) => in_digits(whole, "⁻⁰¹²³⁴⁵⁶⁷⁸⁹"),
+            _ => format!("^({exponent})"),
         };
         self.raised(base, &in_unicode, &exponent.to_string())
     }

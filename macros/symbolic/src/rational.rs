@@ -13,8 +13,10 @@ pub use num_rational::Ratio;
 pub use num_traits::{CheckedAdd, CheckedMul, One, Zero};
 use num_traits::{Pow, Signed, ToPrimitive};
 
-use crate::fraction::Fraction;
 use crate::work;
+
+/// Fractions of machine words: exponents, and the coefficients that fit. Their numerators have a negative.
+pub type Fraction = Ratio<i64>;
 
 /// A rational number of any size.
 #[derive(Clone, PartialEq, Eq, Hash, Debug)]
@@ -29,15 +31,15 @@ enum Size {
 
 /// The rational `numerator / denominator`; the denominator is not zero.
 pub fn rational(numerator: i64, denominator: i64) -> Rational {
-    Rational::new(numerator.into(), denominator.into())
+    match (numerator, denominator) {
+        (i64::MIN, _) | (_, i64::MIN) => Rational::new(numerator.into(), denominator.into()),
+        _ => Rational::short(Ratio::new(numerator, denominator)),
+    }
 }
 
 /// The rational that equals an integer.
 pub fn integer(value: i64) -> Rational {
-    match value {
-        i64::MIN => Rational::from(BigRational::from_integer(value.into())),
-        _ => Rational::short(Fraction::integer(value)),
-    }
+    rational(value, 1)
 }
 
 /// a·b. Most coefficients are ±1, and a product with one costs nothing.
@@ -52,10 +54,7 @@ pub fn product(a: &Rational, b: &Rational) -> Rational {
 impl Rational {
     /// The rational `numerator / denominator`; the denominator is not zero.
     pub fn new(numerator: i128, denominator: i128) -> Rational {
-        match Fraction::reduced(numerator, denominator) {
-            Some(fraction) => Rational::short(fraction),
-            None => Rational::from(BigRational::new(numerator.into(), denominator.into())),
-        }
+        Rational::from(BigRational::new(numerator.into(), denominator.into()))
     }
 
     pub(crate) fn short(fraction: Fraction) -> Rational {
@@ -72,14 +71,14 @@ impl Rational {
 
     fn long(&self) -> BigRational {
         match &self.0 {
-            Size::Short(fraction) => BigRational::new_raw(fraction.numerator.into(), fraction.denominator.into()),
+            Size::Short(fraction) => BigRational::new_raw((*fraction.numer()).into(), (*fraction.denom()).into()),
             Size::Long(value) => (**value).clone(),
         }
     }
 
     /// Numerator and denominator, if they are machine words.
     pub fn parts(&self) -> Option<(i64, i64)> {
-        self.as_fraction().map(Fraction::parts)
+        self.as_fraction().map(Fraction::into_raw)
     }
 
     /// The machine words that it takes beside one for each part.
@@ -117,15 +116,14 @@ impl Rational {
 
     /// 1/a of a number that is not zero.
     pub fn recip(&self) -> Rational {
-        match self.as_fraction().and_then(Fraction::reciprocal) {
-            Some(fraction) => Rational::short(fraction),
-            None => Rational::from(self.long().recip()),
-        }
+        self.as_fraction()
+            .map_or_else(|| Rational::from(self.long().recip()), |fraction| Rational::short(fraction.recip()))
     }
 
     /// The largest integer that is not above it.
     pub fn floor(&self) -> Rational {
-        self.as_fraction().map_or_else(|| Rational::from(self.long().floor()), |fraction| integer(fraction.floor()))
+        self.as_fraction()
+            .map_or_else(|| Rational::from(self.long().floor()), |fraction| Rational::short(fraction.floor()))
     }
 
     /// aⁿ; a is not zero where n is negative.
@@ -145,10 +143,11 @@ impl Rational {
 
 impl From<BigRational> for Rational {
     fn from(value: BigRational) -> Rational {
-        let parts = value.numer().to_i128().zip(value.denom().to_i128());
-        match parts.and_then(|(numerator, denominator)| Fraction::reduced(numerator, denominator)) {
-            Some(fraction) => Rational::short(fraction),
-            None => {
+        match value.numer().to_i64().zip(value.denom().to_i64()) {
+            Some((numerator, denominator)) if numerator != i64::MIN => {
+                Rational::short(Ratio::new_raw(numerator, denominator))
+            }
+            _ => {
                 let value = Rational(Size::Long(Box::new(value)));
                 // digits meet digits in products and in lowest terms
                 work::spend(1 + value.digits() * value.digits() / 8);
@@ -160,19 +159,19 @@ impl From<BigRational> for Rational {
 
 impl Zero for Rational {
     fn zero() -> Rational {
-        Rational::short(Fraction::ZERO)
+        Rational::short(Ratio::ZERO)
     }
     fn is_zero(&self) -> bool {
-        self.as_fraction().is_some_and(Fraction::is_zero)
+        self.as_fraction().is_some_and(|fraction| fraction.is_zero())
     }
 }
 
 impl One for Rational {
     fn one() -> Rational {
-        Rational::short(Fraction::ONE)
+        Rational::short(Ratio::ONE)
     }
     fn is_one(&self) -> bool {
-        self.as_fraction().is_some_and(Fraction::is_one)
+        self.as_fraction().is_some_and(|fraction| fraction.is_one())
     }
 }
 
@@ -234,7 +233,8 @@ macro_rules! checked {
         impl $operator for &Rational {
             type Output = Rational;
             fn $function(self, other: &Rational) -> Rational {
-                let short = self.as_fraction().zip(other.as_fraction()).and_then(|(a, b)| a.$checked(b));
+                let short = self.as_fraction().zip(other.as_fraction()).and_then(|(a, b)| a.$checked(&b));
+                let short = short.filter(|fraction| *fraction.numer() != i64::MIN);
                 short.map_or_else(|| Rational::from(self.long().$function(other.long())), Rational::short)
             }
         }

@@ -1,6 +1,6 @@
 //! Rewriting an expression from its leaves: substitution, expansion, dependence.
 
-use num_traits::{One, Zero};
+use num_traits::{One, Signed, Zero};
 
 use crate::memory::{self, Images, Map};
 use crate::node::{Exponent, ExprNode, Id, Operation, Term};
@@ -75,7 +75,7 @@ impl<'g> Expr<'g> {
         let is_function = |node: &ExprNode| {
             matches!(node, ExprNode::Of(Operation::Function(_) | Operation::Analytic(_), _) | ExprNode::Opaque(..))
         };
-        self.has(is_function) || self.has_factor(|_, exponent| exponent.as_integer().is_none())
+        self.has(is_function) || self.has_factor(|_, exponent| !exponent.is_integer())
     }
 
     /// Whether no functions, roots or irrational numbers occur.
@@ -188,8 +188,8 @@ impl Graph {
     /// Positive integer powers are multiplied out. The base of any other power stays as it was written: |x − y|² under a root
     /// must not become x² − 2xy + y², which cancels.
     fn expanded_power<'g>(&'g self, base: Expr<'g>, expanded: Expr<'g>, exponent: Exponent) -> Expr<'g> {
-        match exponent.as_integer() {
-            Some(count) if (0..=16).contains(&count) => {
+        match exponent.into_raw() {
+            (count @ 0..=16, 1) => {
                 (0..count).fold(self.integer(1), |power, _| self.distribute(power, expanded, Shape::scalar()))
             }
             _ => base.power(Rational::short(exponent)),

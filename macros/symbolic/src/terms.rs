@@ -30,7 +30,7 @@ impl Term {
             match self.scalars.binary_search_by_key(&base, |&(id, _)| id) {
                 Err(position) => self.scalars.insert(position, (base, exponent)),
                 Ok(position) => {
-                    self.scalars[position].1 = self.scalars[position].1 + exponent;
+                    self.scalars[position].1 += exponent;
                     if self.scalars[position].1.is_zero() {
                         self.scalars.remove(position);
                     }

@@ -183,7 +183,7 @@ impl<'g> Lowering<'_> {
         let mut groups: BTreeMap<Key<'g>, Vec<Grid>> = BTreeMap::new();
         let mut grids = Vec::new();
         for term in terms {
-            let scalars: Vec<_> = term.scalars.iter().map(|(base, exponent)| (*base, exponent.parts())).collect();
+            let scalars: Vec<_> = term.scalars.iter().map(|(base, exponent)| (*base, exponent.into_raw())).collect();
             if !term.word.is_empty() && !term.word.iter().any(|letter| self.is_constant(*letter)) {
                 let product = self.word(&term.word);
                 let scale = self.monomial(&term.coefficient, &scalars);

@@ -276,7 +276,7 @@ impl Matrices {
 
     fn powers(&mut self, scalars: &[(Expr<'_>, Fraction)]) -> Vec<Code> {
         let power = |(base, exponent): &(Expr<'_>, Fraction)| {
-            let (numerator, denominator) = exponent.parts();
+            let (numerator, denominator) = exponent.into_raw();
             let base = self.value(*base);
             let power = match (numerator.unsigned_abs() as usize, denominator) {
                 (1, 1) => base,
