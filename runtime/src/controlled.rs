@@ -64,7 +64,7 @@ pub trait Controlled<const D: usize, const U: usize, const C: usize>: Sized {
     /// x⁺ = f(t, h, x, u)
     ///
     /// # Errors
-    /// Those of a step.
+    /// Those of a step, as in [`expand`](Self::expand) and [`price_of_time`](Self::price_of_time).
     fn follow(
         &self,
         constants: &Self::Constants,
@@ -83,9 +83,6 @@ pub trait Controlled<const D: usize, const U: usize, const C: usize>: Sized {
     ) -> Self::Scalar;
 
     /// The step with its derivatives, and the second derivatives of ℓ + λ·f, λ the costate at x⁺.
-    ///
-    /// # Errors
-    /// Those of a step.
     fn expand(
         &self,
         constants: &Self::Constants,
@@ -96,9 +93,6 @@ pub trait Controlled<const D: usize, const U: usize, const C: usize>: Sized {
     ) -> Result<Expansion<Self::Place, Self::Scalar, D, U>, Error>;
 
     /// d/dh (ℓ + λ·f) for a step that starts at the time t = t₀ + kh, which moves with h.
-    ///
-    /// # Errors
-    /// Those of a step.
     fn price_of_time(
         &self,
         constants: &Self::Constants,

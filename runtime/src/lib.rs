@@ -73,25 +73,9 @@
 //!
 //! # Where dials end
 //!
-//! ω is the velocity J⁻¹π of a body, the frequency that of small oscillations. Beyond its end a step is [`Error::Unsolvable`], which gives the longest one,
-//! unless the table says otherwise; `docs/extremes.md` of the repository shows them measured, with needles, singular potentials and long runs.
-//!
-//! | dial | ends at |
-//! |---|---|
-//! | `discretization = moser_veselov`, and costs by (F − I) | h\|ω\| = 1 about a principal axis, a little more about others |
-//! | `discretization = cayley` | nowhere; a step turns by less than π, and is of no use beyond h\|ω\| = 1 |
-//! | `discretization = exponential` | h\|ω\| = π, where log F becomes another; it goes on beyond, to be refused or not |
-//! | `discretization = projection` | h\|ω\| = ½ about a principal axis, from 0.27 on about others; needles of a ratio of a million |
-//! | `discretization = exact` | h\|π\|/J of the least moment of inertia at 10⁷ in `f64`, at a thousand in `f32`; no longest step is given beside a potential |
-//! | `order = 16` | h\|ω\| of 0.9 to 2.9, and h·frequency = 5.56: sweeps do not contract, [`Error::NotConverged`] |
-//! | `order = 1` and `2` | h·frequency = 2: energies grow without an error |
-//! | `order = 4`, `6` and `8` | h·frequency = 3.09 to 3.14, likewise |
-//! | `force`, and potentials in a cost | where they turn the sign of the equation round: h·gain = 2m, h²·(slope of a hill) = 4m at the midpoint |
-//! | `solver = fixed_point` | h\|ω\| of 0.6 to 0.8, where corrections no longer shrink to a quarter: Newton's method takes over |
-//! | `iterations` | steps that need more of them: [`Error::NotConverged`] |
-//! | `tolerance` | nowhere; each step misses its equation by that part of the momenta, and energies drift |
-//! | `summation = compensated` | as without: ten times less rounding in long runs, and no more |
-//! | `chart` | where the discretization does; the macro refuses one in which the equation has poles |
+//! Every dial has an end, such as h|ω| = 1 for `discretization = moser_veselov`, or h·frequency = 2 for order 2. Beyond it a step is
+//! [`Error::Unsolvable`], which gives the longest one, or sweeps do not contract, or energies grow. `docs/extremes.md` of the repository has the table
+//! of all dials, measured, with needles, singular potentials and long runs.
 //!
 //! A step ends after at most 12 linearisations by Newton's method (with `solver = fixed_point` 32 residuals before them), and where these do not decide
 //! after [`implicit::LINEARIZATIONS`] more along the path from the identity, whose last point may take four more, or 64 sweeps with `order = 16`.

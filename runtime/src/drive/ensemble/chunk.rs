@@ -22,7 +22,6 @@ pub struct Chunk<X> {
 /// A body that stays where it is.
 #[derive(Debug)]
 struct Failed<X> {
-    lane: usize,
     failure: Failure,
     /// The last state that it reached, in its lane.
     state: X,
@@ -70,7 +69,7 @@ impl<S: Clebsch, M: Method<S>> Chunk<State<S, M>> {
                 // by construction: the step has failed in this lane
                 let error = stepper.failure(&self.state, lane).unwrap_or(Error::InLane { lane });
                 let failure = Failure { body: self.first + lane, step, error };
-                self.failed.push(Failed { lane, failure, state: self.state });
+                self.failed.push(Failed { failure, state: self.state });
                 self.live &= !(1 << lane);
             }
             let undefined = Held::<S, M>::filled(S::Scalar::zero() / S::Scalar::zero());
@@ -82,13 +81,16 @@ impl<S: Clebsch, M: Method<S>> Chunk<State<S, M>> {
 
     /// The state that has, in this lane, the last that the body reached.
     pub fn state_of(&self, lane: usize) -> &State<S, M> {
-        self.failed.iter().find(|failed| failed.lane == lane).map_or(&self.state, |failed| &failed.state)
+        self.failed
+            .iter()
+            .find(|failed| failed.failure.body == self.first + lane)
+            .map_or(&self.state, |failed| &failed.state)
     }
 
     /// Puts a body into a lane, at the present time.
     pub fn put(&mut self, lane: usize, mut state: State<S, M>) {
         state.time = self.state.time;
-        self.failed.retain(|failed| failed.lane != lane);
+        self.failed.retain(|failed| failed.failure.body != self.first + lane);
         self.live |= 1 << lane;
         self.state.take_lane(lane, &state);
     }

@@ -1,6 +1,6 @@
 //! The end of the path: s = 1 or the end of the branch, whichever comes first, lies between two points.
 
-use super::point::{Homotopy, Parameter, PathPoint};
+use super::point::{Homotopy, PathPoint};
 use crate::implicit::Equation;
 use crate::{Error, Real};
 use nalgebra::SVector;
@@ -13,7 +13,7 @@ pub(super) fn decide<T: Real, E: Equation<T, M, N>, const M: usize, const N: usi
     homotopy: &mut Homotopy<'_, T, E, M, N>,
     mut before: PathPoint<T, M>,
     mut after: PathPoint<T, M>,
-    parameter: Parameter,
+    parameter: usize,
 ) -> Result<SVector<T, M>, Error> {
     let half = T::from_ratio(1, 2);
     let round_off = T::from_f64(4.0) * T::EPSILON;
@@ -23,7 +23,7 @@ pub(super) fn decide<T: Real, E: Equation<T, M, N>, const M: usize, const N: usi
             return Ok(before.xi);
         }
         // Lengths are along the tangent at `before`.
-        let width = (parameter.of(&after) - parameter.of(&before)) / parameter.slope(&before);
+        let width = (after.value(parameter) - before.value(parameter)) / before.slope(parameter);
         let rise = width * before.slope_s;
         if after.s < T::one() && rise <= T::from_ratio(1, 1000) * before.s && before.s + rise < T::one() {
             return Err(Error::unsolvable(before.s + rise * half));
@@ -51,29 +51,24 @@ pub(super) fn decide<T: Real, E: Equation<T, M, N>, const M: usize, const N: usi
 }
 
 /// Where to look next: where the tangent reaches s = 1, else where the slope of s vanishes if it is linear between the ends.
-fn guess<T: Real, const M: usize>(
-    before: &PathPoint<T, M>,
-    after: &PathPoint<T, M>,
-    parameter: Parameter,
-    width: T,
-) -> T {
+fn guess<T: Real, const M: usize>(before: &PathPoint<T, M>, after: &PathPoint<T, M>, parameter: usize, width: T) -> T {
     let length = if after.s >= T::one() {
         (T::one() - before.s) / before.slope_s
     } else {
-        let (first, last) = (before.slope_s / parameter.slope(before), after.slope_s / parameter.slope(after));
+        let (first, last) = (before.slope_s / before.slope(parameter), after.slope_s / after.slope(parameter));
         width * first / (first - last)
     };
     if length > T::zero() && length < width { length } else { width * T::from_ratio(1, 2) }
 }
 
-impl Parameter {
-    /// The value of the parameter at a point.
-    fn of<T: Real, const M: usize>(self, point: &PathPoint<T, M>) -> T {
-        point.xi.as_slice().get(self.0).copied().unwrap_or(point.s)
+impl<T: Real, const M: usize> PathPoint<T, M> {
+    /// The value of an unknown.
+    fn value(&self, parameter: usize) -> T {
+        self.xi.as_slice().get(parameter).copied().unwrap_or(self.s)
     }
 
     /// Its change along the tangent.
-    fn slope<T: Real, const M: usize>(self, point: &PathPoint<T, M>) -> T {
-        point.slope_xi.as_slice().get(self.0).copied().unwrap_or(point.slope_s)
+    fn slope(&self, parameter: usize) -> T {
+        self.slope_xi.as_slice().get(parameter).copied().unwrap_or(self.slope_s)
     }
 }

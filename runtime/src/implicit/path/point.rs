@@ -17,10 +17,6 @@ pub(super) struct PathPoint<T: Real, const M: usize> {
     pub is_past: bool,
 }
 
-/// Which of the unknowns is held fixed: number j of ξ, or s itself for j = M.
-#[derive(Clone, Copy)]
-pub(super) struct Parameter(pub usize);
-
 /// The equation ρ(ξ; sμ) = 0 in the M + 1 unknowns (ξ, s).
 pub(super) struct Homotopy<'a, T: Real, E: Equation<T, M, N>, const M: usize, const N: usize> {
     pub equation: &'a E,
@@ -101,8 +97,8 @@ impl<'a, T: Real, E: Equation<T, M, N>, const M: usize, const N: usize> Homotopy
         size(xi) / self.scale + s.abs()
     }
 
-    /// The unknown that changes fastest along the path.
-    pub fn fastest(&self, point: &PathPoint<T, M>) -> Parameter {
+    /// The unknown that changes fastest along the path: the number of one of ξ, or M for s.
+    pub fn fastest(&self, point: &PathPoint<T, M>) -> usize {
         let mut fastest = (M, point.slope_s.abs());
         for (j, slope) in point.slope_xi.iter().enumerate() {
             let speed = slope.abs() / self.scale;
@@ -110,13 +106,13 @@ impl<'a, T: Real, E: Equation<T, M, N>, const M: usize, const N: usize> Homotopy
                 fastest = (j, speed);
             }
         }
-        Parameter(fastest.0)
+        fastest.0
     }
 
     /// The point at `length` along the tangent, brought back to the path with `parameter` held fixed.
     ///
     /// `None` if Newton's method does not contract cleanly or the path turns by too much for this length.
-    pub fn step(&mut self, from: &PathPoint<T, M>, parameter: Parameter, length: T) -> Option<PathPoint<T, M>> {
+    pub fn step(&mut self, from: &PathPoint<T, M>, parameter: usize, length: T) -> Option<PathPoint<T, M>> {
         let (mut xi, mut s) = (from.xi + from.slope_xi * length, from.s + from.slope_s * length);
         let half = T::from_ratio(1, 2);
         let (mut before, mut residual_before) = (length * half, SVector::from_element(T::zero()));
@@ -128,7 +124,7 @@ impl<'a, T: Real, E: Equation<T, M, N>, const M: usize, const N: usize> Homotopy
             xi -= correction;
             s -= change;
             // Only the unknowns that move count: a path that saturates has ξ far below its scale.
-            let moving = if parameter.0 < M { s } else { T::zero() };
+            let moving = if parameter < M { s } else { T::zero() };
             let (now, seen) = (self.distance(&correction, change), T::EPSILON * self.distance(&xi, moving));
             let ratio = now / before;
             // The first is compared with the length of the step, from which the next correction cannot be told.
@@ -149,16 +145,10 @@ impl<'a, T: Real, E: Equation<T, M, N>, const M: usize, const N: usize> Homotopy
     }
 
     /// The tangent at a point of the path, and on which side of the end of the branch the point is.
-    fn arrive(
-        &mut self,
-        xi: SVector<T, M>,
-        s: T,
-        parameter: Parameter,
-        from: &PathPoint<T, M>,
-    ) -> Option<PathPoint<T, M>> {
+    fn arrive(&mut self, xi: SVector<T, M>, s: T, parameter: usize, from: &PathPoint<T, M>) -> Option<PathPoint<T, M>> {
         let at = self.linearize(&xi, s);
         // the derivatives by the parameter
-        let fixed = if parameter.0 < M { at.jacobian.column(parameter.0) } else { at.rate };
+        let fixed = if parameter < M { at.jacobian.column(parameter) } else { at.rate };
         let (mut slope_xi, mut slope_s) = at.solve(parameter, &-fixed, T::one())?;
         let along = (slope_xi / self.scale).dot(&(from.slope_xi / self.scale)) + slope_s * from.slope_s;
         let speed = larger(slope_s.abs(), slope_xi.max_abs() / self.scale);
@@ -188,11 +178,11 @@ impl<'a, T: Real, E: Equation<T, M, N>, const M: usize, const N: usize> Homotopy
 
 impl<T: Real, J: Jacobian<T, M>, const M: usize> Linearization<T, J, M> {
     /// Solves \[Dρ ∂ρ/∂s\] (ξ, s) = `right` without the column of the parameter, which gets `fixed`.
-    fn solve(&self, parameter: Parameter, right: &SVector<T, M>, fixed: T) -> Option<(SVector<T, M>, T)> {
-        let exchanged = (parameter.0 < M).then_some((parameter.0, &self.rate));
+    fn solve(&self, parameter: usize, right: &SVector<T, M>, fixed: T) -> Option<(SVector<T, M>, T)> {
+        let exchanged = (parameter < M).then_some((parameter, &self.rate));
         let (mut xi, _) = self.jacobian.solve_exchanged(exchanged, right)?;
         let mut s = fixed;
-        if let Some(unknown) = xi.get_mut(parameter.0) {
+        if let Some(unknown) = xi.get_mut(parameter) {
             core::mem::swap(&mut s, unknown);
         }
         Some((xi, s))
