@@ -12,9 +12,8 @@ use nalgebra::{SMatrix, SVector};
 
 type Columns<T> = [[T; 3]; 3];
 
-/// x of A x = b with 3 or 6 unknowns, the sign of det A, and the lanes in which both are safe: A is regular, finite, and not too ill-conditioned.
-///
-/// Accuracy: the relative error of x in the norm in which the columns of A have the length 1 is below 2¹⁶ ε.
+/// x of A x = b with 3 or 6 unknowns, the sign of det A, and the lanes in which both are safe: A is regular, finite, and not too
+/// ill-conditioned. Accuracy: the relative error of x in the norm in which the columns of A have the length 1 is below 2¹⁶ ε.
 #[inline(always)]
 pub(crate) fn solve<T: Scalar, const M: usize>(
     a: &SMatrix<T, M, M>,

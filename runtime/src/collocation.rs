@@ -86,9 +86,8 @@ impl<const H: usize> Gauss<H> {
 
 /// y⁺ − y of a step of the size h that starts at the time t in y = (q, p), N numbers, q first. Of the S = 2H stages the second half are mirrored.
 ///
-/// `guess` is a place near that after a part of the step, `slope` is (q′, p′) at a time and a place. Sweeps end where they change the step by less than
-/// `tolerance`, relative to q and to p, or where rounding is all that changes, and after `most` at the latest: ended one sweep earlier, by the rate of the last two, they leave energies that drift
-/// ten times as fast.
+/// `guess` is a place near that after a part of the step, `slope` is (q′, p′) at a time and a place. Sweeps end where they change q and p by less than
+/// `tolerance` of them, where only rounding changes them, or after `most`. Ended one sweep earlier, energies would drift ten times as fast.
 ///
 /// # Errors
 /// [`Error::NotFinite`] where a slope is not, [`Error::NotConverged`] where sweeps do not contract: the step is too long. With several lanes these

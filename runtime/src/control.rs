@@ -3,8 +3,7 @@
 //! ```text
 //! minimise Σ ℓ(t_k, h, x_k, u_k) + φ(t_N, x_N)   subject to   x_{k+1} = f(t_k, h, x_k, u_k),   a(t_k, x_k, u_k) ≤ 0,   x_N = target
 //! ```
-//! The unknowns are the inputs, from which places follow. Newton's method for them is a Riccati sweep backward, with exact second
-//! derivatives on the manifold, and a roll-out forward, which the gains of the sweep keep stable.
+//! The unknowns are the inputs. Newton's method is a Riccati sweep backward, with exact second derivatives on the manifold, and a roll-out forward.
 
 mod attempt;
 mod barrier;

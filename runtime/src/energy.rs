@@ -22,9 +22,8 @@ pub fn kinetic_energy_uniform<T: Scalar, const M: usize>(inverse: &T, mu: &SVect
     mu.dot(&(mu * *inverse)) * T::from_ratio(1, 2)
 }
 
-/// ½ μ·Σ⁻¹μ of an inertia that depends on the configuration; +∞ where Σ is singular, for there μ determines no velocity.
-///
-/// 0 for μ = 0, whatever Σ is; else NaN where Σ or μ is not finite.
+/// ½ μ·Σ⁻¹μ of an inertia that depends on the configuration; +∞ where Σ is singular, for there μ determines no velocity. 0 for μ = 0,
+/// whatever Σ is; else NaN where Σ or μ is not finite.
 pub fn kinetic_energy_at<T: Scalar, const M: usize>(inertia: &SMatrix<T, M, M>, mu: &SVector<T, M>) -> T {
     T::from_lanes(|lane| {
         let (inertia, mu) = (inertia.lane(lane), mu.lane(lane));
@@ -45,12 +44,10 @@ pub trait VelocityEquation<T: Scalar, const M: usize> {
     fn linearize(&self, xi: &SVector<T, M>) -> (T, SVector<T, M>, SMatrix<T, M, M>);
 }
 
-/// The Legendre–Fenchel transform of ℓ: μ·ξ − ℓ(ξ) at the velocity ξ with ∂ℓ/∂ξ(ξ) = μ, the largest such value for a convex ℓ.
-///
-/// Of several velocities the one is taken that is reached from rest as the momentum grows from ∂ℓ/∂ξ(0) to μ; the Newton steps and
-/// the bounds on their work are those of [`solve`]. Since ξ is stationary, its error enters the value squared.
-///
-/// +∞ where no velocity is found, NaN where μ or the Lagrangian at rest is not finite.
+/// The Legendre–Fenchel transform of ℓ: μ·ξ − ℓ(ξ) at the velocity ξ with ∂ℓ/∂ξ(ξ) = μ, the largest such value for a convex ℓ. Of several
+/// velocities the one is taken that is reached from rest as the momentum grows from ∂ℓ/∂ξ(0) to μ; the Newton steps and the bounds on their
+/// work are those of [`solve`]. Since ξ is stationary, its error enters the value squared. +∞ where no velocity is found, NaN where μ or the
+/// Lagrangian at rest is not finite.
 pub fn legendre_fenchel<T: Scalar, const M: usize>(equation: &impl VelocityEquation<T, M>, mu: &SVector<T, M>) -> T {
     T::from_lanes(|lane| {
         let linearize = |xi: &SVector<T::Lane, M>| {

@@ -38,9 +38,8 @@ pub fn exponential<T: Scalar, const N: usize>(a: &SMatrix<T, N, N>) -> SMatrix<T
     })
 }
 
-/// φ(A) = Σ Aᵏ/(k+1)!, which is (exp A − I)A⁻¹ where A is regular; NaN where A is not finite.
-///
-/// φ(ad_ξ) is the right-trivialised derivative of exp at ξ: the derivative of exp(ξ + εη) by ε is (φ(ad_ξ)η) exp ξ.
+/// φ(A) = Σ Aᵏ/(k+1)!, which is (exp A − I)A⁻¹ where A is regular; NaN where A is not finite. φ(ad_ξ) is the right-trivialised derivative of
+/// exp at ξ: the derivative of exp(ξ + εη) by ε is (φ(ad_ξ)η) exp ξ.
 pub fn phi<T: Scalar, const N: usize>(a: &SMatrix<T, N, N>) -> SMatrix<T, N, N> {
     function(a, |a| {
         let (mut scaled, halvings) = scale(a);

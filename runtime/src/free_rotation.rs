@@ -171,9 +171,8 @@ impl<T: Scalar> FreeRotation<T> {
         kept
     }
 
-    /// The momentum of the free motion that makes the rotation of less than half a turn with this Gibbs vector; NaN where none is found.
-    ///
-    /// The inverse of [`gibbs_vector`](Self::gibbs_vector).
+    /// The momentum of the free motion that makes the rotation of less than half a turn with this Gibbs vector; NaN where none is found. The
+    /// inverse of [`gibbs_vector`](Self::gibbs_vector).
     #[cold]
     pub fn momentum(&self, gibbs_vector: &Vector<T>) -> Vector<T> {
         let c = self.in_principal_axes(gibbs_vector);

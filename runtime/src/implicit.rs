@@ -42,8 +42,7 @@ pub trait Equation<T: Scalar, const M: usize, const N: usize = M> {
 
     /// A first approximation of ξ, best Σ⁻¹μ in the units of the chart; it should be 0 for μ = 0.
     ///
-    /// The provided method answers 0, which asks [`solve`] for the first Newton correction from ξ = 0: right where Σ is no
-    /// constant, such as an inertia that depends on the configuration, for one linearisation more.
+    /// The provided method answers 0, which asks [`solve`] for the first Newton correction from ξ = 0: for a Σ that is no constant.
     #[inline]
     fn predict(&self, _target: &SVector<T, N>) -> SVector<T, M> {
         SVector::from_element(T::zero())

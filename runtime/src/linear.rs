@@ -33,9 +33,8 @@ macro_rules! unrolled {
     )*};
 }
 
-/// Solves A X = B in place of `b`: Gaussian elimination with partial pivoting, X of shape M×K.
-///
-/// Returns the sign of det A. `b` is spoilt where a pivot is zero or not finite; `None` if in all lanes. Cost: M³/3 + M²/2 + M²K multiplications.
+/// Solves A X = B in place of `b`: Gaussian elimination with partial pivoting, X of shape M×K. Returns the sign of det A. `b` is spoilt
+/// where a pivot is zero or not finite; `None` if in all lanes. Cost: M³/3 + M²/2 + M²K multiplications.
 #[inline]
 #[allow(clippy::needless_range_loop)] // Indices show the algorithm and, below constant bounds, cost no checks.
 pub(crate) fn eliminate<T: Scalar, const M: usize, const K: usize>(
@@ -177,11 +176,9 @@ pub(crate) fn eliminated<T: Scalar, const M: usize>(rows: [[T; M]; M], b: &SVect
     Some((SVector::from_fn(|i, _| unknowns[i][0]), orientation))
 }
 
-/// x of A x = b and the sign of det A for a symmetric matrix.
-///
-/// A = L D Lᵀ without pivoting where A is definite, which is stable (Higham, *Accuracy and Stability of Numerical Algorithms*,
-/// theorem 10.3): M³/6 + 3M²/2 multiplications to leading orders and M divisions, about half the work of [`solve_dense`] for large M, and
-/// no exchanges of rows. Where the pivots differ in sign, [`solve_dense`] takes over.
+/// x of A x = b and the sign of det A for a symmetric matrix. A = L D Lᵀ without pivoting where A is definite, which is stable (Higham,
+/// *Accuracy and Stability of Numerical Algorithms*, theorem 10.3): M³/6 + 3M²/2 multiplications to leading orders and M divisions, about
+/// half the work of [`solve_dense`] for large M, and no exchanges of rows. Where the pivots differ in sign, [`solve_dense`] takes over.
 #[inline]
 #[allow(clippy::needless_range_loop)] // Indices show the algorithm and, below constant bounds, cost no checks.
 pub fn solve_symmetric<T: Scalar, const M: usize>(a: &SMatrix<T, M, M>, b: &SVector<T, M>) -> Solution<T, M> {

@@ -14,10 +14,9 @@ const TERMS: i64 = 40;
 /// Iterations for one square root: scaled, five to ten are enough; for an eigenvalue on the negative axis none are.
 const ITERATIONS: u32 = 40;
 
-/// The principal logarithm, whose eigenvalues have imaginary parts between −π and π.
-///
-/// NaN where A is not finite, is singular or has an eigenvalue on the negative real axis, or one that only round-off keeps from it: then square
-/// roots have lost half of the digits. For an angle θ near π the error grows like ε/(π − θ), for so ill-conditioned is the logarithm there.
+/// The principal logarithm, whose eigenvalues have imaginary parts between −π and π. NaN where A is not finite, is singular or has an
+/// eigenvalue on the negative real axis, or one that only round-off keeps from it: then square roots have lost half of the digits. For an
+/// angle θ near π the error grows like ε/(π − θ), for so ill-conditioned is the logarithm there.
 pub fn logarithm<T: Scalar, const N: usize>(a: &SMatrix<T, N, N>) -> SMatrix<T, N, N> {
     function(a, |a| {
         let mut root = *a;
@@ -35,9 +34,8 @@ pub fn logarithm<T: Scalar, const N: usize>(a: &SMatrix<T, N, N>) -> SMatrix<T, 
     })
 }
 
-/// Whether |X − I| ≤ ½, or at least its powers N and N + 1 are as small: then the series converges like 9⁻ᵏ.
-///
-/// These powers vanish for a unipotent X, whose series is finite however large its entries are.
+/// Whether |X − I| ≤ ½, or at least its powers N and N + 1 are as small: then the series converges like 9⁻ᵏ. These powers vanish for a
+/// unipotent X, whose series is finite however large its entries are.
 fn is_near_identity<T: Real, const N: usize>(x: &SMatrix<T, N, N>) -> bool {
     let difference = shifted(x, -T::one());
     let half = T::from_ratio(1, 2);
@@ -72,9 +70,8 @@ fn inverse_hyperbolic_tangent<T: Real, const N: usize>(x: &SMatrix<T, N, N>) -> 
     Some(sum)
 }
 
-/// The principal square root X by X ← (X + Y⁻¹)/2, Y ← (Y + X⁻¹)/2 from A and I, where Y is X A⁻¹; `None` if it does not converge.
-///
-/// The product form of the iteration, which needs one inverse less, loses the square of the digits for angles near π.
+/// The principal square root X by X ← (X + Y⁻¹)/2, Y ← (Y + X⁻¹)/2 from A and I, where Y is X A⁻¹; `None` if it does not converge. The
+/// product form of the iteration, which needs one inverse less, loses the square of the digits for angles near π.
 fn square_root<T: Real, const N: usize>(a: &SMatrix<T, N, N>) -> Option<SMatrix<T, N, N>> {
     let identity = SMatrix::identity();
     let (mut x, mut y) = (*a, identity);

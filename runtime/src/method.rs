@@ -41,9 +41,8 @@ use core::fmt::Debug;
 /// # Ok::<(), clebsch::Error>(())
 /// ```
 ///
-/// The action, the momentum map, the potential and the conserved momenta are those of the system. The discrete Lagrangian, and with it the Legendre
-/// transforms, belong to a method. `#[derive(Clebsch)]` implements this trait for the unit struct of each key `method`. A method has the default of every dial that it
-/// does not name, whatever the declaration says.
+/// The action, the momentum map, the potential and the conserved momenta are those of the system; the discrete Lagrangian and its Legendre transforms
+/// belong to a method. `#[derive(Clebsch)]` implements this trait for the struct of each key `method`, with defaults for the dials that it does not name.
 pub trait Method<S: Clebsch>: Sized {
     /// What no step of one size changes: computed once per stepper.
     type Constants: Clone + Debug;

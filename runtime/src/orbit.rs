@@ -36,9 +36,8 @@ pub fn length_defect<T: Scalar, const N: usize>(q: &SVector<T, N>) -> T {
     (q.iter().fold(T::zero(), |sum, &x| sum + x * x) - T::one()).abs()
 }
 
-/// R, brought back to the next rotation by one step R(3I − RᵀR)/2 of Newton and Schulz, where |Re|², e = (1, …, 1), is off N by more than 8Nε.
-///
-/// Without it, rounding of products would add up like √steps. |Re|² costs N² additions that nothing waits for; corrections are rare.
+/// R, brought back to the next rotation by one step R(3I − RᵀR)/2 of Newton and Schulz, where |Re|², e = (1, …, 1), is off N by more than
+/// 8Nε. Without it, rounding of products would add up like √steps. |Re|² costs N² additions that nothing waits for; corrections are rare.
 ///
 /// Source: Higham, *Functions of Matrices*, section 8.3.
 #[inline(always)]

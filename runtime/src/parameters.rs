@@ -50,10 +50,9 @@ pub fn check_unit<T: Scalar, const N: usize>(name: &'static str, vector: &SVecto
     })
 }
 
-/// The inverse of an inertia, such as the Hessian Σ of the kinetic energy.
-///
-/// [`Error::SingularKineticEnergy`] for a matrix whose condition number ‖|Σ⁻¹||Σ|‖_∞ (Skeel's, which does not see the scaling of the rows and is 1 for
-/// every diagonal matrix) reaches 1/(N ε): its inverse would have no correct digit.
+/// The inverse of an inertia, such as the Hessian Σ of the kinetic energy. [`Error::SingularKineticEnergy`] for a matrix whose condition
+/// number ‖|Σ⁻¹||Σ|‖_∞ (Skeel's, which does not see the scaling of the rows and is 1 for every diagonal matrix) reaches 1/(N ε): its inverse
+/// would have no correct digit.
 pub fn invert<T: Scalar, const N: usize>(matrix: &SMatrix<T, N, N>) -> Result<SMatrix<T, N, N>, Error> {
     let mut inverse = *matrix;
     for lane in 0..T::LANES {
@@ -156,9 +155,8 @@ pub fn annihilator_defect<T: Scalar, const M: usize, const D: usize>(rows: &[[T;
     T::from_lanes(|lane| length(&rest(&orthonormal(rows.lane(lane)), &mu.lane(lane))))
 }
 
-/// The vector of the span of `rows` that is nearest to `mu`; `mu` itself, to the bit, where it lies there exactly.
-///
-/// Made twice, for what the first time leaves is round-off of `mu`, not of the result.
+/// The vector of the span of `rows` that is nearest to `mu`; `mu` itself, to the bit, where it lies there exactly. Made twice, for what the
+/// first time leaves is round-off of `mu`, not of the result.
 pub fn annihilator_projection<T: Scalar, const M: usize, const D: usize>(
     rows: &[[T; M]; D],
     mu: &SVector<T, M>,
@@ -170,9 +168,8 @@ pub fn annihilator_projection<T: Scalar, const M: usize, const D: usize>(
     })
 }
 
-/// An orthonormal basis of the span of `rows`, zeros for the rows that depend on those before them.
-///
-/// Modified Gram–Schmidt, each row made orthogonal twice. A row of which less than √ε is left counts as dependent.
+/// An orthonormal basis of the span of `rows`, zeros for the rows that depend on those before them. Modified Gram–Schmidt, each row made
+/// orthogonal twice. A row of which less than √ε is left counts as dependent.
 fn orthonormal<T: Real, const M: usize, const D: usize>(mut basis: [[T; M]; D]) -> [[T; M]; D] {
     for k in 0..D {
         let (before, others) = basis.split_at_mut(k);

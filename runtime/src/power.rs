@@ -79,8 +79,7 @@ pub trait Power<const N: usize>:
     /// Whether all sites have the same kinetic energy.
     const IS_UNIFORM: bool;
 
-    /// Whether the gradient of the potential is gathered site by site, by [`gradient_at`](Self::gradient_at); else the terms are gone through, and what each has
-    /// for its sites is added there, by [`add_gradient`](Self::add_gradient).
+    /// Whether the gradient is gathered site by site, by [`gradient_at`](Self::gradient_at); else terms are added, by [`add_gradient`](Self::add_gradient).
     const GATHERS: bool;
 
     /// Whether the configuration of a site is finite wherever its motion is, as unit vectors and rotations are: then only momenta are looked at.

@@ -7,9 +7,8 @@ use nalgebra::{SMatrix, SVector};
 /// More corrections than any start that leads to a root takes.
 const CORRECTIONS: usize = 50;
 
-/// The x near `start` where `defect` vanishes but for rounding, by Newton's method with differences for slopes.
-///
-/// Defects have no units: those of order one are large. `None` where the defect is not defined, or shrinks no further before it is below √ε.
+/// The x near `start` where `defect` vanishes but for rounding, by Newton's method with differences for slopes. Defects have no units: those
+/// of order one are large. `None` where the defect is not defined, or shrinks no further before it is below √ε.
 #[cold]
 pub(crate) fn root<T: Real, const M: usize>(
     start: SVector<T, M>,

@@ -19,7 +19,6 @@ const SWEEPS: u32 = 60;
 
 impl<T: Real, const N: usize> Schur<T, N> {
     /// By Householder's reflections to Hessenberg form, then by sweeps with the two shifts of Francis; `None` if the matrix is not finite.
-    ///
     /// Blocks of two rows are left as they are, whether their eigenvalues are real or not. Cost: about 25 N³ operations.
     ///
     /// Source: Golub and Van Loan, *Matrix Computations*, 4th edition, algorithms 7.4.2, 7.5.1 and 7.5.2.

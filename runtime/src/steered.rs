@@ -113,9 +113,8 @@ pub struct Price<T, const M: usize, const U: usize> {
     pub inputs: SMatrix<T, U, U>,
 }
 
-/// A forced step between places (q, N), linearised by the implicit function theorem on F⁻ℓd(q, q⁺, u) = N and N⁺ = F⁺ℓd(q, q⁺, u).
-///
-/// With the costate (α, β) at (q⁺, N⁺), κ makes α·η′ + β·F⁺ℓd + κ·(F⁻ℓd − N) stationary in η′.
+/// A forced step between places (q, N), linearised by the implicit function theorem on F⁻ℓd(q, q⁺, u) = N and N⁺ = F⁺ℓd(q, q⁺, u). With the
+/// costate (α, β) at (q⁺, N⁺), κ makes α·η′ + β·F⁺ℓd + κ·(F⁻ℓd − N) stationary in η′.
 #[derive(Clone, Copy, Debug)]
 pub struct Link<T, const M: usize, const U: usize> {
     /// β

@@ -16,9 +16,8 @@ use crate::{Mask, Real, Scalar, Space};
 use core::array::from_fn;
 use nalgebra::{SMatrix, SVector};
 
-/// The map x ↦ ⟨x^B, E⟩ of the components of skew matrices of N rows, in the basis of [`skew`]: ΔB + BᵀΔ for Δ = x^.
-///
-/// Cost of a solve: about 35 N³ operations, those of the Schur form and of four products.
+/// The map x ↦ ⟨x^B, E⟩ of the components of skew matrices of N rows, in the basis of [`skew`]: ΔB + BᵀΔ for Δ = x^. Cost of a solve: about
+/// 35 N³ operations, those of the Schur form and of four products.
 #[derive(Clone, Copy, Debug)]
 pub struct Sylvester<T, const N: usize> {
     factor: SMatrix<T, N, N>,

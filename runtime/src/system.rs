@@ -43,8 +43,7 @@ pub trait Clebsch: Sized {
     /// Order of accuracy of a step. 4, 6 and 8 are composed of steps of second order, 16 collocates Hamilton's equations; then
     /// [`legendre`](Self::legendre) and [`legendre_next`](Self::legendre_next) are the transforms of the declared step of second order.
     const ORDER: u32;
-    /// Whether a step is the free motion itself, without an error in h and with nothing that acts: then h and N count by their product alone, and the longest
-    /// step with a momentum is known without trying. `false` as provided.
+    /// Whether a step is the free motion itself, without an error in h: its longest step is then known without trying. `false` as provided.
     const IS_FREE_MOTION: bool = false;
     /// The derivation in words and formulas, with operation counts. With `emit = [latex]` there is a constant `DERIVATION_LATEX` too, for a paper.
     const DERIVATION: &'static str;

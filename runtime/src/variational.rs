@@ -7,8 +7,7 @@ use crate::steered::no_endpoint;
 use crate::{Clebsch, EndpointExpansion, Error, Method};
 use nalgebra::{SMatrix, SVector};
 
-/// A system whose discrete Lagrangian has been differentiated twice: for sensitivities of steps and for problems with fixed
-/// endpoints. Implemented by `#[derive(Clebsch)]` with `emit = [tangent]` or `emit = [boundary]`.
+/// A system whose discrete Lagrangian has been differentiated twice, by `#[derive(Clebsch)]` with `emit = [tangent]` or `emit = [boundary]`.
 ///
 /// A *path* is a sequence of configurations q_{k+1} = Φ_{F_k}(q_k) with *edges* k, [`EDGES`](Self::EDGES) in a step. Its vertices are varied along
 /// the orbits, q_k ↦ Φ_{exp η_k}(q_k) with η_k in 𝔤, and F_k follows: F_k ↦ exp(η_{k+1}) F_k exp(−η_k) for a left action, exp(−η_k) F_k exp(η_{k+1})

@@ -28,9 +28,8 @@ pub(super) struct PathEnd<T, const M: usize> {
 }
 
 impl<T: Real, S: Variational<M, Scalar = T>, B: Differentiated<S, M>, const M: usize> Endpoints<'_, S, M, B> {
-    /// The end of a path of so many edges at `q`. Where it may end anywhere, all motions are free, and there is no gap.
-    ///
-    /// The kernel is of eigenvalues below √ε of the largest.
+    /// The end of a path of so many edges at `q`. Where it may end anywhere, all motions are free, and there is no gap. The kernel is of
+    /// eigenvalues below √ε of the largest.
     #[inline]
     pub fn end(&self, q: &S::Configuration, edges: usize) -> PathEnd<T, M> {
         let Some(target) = self.target else {

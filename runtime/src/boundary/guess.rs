@@ -64,10 +64,9 @@ impl<T: Real, S: Variational<M, Scalar = T>, B: Differentiated<S, M>, const M: u
         if gap.is_orthogonal() { Err(gap.unreachable()) } else { Ok(()) }
     }
 
-    /// η of the group element τ(η) that all edges share, corrected so that the end is brought to the target.
-    ///
-    /// Each correction is the arc over the gap, divided by the number of edges. It is exact where all motions commute and along the
-    /// rotations about one axis; where it does not bring the end nearer, the rest is left to [`close`](Self::close).
+    /// η of the group element τ(η) that all edges share, corrected so that the end is brought to the target. Each correction is the arc over
+    /// the gap, divided by the number of edges. It is exact where all motions commute and along the rotations about one axis; where it does
+    /// not bring the end nearer, the rest is left to [`close`](Self::close).
     fn constant(&self, mut eta: SVector<T, M>) -> SVector<T, M> {
         let Endpoints { system, start, .. } = self.problem;
         let edges = self.path.len();
@@ -108,10 +107,9 @@ impl<T: Real, S: Variational<M, Scalar = T>, B: Differentiated<S, M>, const M: u
         self.path.iter_mut().for_each(|node| node.increment = increment);
     }
 
-    /// How the vertices of a coarse path move from where all its edges are alike to near where its action is least.
-    ///
-    /// The path has as many steps as it takes in the same time, and its first nodes are made use of. `None` for a path of few edges, and where
-    /// corrections are no small motions towards a minimum: steps may be too long then for what happens in them.
+    /// How the vertices of a coarse path move from where all its edges are alike to near where its action is least. The path has as many
+    /// steps as it takes in the same time, and its first nodes are made use of. `None` for a path of few edges, and where corrections are no
+    /// small motions towards a minimum: steps may be too long then for what happens in them.
     fn coarse(&mut self, eta: &SVector<T, M>) -> Option<Motions<T, M>> {
         let ratio = T::from_f64(self.path.len() as f64) / T::from_f64(COARSE as f64);
         let path = self.path.get_mut(..COARSE).filter(|_| ratio >= T::from_f64((MANY / COARSE) as f64))?;

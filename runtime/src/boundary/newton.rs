@@ -24,10 +24,9 @@ impl<T: Real, const M: usize> PathSummary<T, M> {
         next.size <= T::from_ratio(1, 2) * self.size
     }
 
-    /// Whether no correction is left: it is round-off; or it is below √ε, and the residual is round-off.
-    ///
-    /// The residual counts where extremals are not isolated, as between opposite points of a sphere: there corrections go astray. Rounding of
-    /// large terms that cancel may leave more of a residual; then corrections shrink no more although steadied.
+    /// Whether no correction is left: it is round-off; or it is below √ε, and the residual is round-off. The residual counts where extremals
+    /// are not isolated, as between opposite points of a sphere: there corrections go astray. Rounding of large terms that cancel may leave
+    /// more of a residual; then corrections shrink no more although steadied.
     #[inline]
     fn has_converged(&self, before: Option<&Self>, is_closed: bool, curvature: Curvature<T>) -> bool {
         let seen = T::EPSILON.sqrt();
@@ -74,14 +73,12 @@ impl<T: Real, const M: usize> PathSummary<T, M> {
 }
 
 impl<T: Real, S: Variational<M, Scalar = T>, B: Differentiated<S, M>, const M: usize> Search<'_, S, M, B> {
-    /// The critical point of the action near the guess, and the number of sweeps.
-    ///
-    /// Full Newton steps are made as long as each at least halves the correction or makes the action smaller. Otherwise the last one is
-    /// taken back and the gap is closed. Near an extremal such steps go on from there with a steadied Hessian: where extremals are a family,
-    /// as between opposite points of a sphere, the Hessian is singular along the family. Elsewhere, or where that fails too, the action is made
-    /// smaller: with a definite Hessian, steps halved (Armijo's rule) and, where that happens often, the Hessian damped.
-    ///
-    /// Corrections are measured in the norm of the Hessian relative to the action, which no choice of units changes.
+    /// The critical point of the action near the guess, and the number of sweeps. Full Newton steps are made as long as each at least halves
+    /// the correction or makes the action smaller. Otherwise the last one is taken back and the gap is closed. Near an extremal such steps
+    /// go on from there with a steadied Hessian: where extremals are a family, as between opposite points of a sphere, the Hessian is
+    /// singular along the family. Elsewhere, or where that fails too, the action is made smaller: with a definite Hessian, steps halved
+    /// (Armijo's rule) and, where that happens often, the Hessian damped. Corrections are measured in the norm of the Hessian relative to
+    /// the action, which no choice of units changes.
     #[inline]
     pub fn newton(&mut self, guess: &Guess<T, M>) -> Result<(PathSummary<T, M>, u32), Error> {
         self.prepare(guess)?;

@@ -54,10 +54,9 @@ impl<T: Real, const M: usize> Pivot<T, M> {
         })
     }
 
-    /// [`solve`](Self::solve) of three dimensions where D is definite, from D⁻¹ = adj D / det D: one division where an elimination has three, each
-    /// of which waits for the one before. `None` too where det D is too large or small to be known in full.
-    ///
-    /// Errors of D⁻¹C relative to it are those of elimination, ε times the condition number of D.
+    /// [`solve`](Self::solve) of three dimensions where D is definite, from D⁻¹ = adj D / det D: one division where an elimination has
+    /// three, each of which waits for the one before. `None` too where det D is too large or small to be known in full. Errors of D⁻¹C
+    /// relative to it are those of elimination, ε times the condition number of D.
     #[inline(always)]
     fn by_cofactors(&self, feedback: &mut Feedback<T, M>) -> Option<Solution<T, M>> {
         let Self { d, c, g, sign } = self;
@@ -83,10 +82,8 @@ impl<T: Real, const M: usize> Pivot<T, M> {
         Some(Solution { hessian, gradient, decrement, negative: 0 })
     }
 
-    /// [`solve`](Self::solve) where all pivots have the right sign.
-    ///
-    /// With W = L⁻¹C, CᵀD⁻¹C = WᵀΔ⁻¹W is known before K = L⁻ᵀΔ⁻¹W is: the next vertex, which waits for it, can be begun. One loop for each
-    /// matrix, for such loops are unrolled where M is small, and matrices stay in registers.
+    /// [`solve`](Self::solve) where all pivots have the right sign. With W = L⁻¹C, CᵀD⁻¹C = WᵀΔ⁻¹W is known before K = L⁻ᵀΔ⁻¹W: the next
+    /// vertex can begin. One loop for each matrix, unrolled where M is small.
     #[inline]
     fn by_elimination(&self, feedback: &mut Feedback<T, M>) -> Option<Solution<T, M>> {
         let Self { d, c, g, sign } = self;

@@ -77,9 +77,8 @@ impl<T: Real, const M: usize> PathSummary<T, M> {
         self.solve(pivot, edge, &(edge.after - later), curvature, feedback).before(edge)
     }
 
-    /// The last vertex, of which only motions in the kernel of the orbit's metric are free; the gap is closed by the others.
-    ///
-    /// With the projector Π to the kernel, the pivot is Π H Π + c(I − Π), so that one elimination serves all dimensions.
+    /// The last vertex, of which only motions in the kernel of the orbit's metric are free; the gap is closed by the others. With the
+    /// projector Π to the kernel, the pivot is Π H Π + c(I − Π), so that one elimination serves all dimensions.
     #[inline(never)]
     pub fn eliminate_end(
         &mut self,

@@ -56,8 +56,7 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: usize
         Ok(())
     }
 
-    /// The way out of symmetry, where no first derivative leads to the target: adds the pattern of inputs, of several sizes and turning either
-    /// way, that ends nearest to the target. Later attempts turn more often.
+    /// The way out of symmetry: adds the pattern of inputs, of several sizes and turning either way, that ends nearest to the target.
     #[cold]
     pub fn stir(&mut self, summary: &PlanSummary<T, D, U>, far: T, attempt: u32) {
         let steps = self.stages.len();

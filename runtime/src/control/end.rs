@@ -39,9 +39,8 @@ impl<S: Controlled<D, U, C, Scalar: Real>, const D: usize, const U: usize, const
         slope.diagonal().map(|x| if x.abs().sqrt() > S::Scalar::zero() { x.abs().sqrt() } else { S::Scalar::one() })
     }
 
-    /// The end of a plan at `x`.
-    ///
-    /// A small motion closes the tangential part of a chord, which is lengthened to its arc: exact in flat spaces and for rotations about one axis.
+    /// The end of a plan at `x`. A small motion closes the tangential part of a chord, which is lengthened to its arc: exact in flat spaces
+    /// and for rotations about one axis.
     pub fn end(&self, x: &S::Place) -> PlanEnd<S::Scalar, D> {
         let Self { target, lengths, .. } = self;
         let (zero, one) = (S::Scalar::zero(), S::Scalar::one());
@@ -100,9 +99,8 @@ impl<T: Real, const D: usize> Equilibrated<T, D> {
         self.map(|value| if value.abs() <= least { T::zero() } else { value.recip() })
     }
 
-    /// R for the next sweep, where this is the Gramian with R: a multiple of |Γ⁻¹| of the Gramian without, Γ_R⁻¹ = Γ⁻¹ + R.
-    ///
-    /// Where no change of the inputs that keeps the target makes the price smaller, that makes all Q_uu positive (Finsler's lemma).
+    /// R for the next sweep, where this is the Gramian with R: a multiple of |Γ⁻¹| of the Gramian without, Γ_R⁻¹ = Γ⁻¹ + R. Where no change
+    /// of the inputs that keeps the target makes the price smaller, that makes all Q_uu positive (Finsler's lemma).
     pub fn weight(&self, gramian: &SMatrix<T, D, D>, weight: &SMatrix<T, D, D>) -> SMatrix<T, D, D> {
         let inverse = self.inverse();
         let reached = gramian * inverse;

@@ -103,10 +103,8 @@ impl<T: Real, const D: usize> Iterate<T, D> {
         }
     }
 
-    /// What the sweep is good for: whether it found enough positive curvature to go downhill.
-    ///
-    /// First the critical point of the exact model is gone to, where it is near, or tells whether more weight of the target helps; else
-    /// the curvature of the steps is counted less and less, down to that of the price alone.
+    /// What the sweep is good for: whether it found enough positive curvature to go downhill. First the critical point of the exact model is
+    /// tried. Else the curvature of the steps is counted less and less, down to that of the price.
     pub fn judge<const U: usize>(&mut self, summary: &PlanSummary<T, D, U>, gramian: &Equilibrated<T, D>) -> Verdict {
         self.stiffer = gramian.weight(&summary.gramian, &self.settings.weight);
         if self.settings.curvature.is_mirrored {

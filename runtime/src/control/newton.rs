@@ -22,7 +22,6 @@ const STALLS: u32 = 8;
 
 impl<T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: usize, const C: usize> Plan<'_, S, D, U, C> {
     /// The critical plan near the guess, a minimum where one is found, after at most [`SWEEPS`] more sweeps; its stages are not in it yet.
-    ///
     /// Corrections close the gap to the target; where `is_priced`, it is priced, and closed where little of it is left.
     pub fn newton<'p>(&mut self, is_priced: bool) -> Result<Optimum<'p, S, D, U, C>, Error> {
         let zero = T::zero();

@@ -69,10 +69,9 @@ impl<T: Real, const D: usize, const U: usize> Descent<'_, T, D, U> {
 }
 
 impl<T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: usize, const C: usize> Plan<'_, S, D, U, C> {
-    /// Makes a part of the correction. Returns its fraction and how many roll-outs were refused, other than by slacks; `None` where no part that is
-    /// large enough helps. Prices have the size `magnitude`, of which round-off is a part ε. A full step that is trusted needs no proof.
-    ///
-    /// Where slacks allow only a part, as much of the gap is left to later corrections, before the whole is made shorter.
+    /// Makes a part of the correction. Returns its fraction and how many roll-outs were refused, other than by slacks; `None` where no part
+    /// that is large enough helps. Prices have the size `magnitude`, of which round-off is a part ε. A full step that is trusted needs no
+    /// proof. Where slacks allow only a part, as much of the gap is left to later corrections, before the whole is made shorter.
     pub fn descend(
         &mut self,
         now: &mut Iterate<T, D>,

@@ -11,8 +11,7 @@ use core::fmt::{self, Debug, Display, Formatter};
 
 /// Many bodies of one declaration, as many side by side as its scalar has lanes.
 ///
-/// Each body is stepped as it would be alone, with the same bits, whatever its place and whatever happens to the others: one whose step
-/// fails stays where it is and tells [why](Self::failures), and the others go on.
+/// Each body is stepped as it would be alone, with the same bits. One whose step fails stays where it is and tells [why](Self::failures).
 ///
 /// ```
 /// use clebsch::{Clebsch, F64x8, Scalar};

@@ -5,8 +5,7 @@ use crate::fields::getters;
 use crate::{Clebsch, Declared, Error, Method, Space, State, Stepper};
 use core::fmt::{self, Debug, Formatter};
 
-/// A [`Stepper`] with a state and room for the next one, which are all that steps write: for states so large that handing each on by value takes longer than
-/// the step itself, points on large spheres and arrays of sites.
+/// A [`Stepper`] with a state and room for the next one, for states so large that handing each on by value takes longer than the step itself.
 ///
 /// It makes the steps of [`Stepper::step`], to the last bit; where one fails the state is what it was. Keep small states in a `Stepper`: in registers.
 ///

@@ -169,9 +169,8 @@ impl<T: Real> Curve<T> {
         }
     }
 
-    /// The point where ℘ is `p`, before half a period: there ℘′ is negative.
-    ///
-    /// Half a period is at least π/2 over the root of the largest difference of the e_i, and that is at most √(2Σe_k²): here below 1.2.
+    /// The point where ℘ is `p`, before half a period: there ℘′ is negative. Half a period is at least π/2 over the root of the largest
+    /// difference of the e_i, and that is at most √(2Σe_k²): here below 1.2.
     fn start(&self, p: T) -> Option<CurvePoint<T>> {
         let q = self.functions.plus(&-self.e, p);
         let y = -self.functions.determinant(&q).sqrt();

@@ -137,9 +137,8 @@ fn of_function<T: Scalar, const N: usize>(
     riccati(reciprocal, x, &rate, e).map(|row| row.map(|value| product(&x, &value, e)))
 }
 
-/// τ²/4 ℘(τ/2) = 1 + Σ c_k of degree k, for the coefficients of α^i ε^j in Σ e_i² and e₁e₂e₃.
-///
-/// c₂ = g₂/20, c₃ = g₃/28, c_k = 3/((2k + 1)(k − 3)) Σ c_m c_{k−m}; g₂ = 2 Σ e_i², g₃ = 4 e₁e₂e₃.
+/// τ²/4 ℘(τ/2) = 1 + Σ c_k of degree k, for the coefficients of α^i ε^j in Σ e_i² and e₁e₂e₃. c₂ = g₂/20, c₃ = g₃/28, c_k = 3/((2k + 1)(k −
+/// 3)) Σ c_m c_{k−m}; g₂ = 2 Σ e_i², g₃ = 4 e₁e₂e₃.
 fn elliptic<T: Scalar>(squares: &[T; 3], products: &[T; 4]) -> Series<T, 1> {
     let mut c: Series<T, 1> = zero();
     let (tenth, seventh) = (T::from_ratio(1, 10), T::from_ratio(1, 7));
@@ -267,9 +266,8 @@ fn add_product<T: Scalar, const N: usize>(
     }
 }
 
-/// Up to which α the polynomial of each degree is enough, whatever ε is: it lies between the least and the largest x times α.
-///
-/// Then the first terms that are left, those of one degree more and of the next, are below `tolerance` or cannot be seen.
+/// Up to which α the polynomial of each degree is enough, whatever ε is: it lies between the least and the largest x times α. Then the first
+/// terms that are left, those of one degree more and of the next, are below `tolerance` or cannot be seen.
 #[cold]
 pub(super) fn reach<T: Real>(x: &SVector<T, 3>, series: &Coefficients<T>, tolerance: f64) -> [T; 9] {
     let negligible = larger(T::from_f64(tolerance), T::from_ratio(1, 8) * T::EPSILON);

@@ -8,9 +8,8 @@ use core::marker::PhantomData;
 use nalgebra::SVector;
 use num_traits::Zero;
 
-/// The solutions `xi`, completed by following the path from the identity in the lanes that are not `solved` after `made` iterations.
-///
-/// A lane that has none becomes NaN. If none has one, the error is that of the first whose target is finite: the others have none of their own.
+/// The solutions `xi`, completed by following the path from the identity in the lanes that are not `solved` after `made` iterations. A lane
+/// that has none becomes NaN. If none has one, the error is that of the first whose target is finite: the others have none of their own.
 #[cold]
 #[inline(never)]
 pub(super) fn follow<T: Scalar, E: Equation<T, M, N>, const M: usize, const N: usize>(

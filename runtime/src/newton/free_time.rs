@@ -42,10 +42,8 @@ impl<T: Real> Bracket<T> {
         }
     }
 
-    /// The answer at the step size at which the slope vanishes or falls beyond a limit, looked for from `first` on: until the next trial
-    /// would be as near as `accuracy`, relative to it. With the sweeps of all trials.
-    ///
-    /// Where `retreats`, a trial that failed is followed by one nearer to a step size that has a solution.
+    /// The answer at the step size at which the slope vanishes or falls beyond a limit, to `accuracy`, from `first` on; with the sweeps of
+    /// all trials. Where `retreats`, a trial that failed is followed by one nearer to a step size that has a solution.
     pub fn critical<A>(
         mut self,
         first: T,

@@ -31,9 +31,8 @@ impl<T: Real, const M: usize> Ldl<T, M> {
         Self::factored(a, true, |pivot, entry| pivot > unit * entry && pivot > T::zero())
     }
 
-    /// Where `is_regular(Δ_kk, A_kk)` of all pivots. A column times its multiple is rounded as (multiple)·(column), or else with the column first.
-    ///
-    /// Nothing leaves the loop, which is then unrolled.
+    /// Where `is_regular(Δ_kk, A_kk)` of all pivots. A column times its multiple is rounded as (multiple)·(column), or else with the column
+    /// first. Nothing leaves the loop, which is then unrolled.
     #[inline(always)]
     fn factored(a: &[[T; M]; M], column_first: bool, is_regular: impl Fn(T, T) -> bool) -> Option<Self> {
         let mut l = *a;

@@ -19,9 +19,8 @@ const MIRRORED: f64 = 1e-4;
 const SWEEPS: usize = 24;
 
 impl<T: Real, const M: usize> Spectrum<T, M> {
-    /// By Jacobi rotations, of which only the lower triangle of `a` is read. NaN stay NaN.
-    ///
-    /// Accuracy: ε‖A‖ for each eigenvalue. Cost: about 3M³ multiplications a sweep.
+    /// By Jacobi rotations, of which only the lower triangle of `a` is read. NaN stay NaN. Accuracy: ε‖A‖ for each eigenvalue. Cost: about
+    /// 3M³ multiplications a sweep.
     ///
     /// Source: Golub and Van Loan, *Matrix Computations*, section 8.5.
     #[cold]

@@ -163,9 +163,8 @@ fn solve_part<S: Substep<0, M>, M: Method<S>>(
     at.system.solve(at.constants, Zero::zero(), q, &mu, &S::Input::origin())
 }
 
-/// The state after `steps` steps of size `h` from the time `t`. Where one step ends and the next starts, their drifts are one.
-///
-/// `drift` takes a part of the step and the state, `kick` a time, b_i, g_i and the state.
+/// The state after `steps` steps of size `h` from the time `t`. Where one step ends and the next starts, their drifts are one. `drift` takes
+/// a part of the step and the state, `kick` a time, b_i, g_i and the state.
 #[inline]
 pub fn split<T: Scalar, S, const K: usize>(
     kicks: &[Kick; K],

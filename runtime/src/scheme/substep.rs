@@ -61,9 +61,7 @@ impl<S: Parts<M>, M: Method<S>> Moving<S, M> {
     }
 }
 
-/// One substep, from its first kick to the one before its last.
-///
-/// What does not change stays where it is, and is not copied.
+/// One substep, from its first kick to the one before its last. What does not change stays where it is, and is not copied.
 #[inline(always)]
 pub(super) fn substep<S: Substep<K, M>, M: Method<S>, const K: usize>(
     at: At<'_, S, M>,

@@ -15,9 +15,8 @@ const CONSTANTS: usize = 2048;
 const MOMENTUM: Error = Error::NotFinite { name: "the momentum" };
 
 impl<S: Clebsch, M: Method<S>> Stepper<S, M> {
-    /// One step in each lane by itself, and the lanes in which it succeeded; in the others the state stays as it is.
-    ///
-    /// [`step`](Self::step) is this where all lanes succeed.
+    /// One step in each lane by itself, and the lanes in which it succeeded; in the others the state stays as it is. [`step`](Self::step) is
+    /// this where all lanes succeed.
     #[inline]
     pub fn step_each(&self, state: &State<S, M>) -> (State<S, M>, <S::Scalar as Scalar>::Mask) {
         let Ok(next) = self.attempt(state, &S::Input::origin()) else {
@@ -27,9 +26,8 @@ impl<S: Clebsch, M: Method<S>> Stepper<S, M> {
         if stepped.all() { (next, stepped) } else { (merged(&next, state, stepped), stepped) }
     }
 
-    /// Why the step of a lane fails; `None` where it does not.
-    ///
-    /// The step is made once more, with the momenta of all other lanes NaN: what is left to fail is this lane.
+    /// Why the step of a lane fails; `None` where it does not. The step is made once more, with the momenta of all other lanes NaN: what is
+    /// left to fail is this lane.
     #[cold]
     pub fn failure(&self, state: &State<S, M>, lane: usize) -> Option<Error> {
         let mut alone = *state;
@@ -135,7 +133,6 @@ fn merged<S: Clebsch, M: Method<S>>(
 }
 
 /// The longest step that `tried` solves, to [`WIDTH`], given a step `h` without a solution and the fraction of its momentum that has one.
-///
 /// Where momenta alone count, the longest is that fraction of h. Where a potential or a force shows, the interval is halved.
 fn longest(h: f64, fraction: f64, tried: impl Fn(f64) -> Result<bool, Error>) -> Option<f64> {
     let (mut refused, mut edge) = (h, h * fraction);

@@ -5,10 +5,9 @@ use crate::implicit::Equation;
 use crate::{Error, Real};
 use nalgebra::SVector;
 
-/// Narrows the bracket until the solution is found, or until s stays below 1 on all of the branch.
-///
-/// `before` is on the branch with s < 1; `after` has s ≥ 1 or is past the end of the branch. In a small bracket s is a concave function of the
-/// parameter, bounded by its tangent at `before`. Evaluations are regular at the end of the branch too: s is exact to round-off there.
+/// Narrows the bracket until the solution is found, or until s stays below 1 on all of the branch. `before` is on the branch with s < 1;
+/// `after` has s ≥ 1 or is past the end of the branch. In a small bracket s is a concave function of the parameter, bounded by its tangent
+/// at `before`. Evaluations are regular at the end of the branch too: s is exact to round-off there.
 pub(super) fn decide<T: Real, E: Equation<T, M, N>, const M: usize, const N: usize>(
     homotopy: &mut Homotopy<'_, T, E, M, N>,
     mut before: PathPoint<T, M>,

@@ -80,9 +80,8 @@ impl<'a, T: Real, E: Equation<T, M, N>, const M: usize, const N: usize> Homotopy
         not_converged(size(&residual) / self.weight, self.made + self.count)
     }
 
-    /// Whether a residual is no more than the rounding of terms of the size `terms`.
-    ///
-    /// Compared with s μ too: where the Jacobian grows without bound within the last place of ξ, any residual looks like rounding.
+    /// Whether a residual is no more than the rounding of terms of the size `terms`. Compared with s μ too: where the Jacobian grows without
+    /// bound within the last place of ξ, any residual looks like rounding.
     pub fn is_round_off(&self, residual: &SVector<T, M>, terms: T, s: T) -> bool {
         size(residual) <= T::from_f64(8.0) * T::EPSILON * terms && self.is_small(residual, s)
     }
@@ -109,9 +108,8 @@ impl<'a, T: Real, E: Equation<T, M, N>, const M: usize, const N: usize> Homotopy
         fastest.0
     }
 
-    /// The point at `length` along the tangent, brought back to the path with `parameter` held fixed.
-    ///
-    /// `None` if Newton's method does not contract cleanly or the path turns by too much for this length.
+    /// The point at `length` along the tangent, brought back to the path with `parameter` held fixed. `None` if Newton's method does not
+    /// contract cleanly or the path turns by too much for this length.
     pub fn step(&mut self, from: &PathPoint<T, M>, parameter: usize, length: T) -> Option<PathPoint<T, M>> {
         let (mut xi, mut s) = (from.xi + from.slope_xi * length, from.s + from.slope_s * length);
         let half = T::from_ratio(1, 2);
