@@ -48,7 +48,10 @@ pub use crate::stepper::{check_on_orbit, check_state};
 pub use crate::stumpff::stumpff;
 pub use crate::sums::{Compensated, Plain, accumulate};
 pub use crate::sylvester::Sylvester;
-pub use crate::{Clebsch, Clock, Conserved, Conserves, Declared, Error, Method, Scalar, Space, Time};
+pub use crate::{
+    Arrival, BoundsExpansion, Carried, Clebsch, Clock, Conserved, Conserves, Controlled, Declared, Edge,
+    EndpointExpansion, Error, Expansion, Method, Momenta, Scalar, Sensitive, Space, Time, Variational, group,
+};
 pub use core;
 pub use core::option::Option::{self, None, Some};
 pub use core::result::Result::{self, Err, Ok};

@@ -60,14 +60,13 @@ impl Scope<'_, '_> {
                 }
             },
             Code::Pi => {
-                let (private, scalar) = (&self.paths.private, &self.paths.scalar);
-                tokens.extend(quote!(<#scalar as #private::Scalar>::PI));
+                tokens.extend(quote!(<T as runtime::Scalar>::PI));
             }
             Code::Reciprocal(x) => tokens.extend(self.reciprocal(x, tight)),
             Code::Root(x, exponent) => tokens.extend(self.root(x, *exponent)),
             Code::PerOnePlusCosine(x) => {
-                let (private, x) = (&self.paths.private, self.code(x, false));
-                tokens.extend(quote!(#private::per_one_plus_cosine(#x)));
+                let x = self.code(x, false);
+                tokens.extend(quote!(runtime::per_one_plus_cosine(#x)));
             }
             Code::Call(callee, arguments) => tokens.extend(self.call(callee, arguments)),
             Code::Output(local, callee, output) => tokens.extend(self.output_of_call(*local, callee, *output)),
@@ -98,22 +97,22 @@ impl Scope<'_, '_> {
     }
 
     fn root(&self, x: &Code, (numerator, denominator): (i64, i64)) -> TokenStream {
-        let (private, x) = (&self.paths.private, self.code(x, false));
+        let x = self.code(x, false);
         if (numerator, denominator) == (1, 2) {
-            return quote!(#private::Scalar::sqrt(#x));
+            return quote!(runtime::Scalar::sqrt(#x));
         }
         let exponent = self.number(&clebsch_symbolic::rational(numerator, denominator));
-        quote!(#private::Scalar::powf(#x, #exponent))
+        quote!(runtime::Scalar::powf(#x, #exponent))
     }
 
     fn function(&self, function: Function, x: &Code) -> TokenStream {
-        let (private, x) = (&self.paths.private, self.code(x, false));
+        let x = self.code(x, false);
         if let Function::Stumpff(k) = function {
             let k = Literal::u8_unsuffixed(k);
-            return quote!(#private::stumpff(#k, #x));
+            return quote!(runtime::stumpff(#k, #x));
         }
         let name = format_ident!("{}", function.name());
-        quote!(#private::Scalar::#name(#x))
+        quote!(runtime::Scalar::#name(#x))
     }
 
     fn write_sum(&self, tokens: &mut TokenStream, constant: &Rational, terms: &[(Rational, Code)]) {
@@ -146,14 +145,13 @@ impl Scope<'_, '_> {
     }
 
     fn spell_number(&self, value: &Rational) -> TokenStream {
-        let (private, scalar) = (&self.paths.private, &self.paths.scalar);
         match value.parts() {
             _ if !self.is_generic() => float(value),
-            Some((0, 1)) => quote!(<#scalar as #private::Zero>::zero()),
-            Some((1, 1)) => quote!(<#scalar as #private::One>::one()),
+            Some((0, 1)) => quote!(<T as runtime::Zero>::zero()),
+            Some((1, 1)) => quote!(<T as runtime::One>::one()),
             Some((numerator, denominator)) => {
                 let [numerator, denominator] = [numerator, denominator].map(Literal::i64_unsuffixed);
-                quote!(<#scalar as #private::Scalar>::from_ratio(#numerator, #denominator))
+                quote!(<T as runtime::Scalar>::from_ratio(#numerator, #denominator))
             }
             None => self.rounded(float(value)),
         }

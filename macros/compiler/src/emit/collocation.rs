@@ -11,12 +11,14 @@ use super::{Emitter, flag};
 impl Emitter<'_, '_> {
     /// The implementation of `HamiltonEquations`: the slope of (q, p), the covector of a momentum, and a guess.
     pub(super) fn hamilton_equations(&self) -> TokenStream {
-        let (private, scalar, numbers) = (&self.paths.private, &self.paths.scalar, self.numbers_of_pair());
-        let words = [("Numbers", quote!([#scalar; #numbers])), ("X", self.coordinates_type())];
+        let numbers = self.numbers_of_pair();
+        let words = |word: &str| match word {
+            "Numbers" => Some(quote!([T; #numbers])),
+            _ => self.word_of_step(word),
+        };
         let functions = self.functions(HAMILTON_EQUATIONS, (0, 0), &words, |function, kernel| {
             let scope = self.scope_of_step();
             let code = match function.name {
-                "step_size" => quote!(c.step_size),
                 "slope" => {
                     let (kernel, equations) =
                         (kernel?, self.trait_of_parts("HamiltonEquations", &[self.numbers_of_pair()]));
@@ -30,7 +32,7 @@ impl Emitter<'_, '_> {
                     0 => quote!(*x * part),
                     count => {
                         let count = size(count);
-                        quote!((*x * part, [<#scalar as #private::One>::one(); #count]))
+                        quote!((*x * part, [<T as runtime::One>::one(); #count]))
                     }
                 },
                 // all entries of q and then those of p
@@ -42,13 +44,15 @@ impl Emitter<'_, '_> {
                     let (q, p) = (self.built(0), self.built(self.entries(&quote!(q)).len()));
                     quote!((#q, #p))
                 }
-                _ => return Some(function.computes(&scope, kernel?)),
+                _ => return function.written(&scope, kernel, &words),
             };
             Some(Body::from(code))
         });
-        let (dials, collocation) = (self.dials_of_sweeps(), self.formulas.collocation.as_ref());
+        let tolerance = self.tolerance().map(|part| quote!(const TOLERANCE: ::core::primitive::f64 = #part;));
+        let most = self.iterations().map(|most| quote!(const SWEEPS: ::core::primitive::u32 = #most;));
+        let collocation = self.formulas.collocation.as_ref();
         let affine = collocation.filter(|collocation| collocation.is_affine).map(|_| flag("IS_AFFINE", true));
-        self.implementation("HamiltonEquations", &[numbers], quote!(#dials #affine #functions))
+        self.implementation("HamiltonEquations", &[numbers], quote!(#tolerance #most #affine #functions))
     }
 
     /// The entries of a configuration, leaf by leaf and rows first.
@@ -64,16 +68,16 @@ impl Emitter<'_, '_> {
 
     /// The configuration whose entries stand in the array `y` from `start` on.
     fn built(&self, start: usize) -> TokenStream {
-        let (private, leaves) = (&self.paths.private, &self.model.configurations);
+        let leaves = &self.model.configurations;
         nested(&self.model.configuration, &mut |leaf| {
             let offset = start + leaves[..leaf].iter().map(|leaf| leaf.shape.len()).sum::<usize>();
             let positions = (offset..offset + leaves[leaf].shape.len()).map(size);
             let entries: Vec<TokenStream> = positions.map(|position| quote!(y[#position])).collect();
             let rows = entries.chunks(leaves[leaf].shape.columns).map(|row| quote!([#(#row),*]));
             match leaves[leaf].shape.columns {
-                _ if leaves[leaf].is_quaternion => quote!(#private::quaternion([#(#entries),*])),
-                1 => quote!(#private::vector([#(#entries),*])),
-                _ => quote!(#private::matrix([#(#rows),*])),
+                _ if leaves[leaf].is_quaternion => quote!(runtime::quaternion([#(#entries),*])),
+                1 => quote!(runtime::vector([#(#entries),*])),
+                _ => quote!(runtime::matrix([#(#rows),*])),
             }
         })
     }

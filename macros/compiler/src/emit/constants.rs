@@ -4,41 +4,43 @@ use clebsch_symbolic::Role;
 use proc_macro2::{Ident, TokenStream};
 use quote::{format_ident, quote};
 
+use super::block::matrix;
 use super::scope::{Scope, index, size};
-use super::{Emitter, SystemEmitter, docs};
+use super::{Emitter, SystemEmitter};
 use crate::derive::{Id, Solution};
 use crate::lower::{Kernel, Solve};
 use crate::model::{Access, Promise, Side};
 
 impl Emitter<'_, '_> {
     pub(super) fn constants_type(&self) -> TokenStream {
-        let (name, private, scalar) = (self.names.free("Constants"), &self.paths.private, &self.paths.scalar);
+        let name = self.names.free("Constants");
         let names = self.kernels.constant_names.iter().map(|name| format_ident!("{name}"));
         let orientations = self.implicit_solves().map(|(name, _)| name);
         let inverse = if self.has_uniform_inertia() {
-            quote!(#scalar)
+            quote!(T)
         } else if self.keeps_matrices {
-            let dimension = size(self.model.dimension());
-            quote!(#private::InertiaInverse<#scalar, #dimension>)
+            let dimension = size(self.dimension);
+            quote!(runtime::InertiaInverse<T, #dimension>)
         } else {
-            self.paths.matrix(self.model.dimension(), self.model.dimension())
+            matrix(self.dimension, self.dimension)
         };
         let inverse = (!self.formulas.inertia_moves()).then(|| quote!(inertia_inverse: #inverse,));
         let kind = self.kind_of_free_rotation();
         let rotations = self.free_rotations().map(|(name, _)| name);
-        let step_size = self.needs_step_size().then(|| quote!(step_size: #scalar,));
-        let parameter = self.model.item.scalar.is_parameter().then(|| quote!(<#scalar: #private::Scalar>));
-        let documentation = docs::lines("What no step changes: made once per stepper.");
+        let step_size = self.needs_step_size().then(|| quote!(step_size: T,));
+        let [declared, parameter] =
+            [quote!(<T: runtime::Scalar>), quote!(<T>)].map(|tokens| self.is_generic().then_some(tokens));
         quote! {
-            #documentation
+            /// What no step changes: made once per stepper.
             #[derive(::core::clone::Clone, ::core::fmt::Debug)]
-            pub struct #name #parameter {
-                #(#names: #scalar,)*
-                #(#orientations: #private::Orientation,)*
-                #(#rotations: #private::#kind<#scalar>,)*
+            pub struct #name #declared {
+                #(#names: T,)*
+                #(#orientations: runtime::Orientation,)*
+                #(#rotations: runtime::#kind<T>,)*
                 #step_size
                 #inverse
             }
+            type C = #name #parameter;
         }
     }
 
@@ -96,16 +98,28 @@ impl Emitter<'_, '_> {
 
     /// The part of `inertia` that belongs to a free rotation.
     pub(super) fn block_of_inertia(&self, solve: &Solve) -> TokenStream {
-        let (private, dimension) = (&self.paths.private, solve.components.len());
-        if self.has_uniform_inertia() {
-            let matrix = self.paths.matrix(dimension, dimension);
-            return quote!(<#matrix>::from_diagonal_element(inertia));
+        if !self.has_uniform_inertia() {
+            return self.part_of_inertia(&solve.components);
         }
-        if self.model.dimension() == dimension {
+        let matrix = matrix(solve.components.len(), solve.components.len());
+        quote!(<#matrix>::from_diagonal_element(inertia))
+    }
+
+    /// The rows and columns of `inertia` for some components.
+    fn part_of_inertia(&self, components: &[usize]) -> TokenStream {
+        let (first, count) = (components.first().copied().unwrap_or(0), components.len());
+        if !components.iter().copied().eq(first..first + count) {
+            let rows = components.iter().map(|&i| {
+                let row = components.iter().map(|&j| index(false, (i, j)));
+                quote!([#(inertia #row),*])
+            });
+            return quote!(runtime::matrix([#(#rows),*]));
+        }
+        if count == self.dimension {
             return quote!(inertia);
         }
-        let start = size(solve.components[0]);
-        quote!(#private::Blocks::block::<3, 3>(&inertia, #start, #start))
+        let [first, count] = [first, count].map(size);
+        quote!(runtime::Blocks::block::<#count, #count>(&inertia, #first, #first))
     }
 
     pub(super) fn is_left(&self, solve: &Solve) -> bool {
@@ -119,29 +133,17 @@ impl Emitter<'_, '_> {
 
     /// The sign of det Σ/h for some components: of Dρ at the identity for short steps, but for positive factors.
     fn orientation_of_inertia(&self, components: &[usize]) -> TokenStream {
-        let (private, count) = (&self.paths.private, size(components.len()));
         if self.has_uniform_inertia() {
-            return quote!(#private::orientation_of_uniform(inertia / h, #count)?);
+            let count = size(components.len());
+            return quote!(runtime::orientation_of_uniform(inertia / h, #count)?);
         }
-        let first = components.first().copied().unwrap_or(0);
-        let part = if !components.iter().copied().eq(first..first + components.len()) {
-            let rows = components.iter().map(|&i| {
-                let row = components.iter().map(|&j| index(false, (i, j)));
-                quote!([#(inertia #row),*])
-            });
-            quote!(#private::matrix([#(#rows),*]))
-        } else if components.len() == self.model.dimension() {
-            quote!(inertia)
-        } else {
-            let first = size(first);
-            quote!(#private::Blocks::block::<#count, #count>(&inertia, #first, #first))
-        };
-        quote!(#private::orientation_of_inertia(&#part, h)?)
+        let part = self.part_of_inertia(components);
+        quote!(runtime::orientation_of_inertia(&#part, h)?)
     }
 
     /// The body of the function that makes the constants.
     pub(super) fn constants(&self, kernel: &Kernel) -> TokenStream {
-        let (private, scope) = (&self.paths.private, self.scope_of_system());
+        let scope = self.scope_of_system();
         let (constants, checks) = (self.names.free("Constants"), self.checks());
         let moves = self.formulas.inertia_moves();
         let inertia = (!moves).then(|| {
@@ -155,7 +157,7 @@ impl Emitter<'_, '_> {
             };
             quote! {
                 let inertia = { #inertia };
-                let inertia_inverse = #private::#invert(&inertia)?;
+                let inertia_inverse = runtime::#invert(&inertia)?;
             }
         });
         let inverse = (!moves).then(|| quote!(inertia_inverse,));
@@ -172,15 +174,18 @@ impl Emitter<'_, '_> {
             quote!(#name: #whole #coupled,)
         });
         let rotations = self.free_rotations().map(|(name, solve)| {
-            let constants = self.constants_of_free_rotation(&self.block_of_inertia(solve));
-            quote!(#name: #constants,)
+            let (inertia, kind) = (self.block_of_inertia(solve), self.kind_of_free_rotation());
+            match self.tolerance() {
+                Some(part) => quote!(#name: runtime::#kind::to_tolerance(&#inertia, h, #part)?,),
+                None => quote!(#name: runtime::#kind::new(&#inertia, h)?,),
+            }
         });
         let step_size = self.needs_step_size().then(|| quote!(step_size: h,));
         quote! {
             #checks
             #inertia
             #locals
-            #private::Ok(#constants {
+            runtime::Ok(#constants {
                 #(#fields)*
                 #(#orientations)*
                 #(#rotations)*
@@ -194,7 +199,7 @@ impl Emitter<'_, '_> {
 impl SystemEmitter<'_, '_> {
     /// Checks of every field that a closure reads: finite, and what the user promises.
     pub(super) fn checks(&self) -> TokenStream {
-        let (private, system) = (&self.paths.private, self.receiver());
+        let system = self.receiver();
         let checks = self.model.parameters.iter().map(|parameter| {
             let (field, name) = (&parameter.field, &parameter.name);
             let of_leaf = |access: &Access| quote!(#system.#field #access);
@@ -202,7 +207,7 @@ impl SystemEmitter<'_, '_> {
                 parameter.leaves.iter().map(move |leaf| self.check_of(*promise, name, &of_leaf(&leaf.accessor)))
             });
             quote! {
-                #private::check_finite(#name, &#system.#field)?;
+                runtime::check_finite(#name, &#system.#field)?;
                 #(#promises)*
             }
         });
@@ -211,12 +216,11 @@ impl SystemEmitter<'_, '_> {
 
     /// The check of what the user promises of a value.
     pub(super) fn check_of(&self, promise: Promise, name: &str, value: &TokenStream) -> TokenStream {
-        let private = &self.paths.private;
         let check = match promise {
             Promise::Symmetric => quote!(check_symmetric),
             Promise::Diagonal => quote!(check_diagonal),
             Promise::Unit => quote!(check_unit),
         };
-        quote!(#private::#check(#name, &#value)?;)
+        quote!(runtime::#check(#name, &#value)?;)
     }
 }

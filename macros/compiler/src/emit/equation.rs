@@ -1,24 +1,25 @@
 //! The types of the momentum equations: closed forms, and what Newton's method needs.
 
 use clebsch_symbolic::Shape;
-use proc_macro2::{Ident, TokenStream, TokenTree};
+use proc_macro2::{Ident, TokenStream};
 use quote::{format_ident, quote};
 
-use super::function::{Body, Function};
+use super::Emitter;
+use super::block::{Target, matrix};
+use super::function::{self, Body, Function, Words};
 use super::functions::{EQUATION, SOLVER};
-use super::scope::{Scope, size};
-use super::{Emitter, docs};
+use super::scope::{Scope, index, size};
 use crate::derive::{Id, Solution, Structure};
 use crate::lower::{Kernel, Solve, is_direction};
 
 /// The type of an equation, while it is made.
 pub(super) struct EquationType<'e, 'a, 'g> {
-    pub(super) emitter: &'e Emitter<'a, 'g>,
-    pub(super) solve: &'e Solve,
+    emitter: &'e Emitter<'a, 'g>,
+    solve: &'e Solve,
     /// In its methods `mu` holds its momenta, and `x` its unknowns, or the coordinates that are given.
     scope: Scope<'e, 'g>,
     /// The type of its unknowns.
-    pub(super) vector: TokenStream,
+    vector: TokenStream,
     /// The type of its momenta.
     target: TokenStream,
 }
@@ -38,12 +39,12 @@ impl<'g> Emitter<'_, 'g> {
 
     /// What an equation holds, by the names that its methods call it, with the types.
     pub(super) fn held_by_equation(&self, solve: &Solve) -> Vec<(&'static str, TokenStream)> {
-        let (lifetime, scalar) = (self.names.lifetime(), &self.paths.scalar);
+        let lifetime = self.names.lifetime();
         let reference = |name, ty: TokenStream| (name, quote!(&#lifetime #ty));
-        let mut held = vec![reference("system", self.target.of_type()), reference("c", self.alias("C"))];
-        held.extend((solve.moves && self.formulas.is_timed()).then(|| ("t", scalar.clone())));
-        held.extend(solve.moves.then(|| reference("q", self.alias("Q"))));
-        held.extend(solve.reads_input.then(|| reference("u", self.input_type())));
+        let mut held = vec![reference("system", self.target.of_type()), reference("c", quote!(C))];
+        held.extend((solve.moves && self.formulas.is_timed()).then(|| ("t", quote!(T))));
+        held.extend(solve.moves.then(|| reference("q", quote!(Q))));
+        held.extend(solve.reads_input.then(|| reference("u", self.input.clone())));
         held
     }
 }
@@ -60,64 +61,54 @@ impl<'e, 'a, 'g> EquationType<'e, 'a, 'g> {
     /// The struct, with the equation as its documentation, and its implementation.
     fn tokens(&self) -> TokenStream {
         let EquationType { emitter, solve, .. } = self;
-        let (private, scalar, lifetime) = (&emitter.paths.private, &emitter.paths.scalar, emitter.names.lifetime());
         let mut sizes = vec![size(solve.dimension)];
         // the number of momenta is that of unknowns unless it is said
         sizes.extend((solve.momenta.len() != solve.dimension).then(|| size(solve.momenta.len())));
         let of = match solve.solution {
-            Solution::Newton => Some(quote!(#private::Equation<#scalar, #(#sizes),*>)),
-            Solution::Linear => Some(quote!(#private::LinearEquation<#scalar, #(#sizes),*>)),
+            Solution::Newton => Some(quote!(runtime::Equation<T, #(#sizes),*>)),
+            Solution::Linear => Some(quote!(runtime::LinearEquation<T, #(#sizes),*>)),
             _ => None,
         };
-        let prepare = (solve.solution == Solution::Newton).then(|| self.prepare());
-        let (functions, correct, solver) = (self.functions(EQUATION), self.correct(), self.functions(SOLVER));
-        let target = emitter.target.borrowed(&emitter.equation_name(solve), &lifetime);
-        let implementation = target.implementation(of, quote!(#prepare #functions #correct #solver));
-        let (name, (parameters, _, predicates)) = (&target.ident, target.generics.split_for_impl());
+        let types = (solve.solution == Solution::Newton).then(|| self.types());
+        let (functions, solver) = (self.functions(EQUATION), self.functions(SOLVER));
+        let target = emitter.borrowed(&emitter.equation_name(solve));
+        let implementation = target.implementation(of, quote!(#types #functions #solver));
+        let Target { ident, parameters, predicates, .. } = &target;
         let formulas = emitter.rows.titled(solve.id(Id::Equation));
-        let documentation = docs::formulas("The momentum equation in the chart.", formulas, None);
+        let documentation = function::documentation("The momentum equation in the chart.", formulas, None);
         let held = emitter.held_by_equation(solve).into_iter().map(|(_, ty)| ty);
         quote! {
             #documentation
-            struct #name #parameters(#(#held,)*) #predicates;
+            struct #ident #parameters(#(#held,)*) #predicates;
             #implementation
         }
-    }
-
-    /// The body of a method, with names for what it reads of the equation.
-    fn body(&self, code: TokenStream) -> TokenStream {
-        let held = self.emitter.held_by_equation(self.solve);
-        let read: Vec<bool> = held.iter().map(|(name, _)| mentions(&code, name)).collect();
-        let Some(last) = read.iter().rposition(|&is_read| is_read) else { return code };
-        let names = held.iter().zip(&read).take(last + 1);
-        let names =
-            names.map(|((name, _), is_read)| if *is_read { format_ident!("{name}") } else { format_ident!("_") });
-        let rest = (last + 1 < held.len()).then(|| quote!(..));
-        quote!(let &Self(#(#names,)* #rest) = self; #code)
     }
 
     fn functions(&self, table: &[Function]) -> TokenStream {
         let (vector, target, given) = (&self.vector, &self.target, self.emitter.vector_type(self.solve.given.len()));
         let given = if self.solve.given.is_empty() { quote!() } else { quote!(, x: &#given) };
         let prepared = if self.prepares() { quote!(terms: &Self::Terms) } else { quote!(mu: &#target) };
-        let words = [
-            ("Vector", vector.clone()),
-            ("Momenta", target.clone()),
-            ("Given", given),
-            ("Prepared", prepared),
-            ("Square", self.emitter.paths.matrix(self.solve.dimension, self.solve.dimension)),
-        ];
+        let words = |word: &str| match word {
+            "Vector" => Some(vector.clone()),
+            "Momenta" => Some(target.clone()),
+            "Given" => Some(given.clone()),
+            "Prepared" => Some(prepared.clone()),
+            "Square" => Some(matrix(self.solve.dimension, self.solve.dimension)),
+            _ => None,
+        };
         let place = (self.solve.substep, self.solve.number);
         self.emitter.functions(table, place, &words, |function, kernel| {
-            let body = self.function(function, kernel)?;
-            Some(Body { code: self.body(body.code), ..body })
+            let body = self.function(function, kernel, &words)?;
+            let held = self.emitter.held_by_equation(self.solve).into_iter().map(|(name, _)| format_ident!("{name}"));
+            let reads = function.arguments.contains("self") && function.name != "orientation";
+            Some(body.after(reads.then(|| quote!(let &Self(#(#held),*) = self;))))
         })
     }
 
     /// What one of them does, where the equation has it.
-    fn function(&self, function: &Function, kernel: Option<&'e Kernel>) -> Option<Body<'e>> {
+    fn function(&self, function: &Function, kernel: Option<&'e Kernel>, words: &Words<'_>) -> Option<Body<'e>> {
         let EquationType { emitter, solve, scope, .. } = self;
-        let (private, keeps) = (&emitter.paths.private, emitter.keeps_matrices);
+        let keeps = emitter.keeps_matrices;
         let is_newton = solve.solution == Solution::Newton;
         // with whole matrices the terms hold the momenta
         let target = (is_newton && keeps && self.prepares()).then(|| quote!(let mu = &terms.0;));
@@ -127,7 +118,7 @@ impl<'e, 'a, 'g> EquationType<'e, 'a, 'g> {
                 let (solution, by_reference) = (scope.body(kernel?), keeps.then(|| quote!(let x = &x;)));
                 let code = quote! {
                     let x = { #solution };
-                    #private::below_right_angle(x, { #by_reference #sine })
+                    runtime::below_right_angle(x, { #by_reference #sine })
                 };
                 Body::new(kernel?, code)
             }
@@ -155,10 +146,25 @@ impl<'e, 'a, 'g> EquationType<'e, 'a, 'g> {
             }
             "orientation" if emitter.has_orientation(solve) => {
                 let orientation = emitter.constant_of(solve);
-                Body::from(quote!(#private::Some(self.1.#orientation)))
+                Body::from(quote!(runtime::Some(self.1.#orientation)))
             }
-            "has_poles" if is_newton && solve.has_poles => Body::from(quote!(true)),
-            "tolerance" | "limit" if is_newton => Body::from(emitter.dial_of_solver(function.name)?),
+            "prepare" if is_newton => Body { cost: None, ..Body::new(kernel?, self.prepare(kernel?)) },
+            "correct" if !is_newton && solve.solution != Solution::Linear => return None,
+            "correct" => match &solve.structure {
+                Structure::Symmetric if function.code.is_empty() => return None,
+                Structure::Symmetric => function.written(scope, None, words)?,
+                Structure::Triangular(blocks) if function.code.is_empty() => Body::from(self.by_blocks(blocks)),
+                _ => return None,
+            },
+            "has_poles" if is_newton && solve.has_poles => function.written(scope, None, words)?,
+            "tolerance" if is_newton => Body::from({
+                let tolerance = emitter.tolerance()?;
+                quote!(runtime::tolerance(#tolerance))
+            }),
+            "limit" if is_newton => Body::from({
+                let most = emitter.iterations()?;
+                quote!(runtime::Some(#most))
+            }),
             _ => return None,
         })
     }
@@ -171,11 +177,11 @@ impl<'e, 'a, 'g> EquationType<'e, 'a, 'g> {
 
     /// The terms, the vector and the matrix that a kernel gives.
     fn linearized(&self, kernel: &Kernel) -> (TokenStream, TokenStream, TokenStream) {
-        let (scope, private) = (&self.scope, &self.emitter.paths.private);
+        let scope = &self.scope;
         let (locals, value) = (|| scope.locals(kernel), scope.output(kernel, 0));
         if let Structure::Sylvester(_) = self.solve.structure {
             let factor = scope.output(kernel, 1);
-            return (locals(), value, quote!(#private::Sylvester::new(#factor)));
+            return (locals(), value, quote!(runtime::Sylvester::new(#factor)));
         }
         if self.emitter.keeps_matrices {
             let (locals, jacobian) = scope.matrix_of(kernel, 1, "delta", is_direction);
@@ -185,54 +191,83 @@ impl<'e, 'a, 'g> EquationType<'e, 'a, 'g> {
         (locals(), value, scope.grid(&square, false))
     }
 
-    /// What Newton's method computes once, and its types.
-    fn prepare(&self) -> TokenStream {
-        let EquationType { emitter, solve, scope, target, .. } = self;
-        let (private, scalar) = (&emitter.paths.private, &emitter.paths.scalar);
+    /// The types of what Newton's method computes once, and of its Jacobian.
+    fn types(&self) -> TokenStream {
+        let EquationType { emitter, solve, target, .. } = self;
+        let dimension = size(match solve.structure {
+            Structure::Sylvester(n) => n,
+            _ => solve.dimension,
+        });
         let jacobian = match solve.structure {
-            Structure::Sylvester(n) => {
-                let n = size(n);
-                quote!(#private::Sylvester<#scalar, #n>)
-            }
-            _ => emitter.paths.matrix(solve.dimension, solve.dimension),
+            Structure::Sylvester(_) => quote!(runtime::Sylvester<T, #dimension>),
+            _ => matrix(solve.dimension, solve.dimension),
         };
-        let kernel = emitter.program.kernel(solve.id(Id::Preparation));
-        let locals = scope.locals(kernel);
-        let values = (0..kernel.outputs.len()).map(|index| scope.scalar(kernel, index));
-        let (terms, prepared) = if !self.prepares() {
-            (target.clone(), quote!(*mu))
+        let outputs = &emitter.program.kernel(solve.id(Id::Preparation)).outputs;
+        let (count, types) = (
+            size(outputs.len()),
+            outputs.iter().map(
+                |(shape, _)| {
+                    if shape.is_scalar() { quote!(T) } else { matrix(shape.rows, shape.columns) }
+                },
+            ),
+        );
+        let terms = if !self.prepares() {
+            target.clone()
         } else if emitter.keeps_matrices {
-            let types = kernel.outputs.iter().map(|(shape, _)| {
-                if shape.is_scalar() { scalar.clone() } else { emitter.paths.matrix(shape.rows, shape.columns) }
-            });
-            (quote!((#target, #(#types,)*)), quote!((*mu, #(#values,)*)))
+            quote!((#target, #(#types,)*))
         } else {
-            let count = size(kernel.outputs.len());
-            (quote!([#scalar; #count]), quote!([#(#values),*]))
+            quote!([T; #count])
         };
-        let prepared = self.body(quote!(#locals #prepared));
-        quote! {
-            type Terms = #terms;
-            type Jacobian = #jacobian;
+        quote!(type Terms = #terms; type Jacobian = #jacobian;)
+    }
 
-            #[inline]
-            fn prepare(&self, mu: &#target) -> Self::Terms {
-                #prepared
-            }
+    /// What Newton's method computes once.
+    fn prepare(&self, kernel: &Kernel) -> TokenStream {
+        let (scope, locals) = (&self.scope, self.scope.locals(kernel));
+        let values = (0..kernel.outputs.len()).map(|index| scope.scalar(kernel, index));
+        if !self.prepares() {
+            quote!(#locals *mu)
+        } else if self.emitter.keeps_matrices {
+            quote!(#locals (*mu, #(#values,)*))
+        } else {
+            quote!(#locals [#(#values),*])
         }
     }
-}
 
-/// Whether a name stands among some tokens, not as a field or a method.
-fn mentions(tokens: &TokenStream, name: &str) -> bool {
-    let mut is_member = false;
-    tokens.clone().into_iter().any(|token| {
-        let was_member =
-            std::mem::replace(&mut is_member, matches!(&token, TokenTree::Punct(dot) if dot.as_char() == '.'));
-        match token {
-            TokenTree::Ident(ident) => !was_member && ident == name,
-            TokenTree::Group(group) => mentions(&group.stream(), name),
-            TokenTree::Punct(_) | TokenTree::Literal(_) => false,
+    /// One small system for each block, with the unknowns of those before it put in.
+    fn by_blocks(&self, blocks: &[Vec<usize>]) -> TokenStream {
+        let systems = blocks.iter().enumerate().map(|(number, block)| {
+            let known = blocks[..number].concat();
+            let rows = block.iter().map(|&i| {
+                let entries = block.iter().map(|&j| index(false, (i, j)));
+                quote!([#(a #entries),*])
+            });
+            let right = block.iter().map(|&i| {
+                let known = known.iter().filter(|&&j| !self.emitter.program.is_zero(self.solve, i, j));
+                let terms = known.map(|&j| {
+                    let (a, x) = (index(false, (i, j)), format_ident!("x{j}"));
+                    quote!(- a #a * #x)
+                });
+                let i = size(i);
+                quote!(b[#i] #(#terms)*)
+            });
+            let (x, sign) = (format_ident!("solution{number}"), format_ident!("sign{number}"));
+            let names = block.iter().map(|i| format_ident!("x{i}"));
+            let positions = (0..block.len()).map(size);
+            quote! {
+                let (#x, #sign) = runtime::solve_dense(
+                    &runtime::matrix([#(#rows),*]),
+                    &runtime::vector([#(#right),*]),
+                )?;
+                let [#(#names),*] = [#(#x[#positions]),*];
+            }
+        });
+        let names = (0..self.solve.dimension).map(|i| format_ident!("x{i}"));
+        let signs = (1..blocks.len()).map(|number| format_ident!("sign{number}"));
+        let sign = signs.fold(quote!(sign0), |product, sign| quote!(#product * #sign));
+        quote! {
+            #(#systems)*
+            runtime::Some((runtime::vector([#(#names),*]), #sign))
         }
-    })
+    }
 }

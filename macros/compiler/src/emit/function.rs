@@ -1,10 +1,12 @@
 //! How a generated function is written: its documentation, its signature and its body.
 
-use proc_macro2::{Group, TokenStream, TokenTree};
+use proc_macro2::TokenStream;
 use quote::{format_ident, quote};
 
+use super::SystemEmitter;
+use super::block::{Block, matrix};
+use super::names::put_in;
 use super::scope::{Scope, size};
-use super::{SystemEmitter, docs};
 use crate::derive::{Formula, Id};
 use crate::lower::Kernel;
 
@@ -21,6 +23,8 @@ pub struct Function {
     pub arguments: &'static str,
     pub result: &'static str,
     pub is_inline: bool,
+    /// Its statements, where they are not just those of the kernel.
+    pub code: &'static str,
 }
 
 /// What a generated function does.
@@ -75,22 +79,42 @@ impl Function {
         self.shown.iter().any(|shown| shown.is_like(id))
     }
 
+    /// The body that the table says, where there is the kernel that it names.
+    pub(super) fn written<'k>(
+        &self,
+        scope: &Scope<'_, '_>,
+        kernel: Option<&'k Kernel>,
+        words: &Words<'_>,
+    ) -> Option<Body<'k>> {
+        if self.code.is_empty() {
+            return Some(self.computes(scope, kernel?));
+        }
+        let cost = if self.code.contains("Locals") { Some(kernel?) } else { None };
+        let of_kernel = |word: &str| match (number(word, "Value"), number(word, "Number")) {
+            (Some(index), _) => Some(scope.output(kernel?, index)),
+            (_, Some(index)) => Some(scope.scalar(kernel?, index)),
+            _ => (word == "Locals").then_some(scope.locals(kernel?)),
+        };
+        let code = scope.parsed(self.code, &|word| words(word).or_else(|| of_kernel(word)));
+        Some(Body { cost, ..Body::from(code) })
+    }
+
     /// The body that computes a kernel and returns what it gives.
     pub(super) fn computes<'k>(&self, scope: &Scope<'_, '_>, kernel: &'k Kernel) -> Body<'k> {
-        let (private, locals) = (&scope.paths.private, scope.locals(kernel));
+        let locals = scope.locals(kernel);
         let value = match self.result {
             "T" => scope.scalar(kernel, 0),
             "Q" | "Option<Q>" | "Self::Configuration" => scope.configuration(kernel),
             "F" | "Self::Element" => scope.element(kernel, 0),
             _ => scope.output(kernel, 0),
         };
-        let value = if self.result.starts_with("Option") { quote!(#private::Some(#value)) } else { value };
+        let value = if self.result.starts_with("Option") { quote!(runtime::Some(#value)) } else { value };
         Body::new(kernel, quote!(#locals #value))
     }
 }
 
-/// Names in signatures, with what they stand for.
-pub(super) type Words = [(&'static str, TokenStream)];
+/// What words of a table stand for.
+pub(super) type Words<'w> = dyn Fn(&str) -> Option<TokenStream> + 'w;
 
 impl<'g> SystemEmitter<'_, 'g> {
     /// The functions of a table that have a body, made from their kernels; those of a substep, or of an equation in it, have a place.
@@ -98,60 +122,87 @@ impl<'g> SystemEmitter<'_, 'g> {
         &'k self,
         table: &[Function],
         place: (usize, usize),
-        words: &Words,
+        words: &Words<'_>,
         body: impl Fn(&Function, Option<&'k Kernel>) -> Option<Body<'k>>,
     ) -> TokenStream {
         let written = table.iter().filter_map(|function| {
-            let Body { title, cost, inline, code } = body(function, self.kernels.find(function.kernel.at(place)))?;
-            let title = title.unwrap_or(function.title);
-            let documentation = (!title.is_empty()).then(|| docs::formulas(title, self.shown(function, place), cost));
-            let inline = inline.or_else(|| function.is_inline.then(|| quote!(#[inline])));
-            let name = format_ident!("{}", function.name);
-            // by construction: what the table of functions holds was tokens
-            let [arguments, result] =
-                [function.arguments, function.result].map(|text| self.put_in(text.parse().unwrap_or_default(), words));
-            Some(quote!(#documentation #inline fn #name #arguments -> #result { #code }))
+            let body = body(function, self.kernels.find(function.kernel.at(place)))?;
+            let title = body.title.unwrap_or(function.title);
+            let is_shown = |id: Id| function.shown.iter().any(|shown| shown.is_like(id) && id.at(place) == id);
+            let documentation = || self::documentation(title, self.rows.titled_all(is_shown), body.cost);
+            let documentation = (!title.is_empty()).then(documentation);
+            let function = self.function(function, words, body);
+            Some(quote!(#documentation #function))
         });
         written.collect()
     }
+}
 
-    /// The formulas that the documentation of a function shows.
-    fn shown(&self, function: &Function, place: (usize, usize)) -> &[Formula<'g>] {
-        self.rows.titled_all(|id| function.shown.iter().any(|shown| shown.is_like(id) && id.at(place) == id))
+/// No words but those of every table.
+pub(super) fn no_words(_: &str) -> Option<TokenStream> {
+    None
+}
+
+/// The number behind a word of this kind.
+pub(super) fn number(word: &str, kind: &str) -> Option<usize> {
+    word.strip_prefix(kind)?.parse().ok()
+}
+
+impl Block<'_> {
+    /// A function of a table.
+    pub(super) fn function(
+        &self,
+        function: &Function,
+        words: &Words<'_>,
+        Body { inline, code, .. }: Body<'_>,
+    ) -> TokenStream {
+        let inline = inline.or_else(|| function.is_inline.then(|| quote!(#[inline])));
+        let name = format_ident!("{}", function.name);
+        let [arguments, result] = [function.arguments, function.result].map(|text| self.parsed(text, words));
+        quote!(#inline fn #name #arguments -> #result { #code })
     }
 
-    /// Some tokens, with what their words stand for.
-    fn put_in(&self, tokens: TokenStream, words: &Words) -> TokenStream {
-        let put_in = |token: TokenTree| match token {
-            TokenTree::Ident(name) => {
-                let word = words.iter().find(|(word, _)| name == word).map(|(_, tokens)| tokens.clone());
-                word.or_else(|| self.word(&name.to_string())).unwrap_or_else(|| TokenTree::from(name).into())
-            }
-            TokenTree::Group(group) => {
-                TokenTree::from(Group::new(group.delimiter(), self.put_in(group.stream(), words))).into()
-            }
-            other => other.into(),
-        };
-        tokens.into_iter().map(put_in).collect()
+    /// The tokens of a text, with what its words stand for.
+    fn parsed(&self, text: &str, words: &Words<'_>) -> TokenStream {
+        // by construction: what the table of functions holds was tokens
+        put_in(text.parse().unwrap_or_default(), &|name, _| words(name).or_else(|| self.word(name)))
     }
 
-    /// What a word stands for, unless it is itself.
+    /// What a word of a table stands for, unless it is itself.
     fn word(&self, word: &str) -> Option<TokenStream> {
-        let (private, krate, scalar) = (&self.paths.private, &self.paths.krate, &self.paths.scalar);
-        let name = format_ident!("{word}");
+        let (name, dimension) = (format_ident!("{word}"), size(self.dimension));
         Some(match word {
-            "Receiver" => self.receiver_parameter(),
-            "T" => quote!(#scalar),
-            "Q" | "F" | "Mu" | "C" => self.alias(word),
-            "U" => self.input_type(),
-            "Bool" => quote!(::core::primitive::bool),
-            "Option" | "Solved" | "Result" | "Error" | "Orientation" => quote!(#private::#name),
-            "Momenta" | "Edge" | "Carried" | "EndpointExpansion" => {
-                let dimension = size(self.model.dimension());
-                quote!(#krate::#name<#scalar, #dimension>)
+            "Receiver" if self.method.is_none() => quote!(&self),
+            "Receiver" => {
+                let system = self.target.of_type();
+                quote!(system: &#system)
             }
-            "Square" => self.paths.matrix_of_any_shape(self.model.dimension(), self.model.dimension()),
+            "U" => self.input.clone(),
+            "Bool" => quote!(::core::primitive::bool),
+            "Option" | "Solved" | "Result" | "Error" | "Orientation" => quote!(runtime::#name),
+            "Momenta" | "Edge" | "Carried" | "EndpointExpansion" => quote!(runtime::#name<T, #dimension>),
+            "Square" => matrix(self.dimension, self.dimension),
             _ => return None,
         })
     }
+}
+
+/// Doc attributes, one for each line; the space before each line keeps it off the slashes.
+pub(super) fn lines(text: &str) -> TokenStream {
+    let lines = text.split('\n').map(|line| if line.is_empty() { String::new() } else { format!(" {line}") });
+    quote!(#(#[doc = #lines])*)
+}
+
+/// A title with the shape, the cost of the kernel and the source of its formulas, and below these the formulas.
+pub(super) fn documentation(title: &str, formulas: &[Formula<'_>], kernel: Option<&Kernel>) -> TokenStream {
+    let (mut line, first) = (vec![title.to_string()], formulas.first());
+    line.extend(first.map(|formula| {
+        let shapes: Vec<String> = formula.shapes().iter().map(|shape| shape.to_string()).collect();
+        format!("Shape: {}.", shapes.join(", "))
+    }));
+    line.extend(kernel.map(|kernel| format!("Cost: {}.", kernel.cost())));
+    line.extend(first.and_then(|formula| formula.source).map(|source| format!("Source: {source}.")));
+    let equations = formulas.iter().map(|formula| format!("`{}`", formula.equation()));
+    let text: Vec<String> = [line.join(" ")].into_iter().chain(equations).collect();
+    lines(&text.join("\n"))
 }

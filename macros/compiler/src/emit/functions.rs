@@ -1,8 +1,9 @@
 //! What is generated: the functions of each trait, with the kernels that they compute and the formulas that they show.
 //!
-//! Some names in signatures stand for what they are in a system: `T` for the scalar, `Q`, `F` and `Mu` for the types of configurations,
-//! group elements and momenta, `C` for that of the constants, `X` for that of chart coordinates, `U` for that of inputs; `Receiver` for
-//! `&self`, or for the system where a method of it is stepped. [`SystemEmitter::functions`](super::SystemEmitter::functions) puts in their tokens.
+//! Some names in signatures stand for what they are in a system: `X` for the type of chart coordinates, `U` for that of inputs; `Receiver` for
+//! `&self`, or for the system where a method of it is stepped. [`SystemEmitter::functions`](super::SystemEmitter::functions) puts in their
+//! tokens. Code behind `=` has more such words: `Locals` for the shared terms of the kernel, `Value0` for its first output as a vector or a
+//! matrix, `Number0` for it as a scalar.
 
 use super::function::Function;
 use crate::derive::Id;
@@ -23,19 +24,23 @@ macro_rules! functions {
     ($(
         #[doc = $about:literal]
         $table:ident($is_inline:literal) {
-            $($(#[doc = $title:literal])? fn $name:ident $arguments:tt -> $result:ty { $($ids:tt)* })*
+            $(
+                $(#[doc = $title:literal])*
+                fn $name:ident $arguments:tt -> $result:ty { $($ids:tt)* } $(= { $($code:tt)* })?
+            )*
         }
     )*) => {
         $(
             #[doc = $about]
             pub(super) const $table: &[Function] = &[$(Function {
                 name: stringify!($name),
-                title: concat!($($title)?).trim_ascii(),
+                title: concat!($($title, "\n"),*).trim_ascii(),
                 kernel: kernel!($($ids)*),
                 shown: shown!($($ids)*),
                 arguments: stringify!($arguments),
                 result: stringify!($result),
                 is_inline: $is_inline,
+                code: stringify!($($($code)*)?),
             }),*];
         )*
 
@@ -88,7 +93,9 @@ functions! {
     /// `VelocityEquation`, of a Lagrangian that is not quadratic.
     VELOCITY(false) {
         /// The Lagrangian of a velocity, its gradient and its Hessian.
-        fn linearize(&self, x: &Algebra) -> (T, Algebra, Square) { Id::Lagrangian }
+        fn linearize(&self, x: &Algebra) -> (T, Algebra, Square) { Id::Lagrangian } = {
+            let (t, q) = (self.t, self.q); Locals (Number0, Value1, Value2)
+        }
     }
 
     /// `Parts`: the moves of a step.
@@ -102,6 +109,7 @@ functions! {
         fn advance(&self, q: &Q, Moved: &Motion) -> Q { Id::Displacement }
         /// The covector p carried along by F = I + D, at q⁺.
         fn lift(&self, q: &Q, p: &Q, d: &F) -> Q { Id::Lift }
+        fn on_space(mut q: Q, mut rest: Rest) -> (Q, Rest) { Id::Advance => }
     }
 
     /// `Substep`: kicks, forces, gradients, the solve and the update; what a declaration does not have is the trait's.
@@ -131,7 +139,7 @@ functions! {
 
     /// `GreatCircles`: points on large spheres.
     GREAT_CIRCLES(true) {
-        fn turn(c: &C) -> T { Id::Constants }
+        fn turn(c: &C) -> T { Id::Constants } = { c.step_size * c.inertia_inverse }
     }
 
     /// `FreeMotion`: several steps along one motion.
@@ -144,7 +152,7 @@ functions! {
 
     /// `SplitKicks`: the kicks of a splitting.
     SPLIT_KICKS(true) {
-        fn step_size(c: &C) -> T { Id::Constants }
+        fn step_size(c: &C) -> T { Id::Constants } = { c.step_size }
         /// A kick.
         fn kick(&self, c: &C, t: T, q: &Q, weight: T, gradient: T) -> Mu { Id::SplittingKick }
         /// The same for the covector.
@@ -153,7 +161,7 @@ functions! {
 
     /// `HamiltonEquations`: what a step of order 16 collocates.
     HAMILTON_EQUATIONS(true) {
-        fn step_size(c: &C) -> T { Id::Constants }
+        fn step_size(c: &C) -> T { Id::Constants } = { c.step_size }
         /// Hamilton's equations: (q′, p′) at y = (q, p), all entries of q and then those of p, rows first.
         fn slope(&self, c: &C, t: T, y: &Numbers) -> Numbers { Id::HamiltonEquations }
         /// A covector p at q with the momentum J(q, p) = μ.
@@ -175,6 +183,7 @@ functions! {
         fn explicit(&self, mu: &Momenta Given) -> Vector { Id::Explicit(0, 0) => Id::Solution(0, 0), Id::Predictor(0, 0) }
         /// Dρ and −ρ(0).
         fn system(&self, mu: &Momenta) -> (Square, Vector) { Id::System(0, 0) => Id::Jacobian(0, 0) }
+        fn prepare(&self, mu: &Momenta) -> Self::Terms { Id::Preparation(0, 0) => }
         /// The solution to first order in h.
         fn predict(&self, mu: &Momenta) -> Vector { Id::Predictor(0, 0) }
         /// The residual alone.
@@ -191,8 +200,14 @@ functions! {
 
     /// What solvers ask of an equation beside its residual.
     SOLVER(true) {
+        /// Dρ is symmetric: LDLᵀ where it is definite.
+        fn correct(a: &Square, b: &Vector) -> Option<(Vector, Orientation)> { Id::Equation(0, 0) => } = {
+            runtime::solve_symmetric(a, b)
+        }
+        /// Dρ is block triangular: one small system for each block.
+        fn correct(a: &Square, b: &Vector) -> Option<(Vector, Orientation)> { Id::Equation(0, 0) => }
         fn orientation(&self) -> Option<Orientation> { Id::Constants }
-        fn has_poles() -> Bool { Id::Equation(0, 0) }
+        fn has_poles() -> Bool { Id::Equation(0, 0) } = { true }
         /// The declared tolerance.
         fn tolerance() -> T { Id::Equation(0, 0) => }
         /// The declared number of iterations.
@@ -220,43 +235,132 @@ functions! {
     /// `VariedSubstep`: an edge, with its derivatives.
     EDGE(true) {
         /// ℓd with both Legendre transforms.
-        fn momenta(&self, c: &C, t: T, q: &Q, d: &F, next: &Q, u: &U) -> Momenta { Id::EdgeMomenta(0) }
+        fn momenta(&self, c: &C, t: T, q: &Q, d: &F, next: &Q, u: &U) -> Momenta { Id::EdgeMomenta(0) } = {
+            Locals
+            runtime::Momenta { lagrangian: Number0, before: Value1, after: Value2 }
+        }
         /// ℓd with both Legendre transforms and their derivatives along the motions of both ends.
-        fn edge(&self, c: &C, t: T, q: &Q, d: &F, next: &Q, u: &U) -> Edge { Id::Edge(0) }
+        fn edge(&self, c: &C, t: T, q: &Q, d: &F, next: &Q, u: &U) -> Edge { Id::Edge(0) } = {
+            Fixed
+            let before_by_end = Matrix4;
+            runtime::Edge {
+                lagrangian: Number0, before: Value1, after: Value2,
+                before_by_start: Matrix3, before_by_end, after_by_start: Matrix6, after_by_end: Matrix5,
+            }
+        }
         /// F⁺ℓd with the derivatives of both momenta, along motions that leave F as it is and along those of q⁺ alone.
-        fn carried(&self, c: &C, t: T, q: &Q, d: &F, next: &Q, u: &U) -> Carried { Id::Carried(0) }
+        fn carried(&self, c: &C, t: T, q: &Q, d: &F, next: &Q, u: &U) -> Carried { Id::Carried(0) } = {
+            Fixed
+            runtime::Carried {
+                momentum: Value0,
+                adjoint: Matrix1, before: Matrix2, after: Matrix3, before_by_end: Matrix4, after_by_end: Matrix5,
+            }
+        }
         /// ∂F⁻ℓd and ∂F⁺ℓd with respect to what is fixed during a step.
-        fn slopes(&self, c: &C, t: T, q: &Q, d: &F, next: &Q, u: &U) -> Slopes { Id::EdgeSlopes(0) }
+        fn slopes(&self, c: &C, t: T, q: &Q, d: &F, next: &Q, u: &U) -> Slopes { Id::EdgeSlopes(0) } = { Locals (Value0, Value1) }
     }
 
-    /// `Controlled`: the choice of inputs, from points and their costates, by the constants of steps.
-    CONTROLLED(false) {
-        fn prepare(&self, h: T) -> Result<Steps, Error> { Id::Constants }
-        fn check_place(&self, Start: &Point) -> Result<(), Error> { Id::Membership }
+    /// `Controlled`: the step that inputs make by themselves, from points and their costates, by its size.
+    STEERED(false) {
+        fn prepare(&self, h: T) -> Result<T, Error> { Id::Constants } = { Checks runtime::Ok(h) }
+        fn check_place(&self, q: &Q) -> Result<(), Error> { Id::Membership } = { runtime::check_on_orbit(q, { OrbitDefect }) }
         /// The step that an input makes.
-        fn follow(&self, constants: &Steps, t: T, x: &Point, u: &Input) -> Result<Point, Error> { Id::Increment => Id::Controls }
+        fn follow(&self, constants: &T, t: T, x: &Q, u: &Input) -> Result<Q, Error> { Id::Increment => Id::Controls } = {
+            Moved runtime::check_reached(next)
+        }
         /// The step with its derivatives, and the second derivatives of ℓ + λ·η′.
-        fn expand(&self, constants: &Steps, t: T, x: &Point, u: &Input, Costate: &Costates) -> Result<Expansion, Error> {
-            Id::StepExpanded
+        fn expand(&self, constants: &T, t: T, x: &Q, u: &Input, mu: &Costates) -> Result<Expansion, Error> { Id::StepExpanded } = {
+            Moved
+            let next = runtime::check_reached(next)?;
+            Locals
+            runtime::Ok(runtime::Expansion {
+                next, by_place: Value0, by_input: Value1, price: Number2, price_by_place: Value3, price_by_input: Value4,
+                place_curvature: Value5, mixed_curvature: Value6, input_curvature: Value7,
+            })
         }
         /// d/dh (ℓ + λ·η′), the start of the step moving with h.
-        fn price_of_time(&self, constants: &Steps, t: T, k: T, x: &Point, u: &Input, Costate: &Costates) -> Result<T, Error> {
-            Id::PriceOfTime
+        fn price_of_time(&self, constants: &T, t: T, k: T, x: &Q, u: &Input, mu: &Costates) -> Result<T, Error> { Id::PriceOfTime } = {
+            Moved
+            let slopes: runtime::SVector<T, 2> = { Locals Value0 };
+            runtime::Ok(slopes[0] + k * slopes[1])
         }
         /// Gᵀ(q* − q) and GᵀG.
-        fn arrival(&self, x: &Point, target: &Point) -> Arrival { Id::OrbitMetric => }
+        fn arrival(&self, x: &Q, target: &Q) -> Arrival { Id::OrbitMetric => } = {
+            let (q, next) = (x, target);
+            runtime::Arrival { residual: Approach, slope: OrbitMetric }
+        }
         /// The shortest motion that moves one configuration to another, to first order.
-        fn displacement(&self, x: &Point, y: &Point) -> Costates { Id::Approach }
+        fn displacement(&self, x: &Q, y: &Q) -> Costates { Id::Approach } = {
+            let (q, next) = (x, y);
+            runtime::displacement(&OrbitMetric, &Approach)
+        }
+    }
+
+    /// `Controlled`: what inputs of forces do to states, by the constants of steps and their size.
+    FORCED(false) {
+        fn prepare(&self, h: T) -> Result<(C, T), Error> { Id::Constants } = {
+            runtime::Ok((runtime::Clebsch::constants(self, h)?, h))
+        }
+        fn check_place(&self, x: &(Q, Mu)) -> Result<(), Error> { Id::Membership } = { runtime::check_state(self, &x.0, &x.1) }
+        /// The forced step.
+        fn follow(&self, constants: &(C, T), t: T, x: &(Q, Mu), u: &Input) -> Result<(Q, Mu), Error> { Id::Increment => Id::Controls } = {
+            runtime::forced_step(self, &constants.0, t, x, u)
+        }
+        /// The forced step with its derivatives, and the second derivatives of ℓ + λ·(η′, N⁺): with the multipliers κ of the momentum
+        /// equation those of α·η′ + β·F⁺ℓd + κ·(F⁻ℓd − N), to which η′ contributes ± ½ α·[Ad η, ζ].
+        fn expand(&self, constants: &(C, T), t: T, x: &(Q, Mu), u: &Input, costate: &Costates) -> Result<Expansion, Error> {
+            Id::PriceExpanded => Id::StepExpanded
+        } = {
+            Passed
+            let curvature: Curvature = Bend;
+            let mu = &link.driving;
+            let bracket: Square = Bracket;
+            let price = {
+                Locals
+                runtime::Price {
+                    price: Number0, by_motion: Value1, by_input: Value2, motions: Value3, mixed: Value4, inputs: Value5,
+                }
+            };
+            let next = runtime::check_reached((*next, edge.momentum))?;
+            runtime::Ok(link.expansion(next, &curvature, &bracket, &price))
+        }
+        /// d/dh (ℓ + λ·(η′, N⁺)), the start of the step moving with h.
+        fn price_of_time(&self, constants: &(C, T), t: T, k: T, x: &(Q, Mu), u: &Input, costate: &Costates) -> Result<T, Error> {
+            Id::PriceOfTime
+        } = {
+            Passed
+            let slopes: runtime::SVector<T, 2> = { Locals Value0 };
+            runtime::Ok(slopes[0] + k * slopes[1])
+        }
+        /// (Gᵀ(q* − q), N* − N) and (GᵀG, I).
+        fn arrival(&self, x: &(Q, Mu), target: &(Q, Mu)) -> Arrival { Id::OrbitMetric => } = {
+            let approach = runtime::Variational::approach(self, &x.0, &target.0);
+            let metric = runtime::Variational::orbit_metric(self, &x.0);
+            runtime::arrival_of_state(&metric, &approach, &(target.1 - x.1))
+        }
+        /// The shortest motion that moves one configuration to another, to first order, and the change of the momentum.
+        fn displacement(&self, x: &(Q, Mu), y: &(Q, Mu)) -> Costates { Id::Approach } = {
+            let approach = runtime::Variational::approach(self, &x.0, &y.0);
+            let motion = runtime::displacement(&runtime::Variational::orbit_metric(self, &x.0), &approach);
+            runtime::pair(&motion, &(y.1 - x.1))
+        }
+    }
+
+    /// `Controlled`: price, bounds and the price of the end.
+    CONTROLLED(false) {
         /// The price of a step.
-        fn price(&self, constants: &Self::Constants, t: T, x: &Self::Place, u: &Input) -> T { Id::Price }
+        fn price(&self, constants: &Self::Constants, t: T, x: &Self::Place, u: &Input) -> T { Id::Price } = { let (h, q) = (StepSize, Place); Locals Number0 }
         /// The bounds.
-        fn bounds(&self, t: T, x: &Self::Place, u: &Input) -> Bounds { Id::Bounds }
+        fn bounds(&self, t: T, x: &Self::Place, u: &Input) -> Bounds { Id::Bounds } = { let q = Place; Locals Value0 }
         /// The bounds with their derivatives, and the second derivatives of z·a.
-        fn bounds_expanded(&self, t: T, x: &Self::Place, u: &Input, z: &Bounds) -> BoundsExpansion { Id::BoundsExpanded }
+        fn bounds_expanded(&self, t: T, x: &Self::Place, u: &Input, z: &Bounds) -> BoundsExpansion { Id::BoundsExpanded } = {
+            let q = Place; Locals
+            runtime::bounds(Value0, &Value1, Value2, &Value3, &Value4, Value5)
+        }
         /// The price of the end.
-        fn endpoint(&self, t: T, x: &Self::Place) -> T { Id::PriceOfEnd }
+        fn endpoint(&self, t: T, x: &Self::Place) -> T { Id::PriceOfEnd } = { let q = Place; End }
         /// The price of the end with its derivatives.
-        fn endpoint_expanded(&self, t: T, x: &Self::Place) -> EndpointExpansion { Id::PriceOfEndExpanded }
+        fn endpoint_expanded(&self, t: T, x: &Self::Place) -> EndpointExpansion { Id::PriceOfEndExpanded } = { let q = Place; EndExpanded }
     }
 }
 

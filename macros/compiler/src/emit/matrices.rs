@@ -4,7 +4,7 @@ use clebsch_symbolic::{Rational, Role, Shape, integer};
 use proc_macro2::TokenStream;
 use quote::{format_ident, quote};
 
-use super::call::function_of_matrices;
+use super::block::matrix;
 use super::scope::{Place, Scope, index, nested, size};
 use crate::lower::{Callee, Code, Kernel, MatrixOperation, Whole};
 use crate::model::Layout;
@@ -13,12 +13,11 @@ impl Scope<'_, '_> {
     /// An operation on whole matrices.
     pub(super) fn whole(&self, whole: &Whole) -> TokenStream {
         let Whole { operation, operands, shape, .. } = whole;
-        let (private, scalar) = (&self.paths.private, &self.paths.scalar);
-        let matrix = || self.paths.matrix(shape.rows, shape.columns);
+        let matrix = || matrix(shape.rows, shape.columns);
         let reference = |position: usize| self.by_reference(&operands[position]);
         let call = |name: &str| {
             let (name, operands) = (format_ident!("{name}"), operands.iter().map(|operand| self.by_reference(operand)));
-            quote!(#private::#name(#(#operands),*))
+            quote!(runtime::#name(#(#operands),*))
         };
         // operands are names: each operation is a statement
         let method = |name: &str| {
@@ -33,7 +32,7 @@ impl Scope<'_, '_> {
             },
             MatrixOperation::Zero => {
                 let matrix = matrix();
-                quote!(<#matrix as #private::Space<#scalar>>::origin())
+                quote!(<#matrix as runtime::Space<T>>::origin())
             }
             MatrixOperation::Entries => self.grid(&(*shape, operands.clone()), false),
             MatrixOperation::Sum(weights) => self.weighted_sum(weights, operands),
@@ -43,7 +42,7 @@ impl Scope<'_, '_> {
             }
             MatrixOperation::Shifted => {
                 let (matrix, number) = (reference(0), self.code(&operands[1], false));
-                quote!(#private::shifted(#matrix, #number))
+                quote!(runtime::shifted(#matrix, #number))
             }
             MatrixOperation::Product => {
                 let (a, b) = (self.factor(&operands[0], Binding::Product), self.factor(&operands[1], Binding::Atom));
@@ -55,17 +54,17 @@ impl Scope<'_, '_> {
             }
             MatrixOperation::Transpose => method("transpose"),
             MatrixOperation::Inverse => call("inverse"),
-            MatrixOperation::Analytic(function) => call(function_of_matrices(*function)),
-            MatrixOperation::Value => self.opaque(&Callee::Value(String::new()), operands),
+            MatrixOperation::Analytic(function) => call(&Callee::Analytic(*function).to_string()),
+            MatrixOperation::Value => self.opaque(false, operands),
             MatrixOperation::Gradient(argument) => {
-                let gradient = self.opaque(&Callee::Gradient(String::new()), operands);
+                let gradient = self.opaque(true, operands);
                 let access = &self.model.configurations[argument - usize::from(self.takes_time())].accessor;
                 quote!(#gradient #access)
             }
             MatrixOperation::Block(i, j) => self.block(&reference(0), *shape, (*i, *j)),
             MatrixOperation::Embedded(i, j) => {
                 let (matrix, i, j) = (reference(0), size(*i), size(*j));
-                quote!(#private::embedded(#matrix, #i, #j))
+                quote!(runtime::embedded(#matrix, #i, #j))
             }
             MatrixOperation::Hadamard => method("component_mul"),
             MatrixOperation::DiagonalMatrix => {
@@ -84,7 +83,7 @@ impl Scope<'_, '_> {
             MatrixOperation::Determinant => call("determinant"),
             MatrixOperation::Largest => {
                 let matrix = reference(0);
-                quote!(#private::Space::<#scalar>::max_abs(#matrix))
+                quote!(runtime::Space::<T>::max_abs(#matrix))
             }
             MatrixOperation::Entry(i, j) => {
                 let is_column = matches!(&operands[0], Code::Whole(whole) if whole.shape.is_column());
@@ -97,7 +96,7 @@ impl Scope<'_, '_> {
     /// The type of a shared term, where what is called does not say it.
     pub(super) fn type_of(&self, code: &Code) -> Option<TokenStream> {
         let Code::Whole(whole) = code else { return None };
-        let matrix = self.paths.matrix(whole.shape.rows, whole.shape.columns);
+        let matrix = matrix(whole.shape.rows, whole.shape.columns);
         code.needs_name().then(|| quote!(: #matrix))
     }
 
@@ -179,7 +178,7 @@ impl Scope<'_, '_> {
 
     /// The part of a flat vector, which holds some of all components, that begins with one of them.
     fn part(&self, vector: &str, held: &[usize], first: usize, shape: Shape) -> Reached {
-        let (private, name) = (&self.paths.private, format_ident!("{vector}"));
+        let name = format_ident!("{vector}");
         if held.iter().copied().eq(first..first + shape.rows) {
             return Reached::Reference(quote!(#name));
         }
@@ -191,19 +190,17 @@ impl Scope<'_, '_> {
             return Reached::Value(self.block(&quote!(#name), shape, (start, 0)));
         }
         let entries = positions.into_iter().map(size);
-        Reached::Value(quote!(#private::vector([#(#name[#entries]),*])))
+        Reached::Value(quote!(runtime::vector([#(#name[#entries]),*])))
     }
 
     /// The block of a matrix, given by reference, from a place on.
     fn block(&self, matrix: &TokenStream, shape: Shape, (i, j): (usize, usize)) -> TokenStream {
-        let private = &self.paths.private;
         let [rows, columns, i, j] = [shape.rows, shape.columns, i, j].map(size);
-        quote!(#private::Blocks::block::<#rows, #columns>(#matrix, #i, #j))
+        quote!(runtime::Blocks::block::<#rows, #columns>(#matrix, #i, #j))
     }
 
     /// The value of an opaque potential, or its gradient.
-    fn opaque(&self, callee: &Callee, operands: &[Code]) -> TokenStream {
-        let time = self.takes_time().then(|| self.code(&operands[0], false));
+    fn opaque(&self, is_gradient: bool, operands: &[Code]) -> TokenStream {
         let leaves = &operands[usize::from(self.takes_time())..];
         let configuration = match &self.model.configuration {
             Layout::Leaf(leaf) => self.by_reference(&leaves[*leaf]),
@@ -212,7 +209,7 @@ impl Scope<'_, '_> {
                 quote!(&#configuration)
             }
         };
-        self.call_of_method(callee, time, configuration)
+        self.call_of_method(is_gradient, &operands[0], configuration)
     }
 
     /// The matrix of a linear map: columns of the values of a kernel at the unit vectors of `argument`; terms that do not depend on it stand
@@ -224,11 +221,11 @@ impl Scope<'_, '_> {
         argument: &str,
         is_argument: impl Fn(Role) -> bool,
     ) -> (TokenStream, TokenStream) {
-        let (private, argument) = (&self.paths.private, format_ident!("{argument}"));
+        let argument = format_ident!("{argument}");
         let (depends, needed) = (kernel.depends_on(is_argument), kernel.needed_by(output));
         let within = self.locals_where(kernel, |k| depends[k] && needed[k]);
-        let (value, vector) = (self.output(kernel, output), self.paths.matrix(self.coordinates.len(), 1));
-        let matrix = quote!(#private::matrix_of(|#argument: &#vector| { #within #value }));
+        let (value, vector) = (self.output(kernel, output), matrix(self.coordinates.len(), 1));
+        let matrix = quote!(runtime::matrix_of(|#argument: &#vector| { #within #value }));
         (self.locals_where(kernel, |k| !depends[k]), matrix)
     }
 }

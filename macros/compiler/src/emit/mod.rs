@@ -1,21 +1,17 @@
 //! The fifth stage: the program as Rust, documented with the formulas it computes.
 
+mod block;
 mod call;
 mod code;
 mod collocation;
 mod constants;
 mod control;
-mod dials;
-mod docs;
 mod equation;
-mod exact;
 mod function;
 mod functions;
-mod jacobian;
 mod matrices;
 mod methods;
 mod names;
-mod opaque;
 mod parts;
 mod power;
 mod scheme;
@@ -23,12 +19,12 @@ mod scope;
 mod solve;
 mod stub;
 mod system;
-mod types;
 mod variation;
 
 use std::cell::RefCell;
 use std::ops::Deref;
 
+use clebsch_symbolic::Group;
 use proc_macro2::{Ident, TokenStream};
 use quote::{ToTokens, format_ident, quote};
 
@@ -36,9 +32,9 @@ use crate::MethodProgram;
 use crate::derive::{FormulaTable, MechanicsFormulas, Symbols, SystemFormulas};
 use crate::lower::{KernelTable, MechanicsProgram, Program};
 use crate::model::{Item, Mechanics, Opaque, Power, System};
+use block::{Block, Target, anonymous, leaf, matrix};
 use names::Names;
-use scope::{Scope, size};
-use types::{Paths, Target};
+use scope::{Scope, nested_type, size};
 
 pub use functions::shown_by;
 pub use stub::stub;
@@ -55,21 +51,13 @@ pub fn emit(program: &Program<'_>) -> TokenStream {
         let documentation = "The formulas of the derivation of this struct in LaTeX, an `align*` of its own.";
         emitter.constant("DERIVATION_LATEX", documentation, &emitter.rows.latex())
     });
-    quote! {
-        // the lints of straight-line code are ours to mind, not the user's; signatures are the same for every system, and
-        // not every kernel reads all of its arguments
-        #[allow(clippy::all, clippy::pedantic, unused_parens, unused_variables, dead_code)]
-        const _: () = {
-            #items
-        };
-        #generated
-        #latex
-    }
+    let texts = emitter.names.put_in(quote!(#generated #latex));
+    anonymous(&quote!(#items #texts))
 }
 
 /// All items, with what emits those that every system has.
 fn expanded<'a, 'g>(program: &'a Program<'g>) -> (SystemEmitter<'a, 'g>, TokenStream) {
-    match program {
+    let (emitter, items) = match program {
         Program::Mechanics(program) => {
             let emitter = Emitter::new(program);
             let items = emitter.items();
@@ -78,12 +66,15 @@ fn expanded<'a, 'g>(program: &'a Program<'g>) -> (SystemEmitter<'a, 'g>, TokenSt
         Program::Steered(program) => {
             let table = (program.formulas.table(), &program.table);
             let emitter = SystemEmitter::new(&program.formulas, table, (None, None), &[]);
-            let (groups, aliases, controlled) = (emitter.groups(), emitter.aliases(), emitter.controlled());
+            let controlled = emitter.controlled();
             let documentation = "The derivation of this struct in words and formulas.";
             let derivation = emitter.constant("DERIVATION", documentation, &program.derivation());
-            (emitter, quote!(#groups #aliases #controlled #derivation))
+            (emitter, quote!(#controlled #derivation))
         }
-    }
+    };
+    let groups = emitter.groups();
+    let items = emitter.named(&quote!(#groups #items));
+    (emitter, items)
 }
 
 /// The texts of `DERIVATION` of a program and of its methods, one after the other.
@@ -116,6 +107,7 @@ struct Emitter<'a, 'g> {
 
 /// What the parts need that mechanics and control have in common.
 struct SystemEmitter<'a, 'g> {
+    block: Block<'a>,
     model: &'a System<'g>,
     symbols: &'a Symbols<'g>,
     rows: &'a FormulaTable<'g>,
@@ -123,14 +115,6 @@ struct SystemEmitter<'a, 'g> {
     keeps_matrices: bool,
     power: Option<&'a Power<'g>>,
     opaque: Option<&'a Opaque>,
-    /// The method that is emitted, where it is not that of the declared dials.
-    method: Option<&'a Ident>,
-    /// Paths of the runtime, as they are spelled where no name of the expansion is in scope.
-    spelled: Paths,
-    paths: Paths,
-    /// The user's struct; of a power that of a site.
-    target: Target,
-    names: Names,
 }
 
 impl<'a, 'g> Deref for Emitter<'a, 'g> {
@@ -141,40 +125,42 @@ impl<'a, 'g> Deref for Emitter<'a, 'g> {
     }
 }
 
+impl<'a> Deref for SystemEmitter<'a, '_> {
+    type Target = Block<'a>;
+
+    fn deref(&self) -> &Block<'a> {
+        &self.block
+    }
+}
+
 impl<'a, 'g> Emitter<'a, 'g> {
     fn new(program: &'a MechanicsProgram<'g>) -> Emitter<'a, 'g> {
         let (formulas, model) = (&program.formulas, &program.formulas.model);
-        Emitter { system: SystemEmitter::of_mechanics(program), program, formulas, model }
+        let parts = (model.power.as_ref(), model.opaque.as_ref());
+        let system = SystemEmitter::new(formulas, (formulas.table(), &program.table), parts, &program.methods);
+        let system = SystemEmitter { keeps_matrices: program.form.keeps_matrices(), ..system };
+        Emitter { system, program, formulas, model }
     }
 
-    /// The emitter of a method, which has the names of that of the declared dials.
-    fn of_method(declared: &'a MechanicsProgram<'g>, method: &'a MethodProgram<'g>) -> Emitter<'a, 'g> {
+    /// The emitter of a method, which stands in the block of that of the declared dials.
+    fn of_method(&self, method: &'a MethodProgram<'g>) -> Emitter<'a, 'g> {
         let emitter = Emitter::new(&method.program);
-        let SystemEmitter { spelled, paths, target, names, .. } = SystemEmitter::of_mechanics(declared);
-        let method = Some(&method.name);
-        Emitter { system: SystemEmitter { method, spelled, paths, target, names, ..emitter.system }, ..emitter }
+        let block = Block { method: Some(&method.name), ..self.block.clone() };
+        Emitter { system: SystemEmitter { block, ..emitter.system }, ..emitter }
     }
 
     fn items(&self) -> TokenStream {
-        let (groups, aliases) = (self.groups(), self.aliases());
         let (power, constants, system) = (self.power(), self.constants_type(), self.system());
         // what is conserved of a power is a sum over its sites
         let conserves = self.power.is_none().then(|| self.conserves());
         let (variational, sensitive, controlled) = (self.variational(), self.sensitive(), self.controlled());
         let (check, parts, equations) = (self.potential_check(), self.parts(), self.equations());
         let (velocity, methods) = (self.velocity(), self.methods());
-        quote!(#groups #aliases #power #constants #system #conserves #variational #sensitive #controlled #check #parts #equations #velocity #methods)
+        quote!(#power #constants #system #conserves #variational #sensitive #controlled #check #parts #equations #velocity #methods)
     }
 }
 
 impl<'a, 'g> SystemEmitter<'a, 'g> {
-    fn of_mechanics(program: &'a MechanicsProgram<'g>) -> SystemEmitter<'a, 'g> {
-        let formulas = &program.formulas;
-        let parts = (formulas.model.power.as_ref(), formulas.model.opaque.as_ref());
-        let emitter = SystemEmitter::new(formulas, (formulas.table(), &program.table), parts, &program.methods);
-        SystemEmitter { keeps_matrices: program.form.keeps_matrices(), ..emitter }
-    }
-
     fn new(
         formulas: &'a SystemFormulas<'g>,
         (rows, kernels): (&'a FormulaTable<'g>, &'a KernelTable),
@@ -182,53 +168,58 @@ impl<'a, 'g> SystemEmitter<'a, 'g> {
         methods: &[MethodProgram<'g>],
     ) -> SystemEmitter<'a, 'g> {
         let (model, symbols, item) = (&*formulas.model, &formulas.symbols, &formulas.model.item);
-        let names = Names::new(model, (power, opaque), methods.iter().map(|method| &method.name));
-        let spelled = Paths::new(&item.krate.to_token_stream(), &item.scalar);
-        let paths = spelled.named(item, &names);
-        let target = Target::new(&item.ident, &item.generics, &item.scalar, &spelled.private);
-        let (method, keeps_matrices) = (None, false);
-        SystemEmitter {
-            model,
-            symbols,
-            rows,
-            kernels,
-            keeps_matrices,
-            power,
-            opaque,
-            method,
-            spelled,
-            paths,
-            target,
+        // of a power the user's struct is another item than that of a site
+        let mut users: Vec<TokenStream> =
+            [item].into_iter().chain(power.map(|power| &power.item)).map(of_item).collect();
+        users.extend(methods.iter().map(|method| method.name.to_token_stream()));
+        users.extend(model.constants.iter().map(|constant| constant.path.to_token_stream()));
+        users.extend(opaque.map(|Opaque { value, gradient, .. }| quote!(#value #gradient)));
+        let names = Names::new(&item.scalar, !model.configurations.is_empty(), &users);
+        let configuration = nested_type(&model.configuration, |k| {
+            leaf(model.configurations[k].shape, model.configurations[k].is_quaternion)
+        });
+        let element = nested_type(&model.element, |k| {
+            let group = model.factors[k].group;
+            leaf(group.element_shape(), group == Group::UnitQuaternions)
+        });
+        let block = Block {
+            krate: item.krate.to_token_stream(),
+            scalar: &item.scalar,
+            types: [configuration, element, matrix(model.dimension(), 1)],
+            input: nested_type(&model.input, |k| leaf(model.inputs[k].shape, false)),
+            dimension: model.dimension(),
+            method: None,
+            target: Target::new(&item.ident, &item.generics, &item.scalar, &names),
             names,
-        }
+        };
+        SystemEmitter { block, model, symbols, rows, kernels, keeps_matrices: false, power, opaque }
     }
 
     /// The documentation types of the groups, named where the user has written them, so that an editor shows their pages there.
     fn groups(&self) -> TokenStream {
-        let krate = &self.paths.krate;
         let built_in = self.model.factors.iter().filter(|factor| !factor.group.is_declared());
         let types = built_in.map(|factor| {
             let (name, sizes) = factor.group.symbol();
             let (name, sizes) = (Ident::new(name, factor.span), sizes.into_iter().map(size));
-            quote!(const _: ::core::option::Option<#krate::group::#name<#(#sizes),*>> = ::core::option::Option::None;)
+            quote!(const _: runtime::Option<runtime::group::#name<#(#sizes),*>> = runtime::None;)
         });
         types.collect()
     }
 
     /// The user's struct as it is declared, where that is another one than that of a site.
-    fn declared(&self, private: &TokenStream) -> Target {
+    fn declared(&self) -> Target {
         let item: &Item = self.power.map_or(&self.model.item, |power| &power.item);
-        Target::new(&item.ident, &item.generics, &item.scalar, private)
+        Target::new(&item.ident, &item.generics, &item.scalar, &self.names)
     }
 
     /// A constant of the user's struct that holds a text.
     fn constant(&self, name: &str, documentation: &str, text: &str) -> TokenStream {
-        let (name, documentation) = (format_ident!("{name}"), docs::lines(documentation));
+        let (name, documentation) = (format_ident!("{name}"), function::lines(documentation));
         let constant = quote! {
             #documentation
             pub const #name: &'static ::core::primitive::str = #text;
         };
-        self.declared(&self.spelled.private).derived(None, constant)
+        self.declared().derived(None, constant)
     }
 
     /// The scope of a method of the user's struct.
@@ -242,10 +233,16 @@ impl<'a, 'g> SystemEmitter<'a, 'g> {
     }
 
     fn scope(&self, system: TokenStream, constants: Option<TokenStream>) -> Scope<'_, 'g> {
-        let [momenta, coordinates] = [(0..self.model.dimension()).collect(), (0..self.model.dimension()).collect()];
+        let [momenta, coordinates] = [(0..self.dimension).collect(), (0..self.dimension).collect()];
         let (reads, numbers) = (RefCell::default(), RefCell::default());
         Scope { emitter: self, system, constants, momenta, coordinates, reads, numbers }
     }
+}
+
+/// The names of the user in an item.
+fn of_item(Item { ident, generics, .. }: &Item) -> TokenStream {
+    let predicates = &generics.where_clause;
+    quote!(#ident #generics #predicates)
 }
 
 /// A constant of a trait that is true or false.

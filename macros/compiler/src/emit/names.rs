@@ -1,58 +1,64 @@
-//! The names that an expansion introduces beside the user's: they give way to what the user's item already calls so.
+//! The words that generated code is written with, beside the user's: they give way to what the user's item already calls so.
+//!
+//! `runtime` is the module of the runtime for generated code, `T` the scalar, `Q`, `F` and `Mu` the types of configurations, group elements
+//! and momenta, `C` that of the constants. Mostly that is what they are called in the expansion too. Where the user has such a name, or
+//! the scalar is a type parameter, other tokens are put in for them at the end; until then names of the user are raw identifiers.
 
 use std::collections::BTreeSet;
 
-use proc_macro2::{Ident, Span, TokenStream, TokenTree};
-use quote::{ToTokens, format_ident};
+use proc_macro2::{Group, Ident, Span, TokenStream, TokenTree};
+use quote::{format_ident, quote};
 use syn::Lifetime;
 
-use crate::model::{Opaque, Power, ScalarType, System};
+use crate::model::ScalarType;
+
+const WORDS: [&str; 7] = ["runtime", "T", "Q", "F", "Mu", "C", "Velocity"];
 
 /// Names of generated types and of their lifetime: those of the user's item and what it reads are taken.
-pub struct Names(BTreeSet<String>);
+#[derive(Clone)]
+pub(super) struct Names {
+    taken: BTreeSet<String>,
+    /// What words stand for, where that is not themselves.
+    words: Option<[TokenStream; 7]>,
+}
 
 impl Names {
-    /// The names for a model and its methods.
-    pub fn new<'a>(
-        model: &System<'_>,
-        (power, opaque): (Option<&Power<'_>>, Option<&Opaque>),
-        methods: impl Iterator<Item = &'a Ident>,
-    ) -> Names {
-        let mut taken = BTreeSet::new();
-        // of a power the user's struct is another item than that of a site
-        for item in [&model.item].into_iter().chain(power.map(|power| &power.item)) {
-            collect(item.ident.to_token_stream(), &mut taken);
-            collect(item.generics.to_token_stream(), &mut taken);
-            collect(item.generics.where_clause.to_token_stream(), &mut taken);
-        }
-        taken.extend(methods.map(Ident::to_string));
-        model.constants.iter().for_each(|constant| collect(constant.path.to_token_stream(), &mut taken));
-        if let Some(opaque) = opaque {
-            collect(opaque.value.to_token_stream(), &mut taken);
-            collect(opaque.gradient.to_token_stream(), &mut taken);
-        }
-        if let ScalarType::Parameter(ident) = &model.item.scalar {
-            taken.insert(ident.to_string());
-        }
-        Names(taken)
+    /// The names beside some tokens of the user.
+    pub(super) fn new(scalar: &ScalarType, has_configuration: bool, users: &[TokenStream]) -> Names {
+        let mut names = Names { taken: BTreeSet::new(), words: None };
+        users.iter().for_each(|tokens| collect(tokens.clone(), &mut names.taken));
+        let ScalarType::Parameter(parameter) = scalar else {
+            let is_taken = WORDS.iter().any(|word| names.taken.contains(*word));
+            let words = is_taken.then(|| WORDS.map(|word| TokenTree::from(names.free(word)).into()));
+            return Names { words, ..names };
+        };
+        names.taken.insert(parameter.to_string());
+        let word = |word| match (word, names.free(word)) {
+            ("T", _) => quote!(#parameter),
+            ("F" | "Mu" | "C", name) => quote!(#name<#parameter>),
+            // momenta that are stepped alone have no configuration
+            ("Q", name) if has_configuration => quote!(#name<#parameter>),
+            (_, name) => quote!(#name),
+        };
+        Names { words: Some(WORDS.map(word)), ..names }
     }
 
     /// The name, with underscores behind it as long as it is taken.
-    pub fn free(&self, name: &str) -> Ident {
+    pub(super) fn free(&self, name: &str) -> Ident {
         let mut name = name.to_string();
-        while self.0.contains(&name) {
+        while self.taken.contains(&name) {
             name.push('_');
         }
         format_ident!("{name}")
     }
 
     /// The lifetime of references to the user's struct.
-    pub fn lifetime(&self) -> Lifetime {
+    pub(super) fn lifetime(&self) -> Lifetime {
         Lifetime { apostrophe: Span::call_site(), ident: self.free("clebsch") }
     }
 
     /// The struct of an equation.
-    pub fn equation(&self, suffix: &str, number: usize) -> Ident {
+    pub(super) fn equation(&self, suffix: &str, number: usize) -> Ident {
         let suffix = match suffix {
             "_first" => "First",
             "_adjoint" => "Adjoint",
@@ -61,6 +67,44 @@ impl Names {
         };
         self.free(&format!("Equation{suffix}{}", number + 1))
     }
+
+    /// Tokens of the user, in which no name is a word.
+    pub(super) fn of_user(&self, tokens: TokenStream) -> TokenStream {
+        let raw = |name: &str, span| Some(TokenTree::from(Ident::new_raw(name, span)).into());
+        match self.words {
+            Some(_) => put_in(tokens, &|name, span| WORDS.contains(&name).then(|| raw(name, span))?),
+            None => tokens,
+        }
+    }
+
+    /// Generated code, with what its words stand for.
+    pub(super) fn put_in(&self, tokens: TokenStream) -> TokenStream {
+        let Some(words) = &self.words else { return tokens };
+        put_in(tokens, &|name, span| match name.strip_prefix("r#") {
+            Some(plain) if WORDS.contains(&plain) => Some(TokenTree::from(Ident::new(plain, span)).into()),
+            _ => Some(words[WORDS.iter().position(|word| *word == name)?].clone()),
+        })
+    }
+}
+
+/// Some tokens, with others for some of their names; fields, methods, lifetimes and what stands in a module or a type are left.
+pub(super) fn put_in(tokens: TokenStream, other: &impl Fn(&str, Span) -> Option<TokenStream>) -> TokenStream {
+    let (mut all, mut before) = (TokenStream::new(), [' ', ' ']);
+    for token in tokens {
+        let is_member = before == [':', ':'] || ['.', '\''].contains(&before[1]);
+        before = [before[1], if let TokenTree::Punct(punct) = &token { punct.as_char() } else { ' ' }];
+        let changed = match &token {
+            TokenTree::Ident(name) if !is_member => other(&name.to_string(), name.span()),
+            TokenTree::Group(group) => {
+                let mut changed = Group::new(group.delimiter(), put_in(group.stream(), other));
+                changed.set_span(group.span());
+                Some(TokenTree::from(changed).into())
+            }
+            _ => None,
+        };
+        all.extend(changed.unwrap_or_else(|| token.into()));
+    }
+    all
 }
 
 /// All identifiers of some tokens; those of lifetimes too, without their quote.

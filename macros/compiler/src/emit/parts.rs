@@ -10,21 +10,10 @@ use super::scope::{nested, size};
 use super::{Emitter, flag};
 use crate::derive::Id;
 use crate::lower::Kernel;
-use crate::model::{Layout, LeafSpace};
+use crate::model::LeafSpace;
 
 /// The most operations of a step, apart from those of iterations, that is inlined wherever it is called.
 const SHORT_STEP: usize = 192;
-
-/// What moves q and N.
-#[derive(Copy, Clone, PartialEq, Eq)]
-enum Motion {
-    /// D = F − I.
-    Increment,
-    /// The chart coordinates x.
-    Coordinates,
-    /// q moves by x, N by D.
-    Both,
-}
 
 impl Emitter<'_, '_> {
     /// The implementations of `Parts`, of `Substep` for each substep, and of what the scheme calls beside them.
@@ -34,22 +23,40 @@ impl Emitter<'_, '_> {
         quote!(#shared #(#substeps)* #of_scheme)
     }
 
-    fn motion(&self) -> Motion {
-        let program = self.program;
-        let updates = (0..program.formulas.stepped).any(|index| program.find(Id::MomentumAfter(index)).is_some());
-        match (program.find(Id::Displacement), updates) {
-            (None, _) => Motion::Increment,
-            (Some(_), false) => Motion::Coordinates,
-            (Some(_), true) => Motion::Both,
-        }
+    /// The names of what moves q and N in signatures, and their types: D = F − I, the chart coordinates x, or x for q and D for N.
+    pub(super) fn word_of_step(&self, word: &str) -> Option<TokenStream> {
+        let is_displaced = || self.program.find(Id::Displacement).is_some();
+        let updates = |index| self.program.find(Id::MomentumAfter(index)).is_some();
+        let is_updated = || (0..self.formulas.stepped).any(updates);
+        Some(match word {
+            "X" => self.coordinates()[0].clone(),
+            "Coordinates" => self.coordinates()[1].clone(),
+            "Moves" | "Motion" | "Moved" | "Increment" => {
+                let [coordinates, _] = self.coordinates();
+                let names = match (is_displaced(), is_updated()) {
+                    (false, _) => [quote!(ByIncrement), quote!(F), quote!(d), quote!(d)],
+                    (true, false) => [quote!(ByCoordinates), coordinates, quote!(x), quote!(d)],
+                    (true, true) => [quote!(ByBoth), quote!((#coordinates, F)), quote!((x, _)), quote!((_, d))],
+                };
+                let place = ["Moves", "Motion", "Moved"].iter().position(|other| *other == word);
+                names[place.unwrap_or(3)].clone()
+            }
+            "Rest" if self.formulas.is_compensated() => quote!(Q),
+            "Rest" => quote!(()),
+            _ => return None,
+        })
     }
 
-    pub(super) fn motion_type(&self) -> TokenStream {
-        let (coordinates, element) = (self.coordinates_type(), self.alias("F"));
-        match self.motion() {
-            Motion::Increment => element,
-            Motion::Coordinates => coordinates,
-            Motion::Both => quote!((#coordinates, #element)),
+    /// The type of the chart coordinates of all factors, with the weights of those that are given up to a factor, and their pattern; F − I where a
+    /// motion gives that at once.
+    fn coordinates(&self) -> [TokenStream; 2] {
+        let count = size(self.formulas.weighted().len());
+        if self.formulas.turns_whole() {
+            [quote!(F), quote!(d)]
+        } else if self.formulas.weighted().is_empty() {
+            [quote!(Mu), quote!(x)]
+        } else {
+            [quote!((Mu, [T; #count])), quote!((x, w))]
         }
     }
 
@@ -62,34 +69,19 @@ impl Emitter<'_, '_> {
 
     /// Increment, advance and lift, which all substeps share.
     fn shared_parts(&self) -> TokenStream {
-        let (private, coordinates) = (&self.paths.private, self.coordinates_type());
         let sums = if self.formulas.is_compensated() { quote!(Compensated) } else { quote!(Plain) };
-        let (moves, moved) = match self.motion() {
-            Motion::Increment => (quote!(ByIncrement), quote!(d)),
-            Motion::Coordinates => (quote!(ByCoordinates), quote!(x)),
-            Motion::Both => (quote!(ByBoth), quote!((x, _))),
-        };
         let is_short = self.is_short().then(|| flag("IS_SHORT", true));
         let no_covectors = (!self.model.has_covectors()).then(|| flag("HAS_COVECTORS", false));
-        let pattern = if self.formulas.turns_whole() {
-            quote!(d)
-        } else if self.formulas.weighted().is_empty() {
-            quote!(x)
-        } else {
-            quote!((x, w))
-        };
-        let words =
-            [("Coordinates", pattern), ("Moved", moved), ("X", coordinates.clone()), ("Motion", self.motion_type())];
+        let [coordinates, moves] = ["X", "Moves"].map(|word| self.word_of_step(word));
+        let words = |word: &str| self.word_of_step(word);
         let functions = self.functions(PARTS, (0, 0), &words, |function, kernel| self.shared_part(function, kernel));
-        let on_space = self.on_space();
         let items = quote! {
-            type Sums = #private::#sums;
+            type Sums = runtime::#sums;
             type Coordinates = #coordinates;
-            type Moves = #private::#moves;
+            type Moves = runtime::#moves;
             #is_short
             #no_covectors
             #functions
-            #on_space
         };
         self.implementation("Parts", &[], items)
     }
@@ -104,80 +96,55 @@ impl Emitter<'_, '_> {
             "advance" if function.kernel == Id::Displacement => {
                 titled("q⁺ − q = α ξ_Q(q) + β ξ_Q(ξ_Q(q)) at ξ = x where F = I + α x^ + β (x^)², without the matrix.")
             }
-            "advance" if self.motion() != Motion::Increment => None,
+            "advance" if self.program.find(Id::Displacement).is_some() => None,
             "advance" => titled("Φ_F(q) − q of F = I + D, in which q has cancelled."),
             "lift" if !self.model.has_covectors() => None,
+            "on_space" => Some(Body::from(self.on_space()?)),
             _ => computed(),
         }
     }
 
     /// F = I + D for each factor.
     fn element_of_increment(&self) -> TokenStream {
-        let private = &self.paths.private;
         nested(&self.model.element, &mut |k| {
             let access = &self.model.factors[k].accessor;
             match self.model.factors[k].group {
                 Group::Translation(_) if access.is_whole() => quote!(*d),
                 Group::Translation(_) => quote!(d #access),
-                Group::UnitQuaternions => quote!(#private::quaternion_from_increment(&d #access)),
-                _ => quote!(#private::from_increment(&d #access)),
+                Group::UnitQuaternions => quote!(runtime::quaternion_from_increment(&d #access)),
+                _ => quote!(runtime::from_increment(&d #access)),
             }
         })
     }
 
     /// Takes the rounding of many moves off rotations, unit vectors and unit quaternions.
     fn on_space(&self) -> Option<TokenStream> {
-        let private = &self.paths.private;
-        let (configuration, is_compensated) = (self.alias("Q"), self.formulas.is_compensated());
-        let leaves = self.model.configurations.iter().filter_map(|leaf| {
-            let access = &leaf.accessor;
-            match leaf.space {
-                LeafSpace::Group(Group::UnitQuaternions) => Some(("of_length_one", quote!(#access.coords))),
-                LeafSpace::Group(group) if group.is_orthogonal() => Some(("orthogonal", quote!(#access))),
-                LeafSpace::Unit => Some(("of_length_one", quote!(#access))),
-                LeafSpace::Vectors | LeafSpace::Group(_) => None,
-            }
-        });
-        let leaves: Vec<(&str, TokenStream)> = leaves.collect();
-        let &[(first, _), ..] = &leaves[..] else { return None };
         if self.program.turns_in_plane() {
             return None;
         }
-        if let ([leaf], Layout::Leaf(_)) = (&self.model.configurations[..], &self.model.configuration)
-            && !(leaf.is_quaternion || is_compensated)
-        {
-            let function = format_ident!("{first}");
-            return Some(quote! {
-                #[inline]
-                fn on_space(q: #configuration, rest: ()) -> (#configuration, ()) {
-                    (#private::#function(q), rest)
-                }
-            });
-        }
-        let mended = leaves.iter().map(|(function, access)| {
-            if is_compensated {
+        let mended = self.model.configurations.iter().filter_map(|leaf| {
+            let access = &leaf.accessor;
+            let (function, access) = match leaf.space {
+                LeafSpace::Group(Group::UnitQuaternions) => ("of_length_one", quote!(#access.coords)),
+                LeafSpace::Group(group) if group.is_orthogonal() => ("orthogonal", quote!(#access)),
+                LeafSpace::Unit => ("of_length_one", quote!(#access)),
+                LeafSpace::Vectors | LeafSpace::Group(_) => return None,
+            };
+            if self.formulas.is_compensated() {
                 let function = format_ident!("{function}_with_rest");
-                return quote!((q #access, rest #access) = #private::#function(q #access, rest #access););
+                return Some(quote!((q #access, rest #access) = runtime::#function(q #access, rest #access);));
             }
             let function = format_ident!("{function}");
-            quote!(q #access = #private::#function(q #access);)
+            Some(quote!(q #access = runtime::#function(q #access);))
         });
-        let mutable = is_compensated.then(|| quote!(mut));
-        let rest = if is_compensated { quote!(#configuration) } else { quote!(()) };
-        Some(quote! {
-            #[inline]
-            fn on_space(mut q: #configuration, #mutable rest: #rest) -> (#configuration, #rest) {
-                #(#mended)*
-                (q, rest)
-            }
-        })
+        let mended: Vec<TokenStream> = mended.collect();
+        (!mended.is_empty()).then(|| quote!(#(#mended)* (q, rest)))
     }
 
     /// The parts of one substep: kicks, forces, solve, update.
     fn substep(&self, index: usize) -> TokenStream {
         let ends_as_it_starts = self.ends_as_it_starts(index).then(|| flag("ENDS_AS_IT_STARTS", true));
-        let increment = if self.motion() == Motion::Both { quote!((_, d)) } else { quote!(d) };
-        let words = [("Increment", increment), ("X", self.coordinates_type()), ("Motion", self.motion_type())];
+        let words = |word: &str| self.word_of_step(word);
         let functions = self
             .functions(SUBSTEP, (index, 0), &words, |function, kernel| self.part_of_substep(index, function, kernel));
         self.implementation("Substep", &[size(index)], quote!(#ends_as_it_starts #functions))
@@ -196,7 +163,7 @@ impl Emitter<'_, '_> {
             "end_kick" if !self.ends_with_kick() || self.ends_as_it_starts(index) => None,
             "end_kick" => {
                 let Some(first) = self.same_kick(index) else { return computed() };
-                let substep = self.call_of_parts("Substep", &[size(first)]);
+                let substep = self.trait_of_parts("Substep", &[size(first)]);
                 let body = Body::from(quote!(#substep::start_kick(self, c, t, q)));
                 Some(body.titled("The kick at the end of a step is that at the start of the next."))
             }

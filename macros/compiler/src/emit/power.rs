@@ -6,12 +6,11 @@ use clebsch_symbolic::{Group, Property};
 use proc_macro2::TokenStream;
 use quote::quote;
 
+use super::block::{self, Target, time_type, types_of_system};
 use super::function::Body;
 use super::functions::SITES;
 use super::scope::nested_type;
-use super::system::types_of_system;
-use super::types::Target;
-use super::{Emitter, docs, flag};
+use super::{Emitter, flag};
 use crate::model::{LeafSpace, Order, Parameter, Power};
 use terms::Terms;
 
@@ -19,7 +18,7 @@ impl<'g> Emitter<'_, 'g> {
     /// The struct of a site and the implementation for all sites, where the declaration is a power.
     pub(super) fn power(&self) -> TokenStream {
         let Some(power) = self.power else { return TokenStream::new() };
-        let target = self.declared(&self.paths.private);
+        let target = self.declared();
         let (site, sites, whole) = (self.site(), self.sites(power, &target), self.whole_power(power, &target));
         let conserves = self.conserves();
         quote!(#site #sites #whole #conserves)
@@ -27,18 +26,17 @@ impl<'g> Emitter<'_, 'g> {
 
     /// The struct of a site: the fields that it reads.
     fn site(&self) -> TokenStream {
-        let (ident, (parameters, _, predicates)) = (&self.target.ident, self.target.generics.split_for_impl());
+        let Target { ident, parameters, predicates, .. } = &self.target;
         let fields = self.model.parameters.iter().map(|parameter| {
             let (field, ty) = (&parameter.field, self.type_of(parameter));
+            let field = self.names.of_user(quote!(#field));
             quote!(#field: #ty,)
         });
-        let parameter = self.scalar_parameter();
-        let scalar = parameter.map(|parameter| quote!(scalar: ::core::marker::PhantomData #parameter,));
-        let documentation = docs::lines("One site: what moves it while the others do nothing to it.");
+        let marker = self.is_generic().then(|| quote!(scalar: ::core::marker::PhantomData<T>,));
         quote! {
-            #documentation
+            /// One site: what moves it while the others do nothing to it.
             #[derive(::core::clone::Clone, ::core::marker::Copy, ::core::fmt::Debug)]
-            pub struct #ident #parameters #predicates { #(#fields)* #scalar }
+            pub struct #ident #parameters #predicates { #(#fields)* #marker }
         }
     }
 
@@ -47,20 +45,20 @@ impl<'g> Emitter<'_, 'g> {
         nested_type(&parameter.structure, |leaf| {
             // the nesting of a field counts its leaves from 0
             let leaf = &parameter.leaves[leaf];
-            if leaf.is_scalar { self.paths.scalar.clone() } else { self.paths.leaf(leaf.shape, false) }
+            if leaf.is_scalar { quote!(T) } else { block::leaf(leaf.shape, false) }
         })
     }
 
     /// What ties sites together.
     fn sites(&self, power: &Power<'g>, target: &Target) -> TokenStream {
-        let (krate, private, scalar) = (&self.paths.krate, &self.paths.private, &self.paths.scalar);
         let (length, site, site_type) = (&power.length, &self.target.ident, self.target.of_type());
         let fields = self.model.parameters.iter().zip(&power.copied).map(|(parameter, field)| {
             let (name, index) = (&parameter.field, parameter.per_site.then(|| quote!([i])));
+            let name = self.names.of_user(quote!(#name));
             quote!(#name: self.#field #index,)
         });
-        let marker = self.model.item.scalar.is_parameter().then(|| quote!(scalar: ::core::marker::PhantomData,));
-        let (point, terms) = (self.alias("Q"), Terms::new(self, power));
+        let marker = self.is_generic().then(|| quote!(scalar: ::core::marker::PhantomData,));
+        let terms = Terms::new(self, power);
         let is_bounded = self.model.configurations.iter().all(|leaf| match leaf.space {
             LeafSpace::Unit => true,
             LeafSpace::Group(group) => Group::element_property(group) == Property::Orthogonal,
@@ -72,21 +70,22 @@ impl<'g> Emitter<'_, 'g> {
             flag("IS_BOUNDED", is_bounded),
         ];
         let gradient = match &self.program.gathered {
-            Some(stencil) => terms.gathered_gradient(stencil, &point),
-            None => terms.added_gradient(&point),
+            Some(stencil) => terms.gathered_gradient(stencil),
+            None => terms.added_gradient(),
         };
-        let potential = self.functions(SITES, (0, 0), &[("Sites", quote!([#point; #length]))], |_, _| {
-            let terms = terms.potential();
-            let code = quote! {
-                let _ = (t, q);
-                let mut sum = <#scalar as #private::Zero>::zero();
-                #terms
-                sum
-            };
-            Some(Body::from(code))
-        });
+        let potential =
+            self.functions(SITES, (0, 0), &|word| (word == "Sites").then(|| quote!([Q; #length])), |_, _| {
+                let terms = terms.potential();
+                let code = quote! {
+                    let _ = (t, q);
+                    let mut sum = <T as runtime::Zero>::zero();
+                    #terms
+                    sum
+                };
+                Some(Body::from(code))
+            });
         target.derived(
-            Some(quote!(#private::Power<#length>)),
+            Some(quote!(runtime::Power<#length>)),
             quote! {
                 type Site = #site_type;
 
@@ -99,7 +98,7 @@ impl<'g> Emitter<'_, 'g> {
                     #site { #(#fields)* #marker }
                 }
                 #[inline]
-                fn constants_of_sites(constants: &<Self as #krate::Clebsch>::Constants) -> &<Self as #krate::Clebsch>::Constants {
+                fn constants_of_sites(constants: &<Self as runtime::Clebsch>::Constants) -> &<Self as runtime::Clebsch>::Constants {
                     constants
                 }
                 #potential
@@ -110,13 +109,9 @@ impl<'g> Emitter<'_, 'g> {
 
     /// The implementation of the trait `Clebsch` for all sites together.
     fn whole_power(&self, power: &Power<'g>, target: &Target) -> TokenStream {
-        let (krate, private, scalar) = (&self.paths.krate, &self.paths.private, &self.paths.scalar);
-        let (name, length, order) = (target.ident.to_string(), &power.length, self.model.order.number());
-        let places = ["Q", "F", "Mu"].map(|name| {
-            let of_site = self.alias(name);
-            quote!([#of_site; #length])
-        });
-        let types = types_of_system(scalar, &places, &quote!(()), &self.time_type());
+        let (name, length, order) = (&target.name, &power.length, self.model.order.number());
+        let places = [quote!([Q; #length]), quote!([F; #length]), quote!([Mu; #length])];
+        let types = types_of_system(&places, &quote!(()), &time_type(self.formulas.is_timed()));
         let (derivation, checks) = (self.program.derivation(), self.checks_of_terms(power));
         let (scheme, start, end) = match (power.terms.is_empty(), self.model.order) {
             (true, _) => (quote!(FreeSites), quote!(0.0), quote!(0.0)),
@@ -124,29 +119,28 @@ impl<'g> Emitter<'_, 'g> {
             (false, _) => (quote!(SitesOfFirstOrder), quote!(0.0), quote!(-1.0)),
         };
         target.derived(
-            Some(quote!(#krate::Clebsch)),
+            Some(quote!(runtime::Clebsch)),
             quote! {
                 #types
-                type Constants = #private::SiteConstants<Self, #length>;
-                type Scheme = #private::#scheme<#length>;
+                type Constants = runtime::SiteConstants<Self, #length>;
+                type Scheme = runtime::#scheme<#length>;
 
                 const NAME: &'static ::core::primitive::str = #name;
                 const ORDER: ::core::primitive::u32 = #order;
                 const DERIVATION: &'static ::core::primitive::str = #derivation;
 
                 /// Checks the parameters and computes what no step changes.
-                fn constants(&self, h: #scalar) -> ::core::result::Result<Self::Constants, #krate::Error> {
+                fn constants(&self, h: T) -> ::core::result::Result<Self::Constants, runtime::Error> {
                     #checks
-                    #private::Power::power_constants(self, h)
+                    runtime::Power::power_constants(self, h)
                 }
-                #private::formulas_of_sites!(#scalar, #length, #start, #end);
+                runtime::formulas_of_sites!(T, #length, #start, #end);
             },
         )
     }
 
     /// Checks of the fields that terms read.
     fn checks_of_terms(&self, power: &Power<'g>) -> TokenStream {
-        let private = &self.paths.private;
         let mut checked: Vec<&str> = Vec::new();
         let mut checks = TokenStream::new();
         // sites check what they have copies of, but for what differs from site to site
@@ -158,7 +152,7 @@ impl<'g> Emitter<'_, 'g> {
                 continue;
             }
             checked.push(name);
-            checks.extend(quote!(#private::check_finite(#name, &self.#field)?;));
+            checks.extend(quote!(runtime::check_finite(#name, &self.#field)?;));
             let Some(promise) = parameter.promise else { continue };
             let leaves = parameter.leaves.iter().map(|leaf| {
                 // the place of an entry is every site here

@@ -1,18 +1,17 @@
-//! Which scheme of the runtime steps a system, and what that scheme calls beside the parts of a step.
+//! Which scheme of the runtime steps a system, and what that scheme calls beside the parts of a step: what one free motion keeps, kicks.
 
 use proc_macro2::{Ident, TokenStream};
 use quote::{format_ident, quote};
 
 use super::Emitter;
-use super::function::Body;
-use super::functions::GREAT_CIRCLES;
+use super::function::{Body, no_words};
+use super::functions::{FREE_MOTION, GREAT_CIRCLES, SPLIT_KICKS};
 use super::scope::size;
 use crate::derive::Id;
 
 impl Emitter<'_, '_> {
     /// The type of the scheme.
     pub(super) fn scheme(&self) -> TokenStream {
-        let private = &self.paths.private;
         let single = self.scheme_of_single_steps();
         let Some(stages) = self.formulas.stages() else { return single };
         let order = match stages {
@@ -22,36 +21,35 @@ impl Emitter<'_, '_> {
         };
         // the sizes of a composed step are the same forwards and backwards
         let distinct = size(stages.div_ceil(2));
-        quote!(#private::Composed<#single, #private::#order, #distinct>)
+        quote!(runtime::Composed<#single, runtime::#order, #distinct>)
     }
 
     fn scheme_of_single_steps(&self) -> TokenStream {
-        let private = &self.paths.private;
-        let carry = if self.shares_impulse() { quote!(#private::Shared) } else { quote!(#private::Apart) };
+        let carry = if self.shares_impulse() { quote!(runtime::Shared) } else { quote!(runtime::Apart) };
         if let Some(splitting) = &self.formulas.splitting {
             let (kicks, count) = kicks_of_splitting(self.model.order.number(), splitting.has_gradient);
             let count = size(count);
-            return quote!(#private::Split<#private::#kicks, #count>);
+            return quote!(runtime::Split<runtime::#kicks, #count>);
         }
         if self.formulas.collocation.is_some() {
             let numbers = self.numbers_of_pair();
-            return quote!(#private::Collocated<#numbers>);
+            return quote!(runtime::Collocated<#numbers>);
         }
         if self.program.turns_in_plane() {
             return if self.is_free_on_great_circles() {
-                quote!(#private::FreeGreatCircle)
+                quote!(runtime::FreeGreatCircle)
             } else {
-                quote!(#private::GreatCircle<#carry>)
+                quote!(runtime::GreatCircle<#carry>)
             };
         }
         if self.keeps_motions() {
-            return quote!(#private::AlongFreeMotion);
+            return quote!(runtime::AlongFreeMotion);
         }
         match (self.formulas.stepped, self.program.steps.len()) {
-            (2, _) => quote!(#private::AdjointPair<#carry>),
-            (_, 1) => quote!(#private::KickDriftKick<#carry>),
+            (2, _) => quote!(runtime::AdjointPair<#carry>),
+            (_, 1) => quote!(runtime::KickDriftKick<#carry>),
             // the declared Lagrangian, without the force that joins its equation, stands last
-            (_, _) => quote!(#private::KickDriftKick<#carry, 1>),
+            (_, _) => quote!(runtime::KickDriftKick<#carry, 1>),
         }
     }
 
@@ -80,12 +78,63 @@ impl Emitter<'_, '_> {
             return self.hamilton_equations();
         }
         if self.program.turns_in_plane() {
-            let turn = self.functions(GREAT_CIRCLES, (0, 0), &[], |_, _| {
-                Some(Body::from(quote!(c.step_size * c.inertia_inverse)))
-            });
+            let scope = self.scope_of_step();
+            let turn = self
+                .functions(GREAT_CIRCLES, (0, 0), &no_words, |function, _| function.written(&scope, None, &no_words));
             return self.implementation("GreatCircles", &[], turn);
         }
         if self.keeps_motions() { self.free_motion() } else { TokenStream::new() }
+    }
+
+    /// Whether the free motions of several steps are the same, so that what they keep is computed once.
+    pub(super) fn keeps_motions(&self) -> bool {
+        self.formulas.is_exact && self.free_rotations().next().is_some()
+    }
+
+    pub(super) fn kind_of_free_rotation(&self) -> Ident {
+        if self.formulas.turns_whole() { format_ident!("FreeRotation4") } else { format_ident!("FreeRotation") }
+    }
+
+    /// The implementation of `FreeMotion`: what one motion keeps, and how a step follows it.
+    pub(super) fn free_motion(&self) -> TokenStream {
+        let kind = self.kind_of_free_rotation();
+        let kept = if self.formulas.turns_whole() { quote!(KeptRotation4) } else { quote!(KeptRotation) };
+        let functions = self.functions(FREE_MOTION, (0, 0), &|word| self.word_of_step(word), |function, _| {
+            if function.name == "follow" {
+                return Some(Body::from(self.followed()));
+            }
+            let motions = self.free_rotations().map(|(name, solve)| {
+                let target = self.momentum_of_free_rotation(solve);
+                quote!(runtime::#kind::motion(&c.#name, #target))
+            });
+            Some(Body::from(quote!([#(#motions),*])).inlined(quote!()))
+        });
+        let count = size(self.free_rotations().count());
+        self.implementation("FreeMotion", &[], quote!(type Kept = [runtime::#kept<T>; #count]; #functions))
+    }
+
+    /// F − I and the next momentum at once, or the chart coordinates of all factors.
+    fn followed(&self) -> TokenStream {
+        if !self.formulas.turns_whole() {
+            let (solutions, result) = self.solved(&self.program.steps[0], true);
+            return quote!(#solutions runtime::Ok((#result, *mu)));
+        }
+        let Some((name, solve)) = self.free_rotations().next() else { return TokenStream::new() };
+        // spatial momenta move as those of the body that turns back
+        if self.is_left(solve) {
+            return quote! {
+                let (d, mu) = runtime::FreeRotation4::turn(&c.#name, &kept[0], &-*mu)?;
+                runtime::Ok((d.transpose(), -mu))
+            };
+        }
+        quote!(runtime::FreeRotation4::turn(&c.#name, &kept[0], mu))
+    }
+
+    pub(super) fn split_kicks(&self) -> TokenStream {
+        let scope = self.scope_of_step();
+        let functions = self
+            .functions(SPLIT_KICKS, (0, 0), &no_words, |function, kernel| function.written(&scope, kernel, &no_words));
+        self.implementation("SplitKicks", &[], functions)
     }
 }
 

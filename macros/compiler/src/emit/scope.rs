@@ -191,18 +191,13 @@ impl Scope<'_, '_> {
 
     fn constant_of_crate(&self, index: usize) -> TokenStream {
         let path = &self.model.constants[index].path;
+        let path = self.names.of_user(quote!(#path));
         if self.is_generic() { self.rounded(quote!(#path)) } else { quote!(#path) }
-    }
-
-    /// Whether the scalar is a type parameter.
-    pub(super) fn is_generic(&self) -> bool {
-        self.model.item.scalar.is_parameter()
     }
 
     /// A number in the precision of the scalar.
     pub(super) fn rounded(&self, value: TokenStream) -> TokenStream {
-        let (private, scalar) = (&self.paths.private, &self.paths.scalar);
-        quote!(<#scalar as #private::Scalar>::from_f64(#value))
+        quote!(<T as runtime::Scalar>::from_f64(#value))
     }
 
     /// The shared terms of a kernel.
@@ -262,7 +257,7 @@ impl Scope<'_, '_> {
 
     /// A matrix, vector or quaternion of entries.
     pub fn grid(&self, output: &(Shape, Vec<Code>), is_quaternion: bool) -> TokenStream {
-        let (private, (shape, entries)) = (&self.paths.private, output);
+        let (shape, entries) = output;
         if entries.len() == 1 && !shape.is_scalar() {
             return self.code(&entries[0], false);
         }
@@ -270,13 +265,12 @@ impl Scope<'_, '_> {
             return self.matrix(output);
         }
         let (function, entries) = (if is_quaternion { quote!(quaternion) } else { quote!(vector) }, self.list(entries));
-        quote!(#private::#function(#entries))
+        quote!(runtime::#function(#entries))
     }
 
     /// A matrix of entries, row by row, whatever its shape; the entries that are not zero one by one, with their places, where rows are
     /// long and most are.
-    pub fn matrix(&self, (shape, entries): &(Shape, Vec<Code>)) -> TokenStream {
-        let private = &self.paths.private;
+    fn matrix(&self, (shape, entries): &(Shape, Vec<Code>)) -> TokenStream {
         let is_zero = |entry: &Code| matches!(entry, Code::Number(value) if value.is_zero());
         let zeros = entries.iter().filter(|entry| is_zero(entry)).count();
         if shape.columns > LONGEST_ROW && 2 * zeros > entries.len() {
@@ -288,13 +282,13 @@ impl Scope<'_, '_> {
                 quote!(matrix #index = #entry;)
             });
             return quote!({
-                let mut matrix = #private::matrix([[#zero; #columns]; #rows]);
+                let mut matrix = runtime::matrix([[#zero; #columns]; #rows]);
                 #(#kept)*
                 matrix
             });
         }
         let rows = list(entries.chunks(shape.columns.max(1)).map(|row| self.list(row).into()));
-        quote!(#private::matrix(#rows))
+        quote!(runtime::matrix(#rows))
     }
 
     fn list(&self, entries: &[Code]) -> TokenTree {

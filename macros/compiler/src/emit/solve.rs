@@ -1,6 +1,6 @@
 //! How a step solves its equations, one after the other.
 
-use proc_macro2::{Ident, TokenStream};
+use proc_macro2::{Ident, Literal, TokenStream};
 use quote::{format_ident, quote};
 
 use super::Emitter;
@@ -11,9 +11,8 @@ use crate::lower::{Solve, Step};
 impl Emitter<'_, '_> {
     /// The chart coordinates of the group element whose momentum is μ, or the error of one of the equations.
     pub(super) fn solve(&self, step: &Step) -> TokenStream {
-        let private = &self.paths.private;
         if self.formulas.turns_whole() {
-            let free_motion = self.call_of_parts("FreeMotion", &[]);
+            let free_motion = self.trait_of_parts("FreeMotion", &[]);
             let kept = quote!(#free_motion::kept(self, c, mu));
             return quote!(#free_motion::follow(self, c, &#kept, mu).map(|(d, _)| d));
         }
@@ -23,30 +22,29 @@ impl Emitter<'_, '_> {
             return self.found(solve, None);
         }
         let (solutions, result) = self.solved(step, false);
-        quote!(#solutions #private::Ok(#result))
+        quote!(#solutions runtime::Ok(#result))
     }
 
     /// What solves an equation, as a result where it can fail.
     fn found(&self, solve: &Solve, given: Option<TokenStream>) -> TokenStream {
-        let (private, name) = (&self.paths.private, self.equation_name(solve));
+        let name = self.equation_name(solve);
         let held = self.held_by_equation(solve).into_iter();
         let held = held.map(|(name, _)| format_ident!("{}", if name == "system" { "self" } else { name }));
         let (equation, target) = (quote!(#name(#(#held),*)), self.part_of_momentum(&solve.momenta));
         match solve.solution {
             Solution::ClosedForm => quote!(#name::closed_form(&#equation, #target)),
             Solution::Explicit => quote!(#name::explicit(&#equation, #target #given)),
-            Solution::Linear => quote!(#private::solve_linear_equation(&#equation, #target)),
+            Solution::Linear => quote!(runtime::solve_linear_equation(&#equation, #target)),
             Solution::Newton if self.program.find(solve.id(Id::Residual)).is_some() => {
-                quote!(#private::solve_fixed_point(&#equation, #target))
+                quote!(runtime::solve_fixed_point(&#equation, #target))
             }
             // by construction: free rotations are no equations of a type
-            Solution::Newton | Solution::FreeRotation => quote!(#private::solve(&#equation, #target)),
+            Solution::Newton | Solution::FreeRotation => quote!(runtime::solve(&#equation, #target)),
         }
     }
 
     /// The solutions of a step, equation by equation, and the coordinates that they make; with `kept` those of motions that are known.
     pub(super) fn solved(&self, step: &Step, kept: bool) -> (TokenStream, TokenStream) {
-        let private = &self.paths.private;
         let entry = |component: &usize| {
             let position = |solve: &Solve| solve.components.iter().position(|other| other == component);
             let found = step.solves.iter().find_map(|solve| Some((solve.number, position(solve)?)));
@@ -60,15 +58,15 @@ impl Emitter<'_, '_> {
                 return self.found_free_rotation(solve, kept);
             }
             let given = solve.given.iter().map(entry);
-            let given = (!solve.given.is_empty()).then(|| quote!(, &#private::vector([#(#given),*])));
+            let given = (!solve.given.is_empty()).then(|| quote!(, &runtime::vector([#(#given),*])));
             let (solution, found) = (solution_name(solve.number), self.found(solve, given));
             let fails = (solve.solution != Solution::Explicit).then(|| quote!(?));
             quote!(let #solution = #found #fails;)
         });
         let solutions = solutions.collect();
-        let components: Vec<usize> = (0..self.model.dimension()).collect();
+        let components: Vec<usize> = (0..self.dimension).collect();
         let entries = components.iter().map(entry);
-        let x = if step.solves.len() == 1 { quote!(x1) } else { quote!(#private::vector([#(#entries),*])) };
+        let x = if step.solves.len() == 1 { quote!(x1) } else { quote!(runtime::vector([#(#entries),*])) };
         let weights = (0..self.formulas.weighted().len()).map(weight_name);
         let result = if weights.len() == 0 { x } else { quote!((#x, [#(#weights),*])) };
         (solutions, result)
@@ -76,24 +74,29 @@ impl Emitter<'_, '_> {
 
     /// The coordinates of a factor that moves freely; `kept` are the motions of many steps.
     fn found_free_rotation(&self, solve: &Solve, kept: bool) -> TokenStream {
-        let (private, rotation) = (&self.paths.private, self.constant_of(solve));
-        let solution = solution_name(solve.number);
-        let weight = self.weight_of(solve);
-        let target = self.momentum_of_free_rotation(solve);
-        let found = if kept {
-            let before = self.program.steps[0].solves.iter().take(solve.number);
-            let index = size(before.filter(|solve| solve.solution == Solution::FreeRotation).count());
-            let method = if weight.is_some() { quote!(turn_of) } else { quote!(gibbs_vector_of) };
-            quote!(#private::FreeRotation::#method(&c.#rotation, &kept[#index], #target)?)
-        } else {
-            let method = if weight.is_some() { quote!(turn) } else { quote!(gibbs_vector) };
-            quote!(#private::FreeRotation::#method(&c.#rotation, #target)?)
-        };
+        let (rotation, solution) = (self.constant_of(solve), solution_name(solve.number));
+        let (weight, target) = (self.weight_of(solve), self.momentum_of_free_rotation(solve));
+        let before = self.program.steps[0].solves.iter().take(solve.number);
+        let index = size(before.filter(|solve| solve.solution == Solution::FreeRotation).count());
+        let name = if weight.is_some() { "turn" } else { "gibbs_vector" };
+        let method = format_ident!("{name}{}", if kept { "_of" } else { "" });
+        let motion = kept.then(|| quote!(&kept[#index],));
+        let found = quote!(runtime::FreeRotation::#method(&c.#rotation, #motion #target)?);
         let turned_back = self.is_left(solve).then(|| quote!(let #solution = -#solution;));
         match weight.map(weight_name) {
             Some(weight) => quote!(let (#weight, #solution) = #found; #turned_back),
             None => quote!(let #solution = #found; #turned_back),
         }
+    }
+
+    /// The declared tolerance.
+    pub(super) fn tolerance(&self) -> Option<Literal> {
+        Some(Literal::f64_unsuffixed(self.model.dials.tolerance.as_ref()?.value))
+    }
+
+    /// The declared number of iterations.
+    pub(super) fn iterations(&self) -> Option<Literal> {
+        Some(Literal::u32_unsuffixed(self.model.dials.limit()?))
     }
 
     /// The number of the weight of the chart coordinates of an equation, where they are given up to a factor.
@@ -109,12 +112,11 @@ impl Emitter<'_, '_> {
 
     /// Some components of the momentum, by reference; all of them are the momentum itself.
     fn part_of_momentum(&self, components: &[usize]) -> TokenStream {
-        let private = &self.paths.private;
-        if components.iter().copied().eq(0..self.model.dimension()) {
+        if components.iter().copied().eq(0..self.dimension) {
             return quote!(mu);
         }
         let components = components.iter().copied().map(size);
-        quote!(&#private::vector([#(mu[#components]),*]))
+        quote!(&runtime::vector([#(mu[#components]),*]))
     }
 }
 

@@ -4,7 +4,8 @@ use clebsch_symbolic::{Group, Property, Role};
 use proc_macro2::TokenStream;
 use quote::{format_ident, quote};
 
-use super::function::{Body, Function};
+use super::block::{Target, matrix, time_type, types_of_system};
+use super::function::{Body, Function, no_words};
 use super::functions::{CONSERVES, SYSTEM, VELOCITY};
 use super::scope::size;
 use super::{Emitter, SystemEmitter, flag};
@@ -15,13 +16,17 @@ use crate::model::LeafSpace;
 impl<'g> Emitter<'_, 'g> {
     /// The impl block.
     pub(super) fn system(&self) -> TokenStream {
-        let (krate, scalar, name) = (&self.paths.krate, &self.paths.scalar, self.target.ident.to_string());
+        let name = &self.target.name;
         // what a person reads in the documentation is spelled
-        let types = types_of_system(scalar, &self.types(&self.spelled), &self.input_type(), &self.time_type());
+        let types = types_of_system(
+            &self.types.clone().map(|ty| self.spelled(&ty)),
+            &self.input,
+            &time_type(self.formulas.is_timed()),
+        );
         let name = quote!(const NAME: &'static ::core::primitive::str = #name;);
         let stepping = self.stepping(Some(name), &self.program.derivation());
         self.target.derived(
-            Some(quote!(#krate::Clebsch)),
+            Some(quote!(runtime::Clebsch)),
             quote! {
                 #types
                 #stepping
@@ -31,14 +36,14 @@ impl<'g> Emitter<'_, 'g> {
 
     /// What depends on how the system is stepped, and where that is not a method of its own, the system.
     pub(super) fn stepping(&self, name: Option<TokenStream>, derivation: &str) -> TokenStream {
-        let (constants, scheme, order) = (self.alias("C"), self.scheme(), self.model.order.number());
+        let (scheme, order) = (self.scheme(), self.model.order.number());
         let free_motion = self.formulas.is_exact.then(|| flag("IS_FREE_MOTION", true));
-        let functions = self.functions(SYSTEM, (0, 0), &[], |function, kernel| {
+        let functions = self.functions(SYSTEM, (0, 0), &no_words, |function, kernel| {
             let is_asked = self.method.is_none() || function.is_of_method();
             if is_asked { self.function_of_system(function, kernel) } else { None }
         });
         quote! {
-            type Constants = #constants;
+            type Constants = C;
             type Scheme = #scheme;
 
             #name
@@ -72,41 +77,42 @@ impl<'g> Emitter<'_, 'g> {
     /// them alike.
     pub(super) fn conserves(&self) -> TokenStream {
         let Some(kernel) = self.program.find(Id::ConservedMomenta) else { return TokenStream::new() };
-        let (krate, private, scalar) = (&self.paths.krate, &self.paths.private, &self.paths.scalar);
         let conserved = &self.formulas.symmetries.conserved;
         let (names, count) = (conserved.iter().map(|momentum| momentum.name.as_str()), size(conserved.len()));
         let scope = self.scope_of_system();
         let (locals, entries) = (scope.locals(kernel), &kernel.outputs[0].1);
         let spelled = entries.iter().map(|entry| scope.code(entry, false));
-        let (words, title, code) = if self.power.is_some() {
+        let is_power = self.power.is_some();
+        let words = |word: &str| match word {
+            "Q" if is_power => Some(quote!(Self::Configuration)),
+            "Mu" if is_power => Some(quote!(Self::Momentum)),
+            _ => None,
+        };
+        let code = if is_power {
             let places = (0..entries.len()).map(size);
-            let words = ["Configuration", "Momentum"].map(|name| format_ident!("{name}"));
-            let [q, mu] = words.map(|name| quote!(Self::#name));
-            let code = quote! {
-                let mut sum = [<#scalar as #private::Zero>::zero(); #count];
+            quote! {
+                let mut sum = [<T as runtime::Zero>::zero(); #count];
                 for (q, mu) in ::core::iter::zip(q, mu) {
                     #locals
                     #(sum[#places] += #spelled;)*
                 }
-                #private::Conserved::new([#(#names),*], sum)
-            };
-            (vec![("Q", q), ("Mu", mu)], Some("The momenta that no step changes, sums over all sites."), code)
+                runtime::Conserved::new([#(#names),*], sum)
+            }
         } else {
             // all components of a long momentum are that momentum
             let is_component = |(k, entry): (usize, &Code)| matches!(entry, Code::Read(input) if input.role == Role::Momentum(0) && input.row == k);
-            let is_whole = self.keeps_matrices
-                && entries.len() == self.model.dimension()
-                && entries.iter().enumerate().all(is_component);
+            let is_whole =
+                self.keeps_matrices && entries.len() == self.dimension && entries.iter().enumerate().all(is_component);
             let values = if is_whole { quote!((*mu).into()) } else { quote!([#(#spelled),*]) };
-            (Vec::new(), None, quote!(#locals #private::Conserved::new([#(#names),*], #values)))
+            quote!(#locals runtime::Conserved::new([#(#names),*], #values))
         };
-        let cost = self.power.is_none().then_some(kernel);
+        let title = is_power.then_some("The momenta that no step changes, sums over all sites.");
+        let cost = (!is_power).then_some(kernel);
         let functions =
             self.functions(CONSERVES, (0, 0), &words, |_, _| Some(Body { title, cost, ..Body::from(code.clone()) }));
-        let target = self.declared(if title.is_some() { private } else { &self.spelled.private });
-        target.derived(
-            Some(quote!(#krate::Conserves)),
-            quote!(type Conserved = #private::Conserved<#scalar, #count>; #functions),
+        self.declared().derived(
+            Some(quote!(runtime::Conserves)),
+            quote!(type Conserved = runtime::Conserved<T, #count>; #functions),
         )
     }
 
@@ -114,24 +120,24 @@ impl<'g> Emitter<'_, 'g> {
     fn free_momenta(&self) -> Option<TokenStream> {
         let solves = || self.program.steps[0].solves.iter().filter(|solve| solve.solution == Solution::FreeRotation);
         solves().next()?;
-        let (private, scalar, scope) = (&self.paths.private, &self.paths.scalar, self.scope_of_system());
+        let scope = self.scope_of_system();
         let inertia = scope.body(self.program.kernel(Id::Inertia));
-        let dimension = size(self.model.dimension());
+        let dimension = size(self.dimension);
         let momentum = |solve: &Solve| {
             let factor = &self.model.factors[self.factor_of(solve)];
             let (access, inertia, is_left) = (&factor.accessor, self.block_of_inertia(solve), self.is_left(solve));
             let sign = is_left.then(|| quote!(-));
             let momentum = if self.formulas.turns_whole() {
                 let back = is_left.then(|| quote!(.transpose()));
-                quote!(#private::free_momentum_4d(&#inertia, h, &f #access #back))
+                quote!(runtime::free_momentum_4d(&#inertia, h, &f #access #back))
             } else if factor.group == Group::UnitQuaternions {
-                quote!(#private::free_momentum(&#inertia, h, &#sign #private::gibbs_vector_of_quaternion(&f #access)))
+                quote!(runtime::free_momentum(&#inertia, h, &#sign runtime::gibbs_vector_of_quaternion(&f #access)))
             } else {
-                quote!(#private::free_momentum(&#inertia, h, &#sign #private::gibbs_vector_of_matrix(&f #access)))
+                quote!(runtime::free_momentum(&#inertia, h, &#sign runtime::gibbs_vector_of_matrix(&f #access)))
             };
             if is_left { quote!((-#momentum)) } else { momentum }
         };
-        if self.model.dimension() == 3 || self.formulas.turns_whole() {
+        if self.dimension == 3 || self.formulas.turns_whole() {
             let momentum = solves().map(momentum);
             return Some(quote!(let inertia = { #inertia }; let mu = &#(#momentum)*;));
         }
@@ -141,7 +147,7 @@ impl<'g> Emitter<'_, 'g> {
         });
         Some(quote! {
             let inertia = { #inertia };
-            let mut mu = <#private::SVector<#scalar, #dimension> as #private::Space<#scalar>>::origin();
+            let mut mu = <runtime::SVector<T, #dimension> as runtime::Space<T>>::origin();
             #(#blocks)*
             let mu = &mu;
         })
@@ -149,23 +155,23 @@ impl<'g> Emitter<'_, 'g> {
 
     /// ½ (μ − A)·Σ⁻¹(μ − A), with Σ⁻¹ from the constants where it does not change.
     fn kinetic_energy(&self) -> TokenStream {
-        let (private, scope) = (&self.paths.private, self.scope_of_system());
+        let scope = self.scope_of_system();
         if self.program.find(Id::Lagrangian).is_some() {
             let (velocity, system) = (self.names.free("Velocity"), self.receiver());
-            return quote!(#private::legendre_fenchel(&#velocity { system: #system, t, q }, mu));
+            return quote!(runtime::legendre_fenchel(&#velocity { system: #system, t, q }, mu));
         }
         let slope = self.program.find(Id::Gyroscopic).map(|kernel| scope.body(kernel));
         let mu = if slope.is_some() { quote!(&mu) } else { quote!(mu) };
         let shift = slope.map(|slope| quote!(let mu = *mu - { #slope };));
         let energy = if self.formulas.inertia_moves() {
             let inertia = self.inertia(&scope);
-            quote!(#private::kinetic_energy_at(&{ #inertia }, #mu))
+            quote!(runtime::kinetic_energy_at(&{ #inertia }, #mu))
         } else if self.has_uniform_inertia() {
-            quote!(#private::kinetic_energy_uniform(&c.inertia_inverse, #mu))
+            quote!(runtime::kinetic_energy_uniform(&c.inertia_inverse, #mu))
         } else if self.keeps_matrices {
             quote!(c.inertia_inverse.energy(#mu))
         } else {
-            quote!(#private::kinetic_energy(&c.inertia_inverse, #mu))
+            quote!(runtime::kinetic_energy(&c.inertia_inverse, #mu))
         };
         quote!(#shift #energy)
     }
@@ -175,27 +181,22 @@ impl<'g> Emitter<'_, 'g> {
         if self.program.find(Id::Lagrangian).is_none() {
             return TokenStream::new();
         }
-        let (private, scalar, system) = (&self.paths.private, &self.paths.scalar, self.target.of_type());
+        let system = self.target.of_type();
         let (lifetime, name) = (self.names.lifetime(), self.names.free("Velocity"));
-        let (configuration, dimension) = (self.alias("Q"), size(self.model.dimension()));
-        let words = [("Algebra", quote!(#private::SVector<#scalar, #dimension>))];
-        let linearize = self.functions(VELOCITY, (0, 0), &words, |_, kernel| {
-            let (scope, kernel) = (self.scope(quote!(self.system), None), kernel?);
-            let (locals, value) = (scope.locals(kernel), scope.scalar(kernel, 0));
-            let [gradient, hessian] = [1, 2].map(|index| scope.output(kernel, index));
-            let code = quote!(let (t, q) = (self.t, self.q); #locals (#value, #gradient, #hessian));
-            Some(Body::new(kernel, code))
-        });
-        let target = self.target.borrowed(&name, &lifetime);
-        let implementation =
-            target.implementation(Some(quote!(#private::VelocityEquation<#scalar, #dimension>)), linearize);
-        let (parameters, _, predicates) = target.generics.split_for_impl();
+        let dimension = size(self.dimension);
+        let words = |word: &str| (word == "Algebra").then(|| matrix(self.dimension, 1));
+        let scope = self.scope(quote!(self.system), None);
+        let linearize =
+            self.functions(VELOCITY, (0, 0), &words, |function, kernel| function.written(&scope, kernel, &words));
+        let target = self.borrowed(&name);
+        let implementation = target.implementation(Some(quote!(runtime::VelocityEquation<T, #dimension>)), linearize);
+        let Target { parameters, predicates, .. } = &target;
         quote! {
             #[doc = " The velocity that has a momentum: ∂ℓ/∂ξ = μ."]
             struct #name #parameters #predicates {
                 system: &#lifetime #system,
-                t: #scalar,
-                q: &#lifetime #configuration,
+                t: T,
+                q: &#lifetime Q,
             }
             #implementation
         }
@@ -203,34 +204,34 @@ impl<'g> Emitter<'_, 'g> {
 
     /// What a momentum is asked for where motions fix the configuration: by a function of the projection, or of the motions ξ_Q(q).
     fn isotropy(&self, kernel: &Kernel, [of_projection, of_motions]: [&str; 2]) -> TokenStream {
-        let (private, scope) = (&self.paths.private, self.scope_of_system());
+        let scope = self.scope_of_system();
         let [of_projection, of_motions] = [of_projection, of_motions].map(|name| format_ident!("{name}"));
         if self.keeps_matrices {
             let projection = scope.body(kernel);
-            return quote!(#private::#of_projection(mu, |mu| { #projection }));
+            return quote!(runtime::#of_projection(mu, |mu| { #projection }));
         }
         let (locals, (shape, entries)) = (scope.locals(kernel), &kernel.outputs[0]);
         let entries: Vec<_> = entries.iter().map(|entry| scope.code(entry, false)).collect();
         let rows = entries.chunks(shape.columns).map(|row| quote!([#(#row),*]));
-        quote!(#locals #private::#of_motions(&[#(#rows),*], mu))
+        quote!(#locals runtime::#of_motions(&[#(#rows),*], mu))
     }
 }
 
 impl SystemEmitter<'_, '_> {
     /// By how much q violates what the declaration promises.
     pub(super) fn orbit_defect(&self) -> TokenStream {
-        let (private, scope) = (&self.paths.private, self.scope_of_system());
+        let scope = self.scope_of_system();
         let defects = self.model.configurations.iter().filter_map(|leaf| {
             let access = &leaf.accessor;
             Some(match leaf.space {
                 LeafSpace::Group(group) if group.element_property() == Property::Orthogonal => {
-                    quote!(#private::orthogonality_defect(&q #access))
+                    quote!(runtime::orthogonality_defect(&q #access))
                 }
                 LeafSpace::Group(Group::SpecialEuclidean(_) | Group::Similarity(_)) => {
-                    quote!(#private::orientation_defect(&q #access))
+                    quote!(runtime::orientation_defect(&q #access))
                 }
-                LeafSpace::Group(Group::UnitQuaternions) => quote!(#private::length_defect(&q #access.coords)),
-                LeafSpace::Unit => quote!(#private::length_defect(&q #access)),
+                LeafSpace::Group(Group::UnitQuaternions) => quote!(runtime::length_defect(&q #access.coords)),
+                LeafSpace::Unit => quote!(runtime::length_defect(&q #access)),
                 LeafSpace::Vectors | LeafSpace::Group(_) => return None,
             })
         });
@@ -238,24 +239,6 @@ impl SystemEmitter<'_, '_> {
         let locals = membership.map(|kernel| scope.locals(kernel));
         let entries = membership.iter().flat_map(|kernel| &kernel.outputs[0].1);
         let defects = defects.chain(entries.map(|entry| scope.code(entry, false)));
-        quote!(#locals #private::largest([#(#defects),*]))
-    }
-}
-
-/// The types that `Clebsch` asks for, apart from those of steps.
-pub(super) fn types_of_system(
-    scalar: &TokenStream,
-    [configuration, element, momentum]: &[TokenStream; 3],
-    input: &TokenStream,
-    time: &TokenStream,
-) -> TokenStream {
-    quote! {
-        type Scalar = #scalar;
-        type Configuration = #configuration;
-        type Element = #element;
-        type Momentum = #momentum;
-        type MomentumMatrix = #element;
-        type Input = #input;
-        type Time = #time;
+        quote!(#locals runtime::largest([#(#defects),*]))
     }
 }

@@ -5,7 +5,8 @@ use proc_macro2::TokenStream;
 use quote::{format_ident, quote};
 
 use super::Emitter;
-use super::function::{Body, Function};
+use super::block::matrix;
+use super::function::{Body, Function, no_words, number};
 use super::functions::{EDGE, VARIATIONAL};
 use super::scope::{nested, size};
 use crate::derive::Id;
@@ -17,10 +18,11 @@ impl Emitter<'_, '_> {
         if !self.model.has_variations() {
             return TokenStream::new();
         }
-        let (krate, dimension) = (&self.paths.krate, size(self.model.dimension()));
-        let motions = self.functions(VARIATIONAL, (0, 0), &[], |function, kernel| self.motion_of(function, kernel));
-        let variational = self.target.derived(Some(quote!(#krate::Variational<#dimension>)), motions);
-        let slopes = self.paths.matrix_of_any_shape(self.model.dimension(), self.formulas.quantities.len());
+        let dimension = size(self.dimension);
+        let motions =
+            self.functions(VARIATIONAL, (0, 0), &no_words, |function, kernel| self.motion_of(function, kernel));
+        let variational = self.target.derived(Some(quote!(runtime::Variational<#dimension>)), motions);
+        let slopes = matrix(self.dimension, self.formulas.quantities.len());
         let slopes = if self.is_sensitive() { quote!((#slopes, #slopes)) } else { quote!(()) };
         let varied = self.implementation("Varied", std::slice::from_ref(&dimension), quote!(type Slopes = #slopes;));
         let edges = self.edges();
@@ -30,13 +32,13 @@ impl Emitter<'_, '_> {
     /// The implementations of `VariedSubstep` for each edge of a step, where derivatives are asked for.
     pub(super) fn edges(&self) -> TokenStream {
         let edges = if self.model.has_variations() { self.formulas.stepped } else { 0 };
-        let (private, dimension) = (&self.paths.private, size(self.model.dimension()));
+        let dimension = size(self.dimension);
         let edges = (0..edges).map(|index| {
             let slopes = match self.program.find(Id::EdgeSlopes(index)) {
-                Some(_) => quote!(<Self as #private::Varied<#dimension>>::Slopes),
+                Some(_) => quote!(<Self as runtime::Varied<#dimension>>::Slopes),
                 None => quote!(()),
             };
-            let words = [("Slopes", slopes)];
+            let words = |word: &str| (word == "Slopes").then(|| slopes.clone());
             let functions = self.functions(EDGE, (index, 0), &words, |function, kernel| self.edge(function, kernel));
             self.implementation("VariedSubstep", &[size(index), dimension.clone()], functions)
         });
@@ -50,7 +52,7 @@ impl Emitter<'_, '_> {
 
     /// Retraction, composition, advance, and the geometry of the orbit.
     fn motion_of<'k>(&'k self, function: &Function, kernel: Option<&'k Kernel>) -> Option<Body<'k>> {
-        let (krate, scope) = (&self.paths.krate, self.scope_of_system());
+        let scope = self.scope_of_system();
         let code = match function.name {
             "retractions" => {
                 let (coordinates, locals) = (self.chart_coordinates(), scope.locals(kernel?));
@@ -65,7 +67,7 @@ impl Emitter<'_, '_> {
                 quote!(let added = { #locals #added }; #sum)
             }
             "advance" if self.program.find(Id::Displacement).is_none() => {
-                let parts = self.call_of_parts("Parts", &[]);
+                let parts = self.trait_of_parts("Parts", &[]);
                 quote!(#parts::advance(self, q, d))
             }
             "orbit_metric" if self.keeps_matrices => {
@@ -74,7 +76,7 @@ impl Emitter<'_, '_> {
             }
             "approach" => {
                 let difference = self.combined(&quote!(target), quote!(-), &quote!(q));
-                let code = quote!(#krate::Clebsch::momentum_map(self, q, &(#difference)));
+                let code = quote!(runtime::Clebsch::momentum_map(self, q, &(#difference)));
                 return Some(Body::from(code));
             }
             "endpoint" => {
@@ -87,12 +89,11 @@ impl Emitter<'_, '_> {
 
     /// A sum or difference of two configurations, leaf by leaf. Quaternions over a type parameter add through their coordinates alone.
     fn combined(&self, a: &TokenStream, operator: TokenStream, b: &TokenStream) -> TokenStream {
-        let private = &self.paths.private;
         nested(&self.model.configuration, &mut |leaf| {
             let configuration = &self.model.configurations[leaf];
             let access = &configuration.accessor;
             if configuration.is_quaternion {
-                return quote!(#private::Quaternion { coords: #a #access.coords #operator #b #access.coords });
+                return quote!(runtime::Quaternion { coords: #a #access.coords #operator #b #access.coords });
             }
             quote!(#a #access #operator #b #access)
         })
@@ -101,7 +102,6 @@ impl Emitter<'_, '_> {
     /// The coordinates of exp η in the chart of small motions, to first order.
     fn chart_coordinates(&self) -> TokenStream {
         let slopes = self.formulas.slopes_of_retraction();
-        let private = &self.paths.private;
         if slopes.iter().all(|slope| *slope == (1, 1)) {
             return quote!(let x = eta;);
         }
@@ -113,7 +113,7 @@ impl Emitter<'_, '_> {
         });
         // operations on whole matrices take references
         let reference = self.keeps_matrices.then(|| quote!(&));
-        quote!(let x = #reference #private::vector([#(#entries),*]);)
+        quote!(let x = #reference runtime::vector([#(#entries),*]);)
     }
 
     /// The implementation of `Sensitive`, where it is asked for.
@@ -121,15 +121,14 @@ impl Emitter<'_, '_> {
         if !self.is_sensitive() {
             return TokenStream::new();
         }
-        let (krate, private) = (&self.paths.krate, &self.paths.private);
         let quantities = &self.formulas.quantities;
-        let [dimension, count] = [self.model.dimension(), quantities.len()].map(size);
+        let [dimension, count] = [self.dimension, quantities.len()].map(size);
         let names = quantities.iter().map(|quantity| quantity.name.as_str());
         // a composed step asks which columns are those of its size and of its time
         let column = |constant: &str, name: &str| {
             let column = size(quantities.iter().position(|quantity| quantity.name == name)?);
             let constant = format_ident!("{constant}");
-            Some(quote!(const #constant: #private::Option<::core::primitive::usize> = #private::Some(#column);))
+            Some(quote!(const #constant: runtime::Option<::core::primitive::usize> = runtime::Some(#column);))
         };
         let methods = self.program.methods.iter().map(|method| &method.program.formulas);
         let is_composed = methods.chain([self.formulas]).any(|formulas| formulas.stages().is_some());
@@ -138,7 +137,7 @@ impl Emitter<'_, '_> {
             quote!(#size #time)
         });
         self.target.derived(
-            Some(quote!(#krate::Sensitive<#dimension, #count>)),
+            Some(quote!(runtime::Sensitive<#dimension, #count>)),
             quote! {
                 const QUANTITIES: [&'static ::core::primitive::str; #count] = [#(#names),*];
                 #columns
@@ -148,51 +147,18 @@ impl Emitter<'_, '_> {
 
     /// A function of `VariedSubstep`: vectors and matrices of an edge.
     fn edge<'k>(&'k self, function: &Function, kernel: Option<&'k Kernel>) -> Option<Body<'k>> {
-        let (krate, scope) = (&self.paths.krate, self.scope_of_step());
+        let scope = self.scope_of_step();
         let Some(kernel) = kernel else {
             // there is always something that is called the slopes
             return (function.name == "slopes").then(|| Body::from(quote!()).titled(""));
         };
-        let vector = |index| scope.output(kernel, index);
-        let matrix = |index| self.matrix_of_edge(kernel, index);
-        let code = match function.name {
-            "momenta" => {
-                let (locals, lagrangian) = (scope.locals(kernel), scope.scalar(kernel, 0));
-                let [before, after] = [1, 2].map(vector);
-                quote!(#locals #krate::Momenta { lagrangian: #lagrangian, before: #before, after: #after })
-            }
-            "edge" => {
-                let (locals, lagrangian) = (self.locals_of_edge(kernel), scope.scalar(kernel, 0));
-                let ([before, after], [by_start, by_end, after_by_end]) = ([1, 2].map(vector), [3, 4, 5].map(matrix));
-                let transposed = quote!(-before_by_end.transpose());
-                let after_by_start = if kernel.outputs.len() == 7 { matrix(6) } else { transposed };
-                quote! {
-                    #locals
-                    let before_by_end = #by_end;
-                    #krate::Edge {
-                        lagrangian: #lagrangian,
-                        before: #before,
-                        after: #after,
-                        before_by_start: #by_start,
-                        before_by_end,
-                        after_by_start: #after_by_start,
-                        after_by_end: #after_by_end,
-                    }
-                }
-            }
-            "carried" => {
-                let (locals, momentum) = (self.locals_of_edge(kernel), vector(0));
-                let names = ["adjoint", "before", "after", "before_by_end", "after_by_end"];
-                let (names, matrices) = (names.map(|name| format_ident!("{name}")), [1, 2, 3, 4, 5].map(matrix));
-                quote!(#locals #krate::Carried { momentum: #momentum, #(#names: #matrices,)* })
-            }
-            _ => {
-                let locals = scope.locals(kernel);
-                let [before, after] = [0, 1].map(|index| scope.matrix(&kernel.outputs[index]));
-                quote!(#locals (#before, #after))
-            }
+        let words = |word: &str| match number(word, "Matrix") {
+            Some(6) if kernel.outputs.len() < 7 => Some(quote!(-before_by_end.transpose())),
+            Some(index) => Some(self.matrix_of_edge(kernel, index)),
+            None => (word == "Fixed").then(|| self.locals_of_edge(kernel)),
         };
-        Some(Body::new(kernel, code))
+        let body = function.written(&scope, Some(kernel), &words)?;
+        Some(Body { cost: Some(kernel), ..body })
     }
 
     /// A matrix of an edge.
@@ -201,7 +167,7 @@ impl Emitter<'_, '_> {
         if self.keeps_matrices {
             return scope.matrix_of(kernel, index, "x", along_motion).1;
         }
-        scope.matrix(&kernel.outputs[index])
+        scope.output(kernel, index)
     }
 
     /// The shared terms of an edge; what derivatives along motions are made of stands with them.

@@ -1,5 +1,7 @@
 //! The terms that tie sites together: their sum, and its gradient, added up term by term or gathered site by site.
 
+use std::collections::BTreeSet;
+
 use clebsch_symbolic::{Expr, Role, Shape};
 use proc_macro2::{Ident, Literal, TokenStream};
 use quote::{format_ident, quote};
@@ -37,29 +39,28 @@ impl<'e, 'a, 'g> Terms<'e, 'a, 'g> {
     pub(super) fn potential(&self) -> TokenStream {
         let terms = self.emitter.formulas.links.iter().enumerate().map(|(number, link)| {
             let kernel = self.emitter.program.kernel(Id::Term(number));
-            let (locals, value) = (self.scope.locals(kernel), self.scope.scalar(kernel, 0));
-            self.loops(link, kernel, quote!(#locals sum += #value;))
+            let value = self.scope.scalar(kernel, 0);
+            self.loops(link, kernel, quote!(sum += #value;))
         });
         terms.collect()
     }
 
     /// The method that goes through the terms and adds what each has for its sites.
-    pub(super) fn added_gradient(&self, point: &TokenStream) -> TokenStream {
-        let (scalar, length) = (&self.emitter.paths.scalar, &self.power.length);
+    pub(super) fn added_gradient(&self) -> TokenStream {
+        let length = &self.power.length;
         let terms = self.emitter.formulas.links.iter().enumerate().map(|(number, link)| {
             let kernel = self.emitter.program.kernel(Id::TermGradients(number));
             let outputs = kernel.outputs.chunks(self.emitter.model.configurations.len());
             let added = link.gradient.iter().zip(outputs).filter_map(|((place, slopes), outputs)| {
                 let (site, added) = (site(*place), self.added(slopes, outputs, quote!((*gradient)), quote!(+=))?);
-                let gradient = quote!(::core::option::Option::Some(gradient));
+                let gradient = quote!(runtime::Some(gradient));
                 Some(quote!(if let #gradient = gradient.get_mut(#site) { #added }))
             });
-            let locals = self.scope.locals(kernel);
-            self.loops(link, kernel, quote!(#locals #(#added)*))
+            self.loops(link, kernel, quote!(#(#added)*))
         });
         quote! {
             /// Adds the gradient of the potential, a covector for each site.
-            fn add_gradient(&self, t: #scalar, q: &[#point; #length], gradient: &mut [#point; #length]) {
+            fn add_gradient(&self, t: T, q: &[Q; #length], gradient: &mut [Q; #length]) {
                 let _ = (t, q, &gradient);
                 #(#terms)*
             }
@@ -67,8 +68,8 @@ impl<'e, 'a, 'g> Terms<'e, 'a, 'g> {
     }
 
     /// The method that gathers the gradient of one site from the terms that read it.
-    pub(super) fn gathered_gradient(&self, stencil: &Stencil<'g>, point: &TokenStream) -> TokenStream {
-        let (private, scalar, length) = (&self.emitter.paths.private, &self.emitter.paths.scalar, &self.power.length);
+    pub(super) fn gathered_gradient(&self, stencil: &Stencil<'g>) -> TokenStream {
+        let length = &self.power.length;
         let places = [self.power.places.as_slice(), &stencil.places].concat();
         let common = self.emitter.program.kernel(Id::SiteGradient);
         let of_all = self.added(&stencil.gradient, &common.outputs, quote!(gradient), quote!(=)).map(|added| {
@@ -86,9 +87,9 @@ impl<'e, 'a, 'g> Terms<'e, 'a, 'g> {
         quote! {
             /// The gradient of the potential at a site, from all terms that read it.
             #[inline]
-            fn gradient_at(&self, t: #scalar, q: &[#point; #length], site: ::core::primitive::usize) -> #point {
+            fn gradient_at(&self, t: T, q: &[Q; #length], site: ::core::primitive::usize) -> Q {
                 let _ = (t, q, site);
-                let mut gradient: #point = #private::Space::<#scalar>::origin();
+                let mut gradient: Q = runtime::Space::<T>::origin();
                 #of_all
                 #(#others)*
                 gradient
@@ -98,7 +99,7 @@ impl<'e, 'a, 'g> Terms<'e, 'a, 'g> {
 
     /// Where the term is found that has a site at a place.
     fn head(&self, own: usize, home: &Home<'g>, ranges: &[(Expr<'g>, Expr<'g>)]) -> Head {
-        let (private, length) = (&self.emitter.paths.private, &self.power.length);
+        let length = &self.power.length;
         let (Some(index), [(from, to), ..]) = (home.index, ranges) else {
             let (name, place) = (site(own), self.index_of(&self.power.places, own));
             let guard = quote!(#place if site != #name { break 'term; });
@@ -106,7 +107,7 @@ impl<'e, 'a, 'g> Terms<'e, 'a, 'g> {
         };
         let [from, to, moved] = [*from, *to, index].map(|expr| linear(expr, self.power));
         let moved = if home.wraps {
-            quote!(let i0 = #private::wrapped::<#length>(#moved) as ::core::primitive::isize;)
+            quote!(let i0 = runtime::wrapped::<#length>(#moved) as ::core::primitive::isize;)
         } else if index.as_symbol().is_some() {
             quote!()
         } else {
@@ -122,33 +123,38 @@ impl<'e, 'a, 'g> Terms<'e, 'a, 'g> {
         let inputs = kernel.inputs();
         let is_read = |place: &usize| inputs.iter().any(|input| matches!(input.role, Role::At(at, _) if at == *place));
         let sites: Vec<usize> = (0..places.len()).filter(is_read).collect();
-        let mut fields = self.places_of_fields(kernel);
-        fields.retain(|place| !sites.contains(place));
-        let is_asked = guard.is_some()
-            || sites.iter().chain(&fields).any(|place| Some(*place) != own)
-            || inputs.iter().any(|input| matches!(input.role, Role::Site(_)));
-        let index = is_asked.then_some(index);
-        let indices = sites.iter().chain(&fields).map(|&place| {
+        let added = self.reading((places, own), &sites, kernel, quote!(break 'term), added);
+        quote!('term: { #index #guard #added })
+    }
+
+    /// Statements of a kernel behind those that read the configurations of sites, and that leave where there is no such site. A field of an
+    /// array is read by an index that is known to be inside.
+    fn reading(
+        &self,
+        (places, own): (&[SiteIndex<'g>], Option<usize>),
+        sites: &[usize],
+        kernel: &Kernel,
+        leave: TokenStream,
+        body: TokenStream,
+    ) -> TokenStream {
+        let (length, locals) = (&self.power.length, self.scope.locals(kernel));
+        let fields = self.places_of_fields(kernel).into_iter().filter(|place| !sites.contains(place));
+        let fields: BTreeSet<usize> = fields.collect();
+        let indices = fields.iter().chain(sites).copied().collect::<BTreeSet<usize>>().into_iter();
+        let indices = indices.map(|place| {
             let name = site(place);
             if Some(place) == own { quote!(let #name = site;) } else { self.index_of(places, place) }
         });
-        let (reads, locals) = (self.reads(&sites, &fields, &quote!(break 'term)), self.scope.locals(kernel));
-        quote!('term: { #index #guard #(#indices)* #reads #locals #added })
-    }
-
-    /// Statements that read the configurations of sites, and those that leave where there is no such site. A field of an array is read by
-    /// an index that is known to be inside.
-    fn reads(&self, sites: &[usize], fields: &[usize], leave: &TokenStream) -> TokenStream {
-        let length = &self.power.length;
-        let fields = fields.iter().map(|&place| {
-            let name = site(place);
-            quote!(if #name >= #length { #leave; })
-        });
-        let sites = sites.iter().map(|&place| {
-            let (name, site) = (format_ident!("q{place}"), site(place));
-            quote!(let ::core::option::Option::Some(#name) = q.get(#site) else { #leave };)
-        });
-        quote!(#(#fields)* #(#sites)*)
+        let fields = fields.iter().map(|&place| site(place));
+        let names = sites.iter().map(|place| format_ident!("q{place}"));
+        let sites = sites.iter().map(|&place| site(place));
+        quote! {
+            #(#indices)*
+            #(if #fields >= #length { #leave; })*
+            #(let runtime::Some(#names) = q.get(#sites) else { #leave };)*
+            #locals
+            #body
+        }
     }
 
     /// Adds the slopes of a place to `target`, or sets it to them, leaf by leaf; `None` where all of them vanish.
@@ -183,11 +189,11 @@ impl<'e, 'a, 'g> Terms<'e, 'a, 'g> {
 
     /// The statement that computes the index of a place.
     fn index_of(&self, places: &[SiteIndex<'g>], place: usize) -> TokenStream {
-        let (private, length) = (&self.emitter.paths.private, &self.power.length);
+        let length = &self.power.length;
         let (name, SiteIndex { index, wraps }) = (site(place), &places[place]);
         let index = linear(*index, self.power);
         if *wraps {
-            quote!(let #name = #private::wrapped::<#length>(#index);)
+            quote!(let #name = runtime::wrapped::<#length>(#index);)
         } else {
             quote!(let #name = (#index) as ::core::primitive::usize;)
         }
@@ -196,16 +202,7 @@ impl<'e, 'a, 'g> Terms<'e, 'a, 'g> {
     /// A statement for all indices of a term, with the configurations that it reads.
     fn loops(&self, link: &SiteTerm<'g>, kernel: &Kernel, body: TokenStream) -> TokenStream {
         let places: Vec<usize> = link.gradient.iter().map(|(place, _)| *place).collect();
-        let mut fields = self.places_of_fields(kernel);
-        let mut read = [places.as_slice(), &fields].concat();
-        read.sort_unstable();
-        read.dedup();
-        let indices = read.iter().map(|&place| self.index_of(&self.power.places, place));
-        fields.sort_unstable();
-        fields.dedup();
-        fields.retain(|place| !places.contains(place));
-        let reads = self.reads(&places, &fields, &quote!(continue));
-        let statement = quote!(#(#indices)* #reads #body);
+        let statement = self.reading((&self.power.places, None), &places, kernel, quote!(continue), body);
         let ranges = link.term.ranges.iter().enumerate();
         if link.term.ranges.is_empty() {
             // what is read is asked for in a loop
