@@ -24,13 +24,16 @@ pub(crate) enum CompilerStage {
     Emit,
 }
 
+/// Where an expansion is.
+pub(crate) type Stage = Cell<CompilerStage>;
+
 /// Runs the stages behind the first one, which say where they are, on the budget of one expansion.
 ///
 /// # Errors
 /// Those of the stages, and one that names the declaration too large.
 pub(crate) fn within<T>(
     declaration: &Declaration,
-    stages: impl FnOnce(&Cell<CompilerStage>) -> Result<T, Diagnostics>,
+    stages: impl FnOnce(&Stage) -> Result<T, Diagnostics>,
 ) -> Result<T, Diagnostics> {
     let stage = Cell::new(CompilerStage::Model);
     let programs = 1 + declaration.methods.len() as u64;

@@ -111,13 +111,6 @@ impl Diagnostic {
         let error = Diagnostic::new(place, format!("{what} is not supported yet")).maybe_help(help);
         error.note("it belongs to the language and comes with a later version of clebsch")
     }
-
-    fn to_compile_error(&self) -> TokenStream {
-        let Location { start, end } = self.place;
-        let text = self.to_string();
-        let arguments = quote_spanned!(end=> { #text });
-        quote_spanned!(start=> ::core::compile_error! #arguments)
-    }
 }
 
 impl fmt::Display for Diagnostic {
@@ -203,7 +196,12 @@ impl Diagnostics {
 
     /// One `compile_error!` for each error, at its place.
     pub fn to_compile_errors(&self) -> TokenStream {
-        self.found.borrow().iter().map(Diagnostic::to_compile_error).collect()
+        let error = |error: &Diagnostic| {
+            let (Location { start, end }, text) = (error.place, error.to_string());
+            let arguments = quote_spanned!(end=> { #text });
+            quote_spanned!(start=> ::core::compile_error! #arguments)
+        };
+        self.found.borrow().iter().map(error).collect()
     }
 }
 
@@ -245,13 +243,9 @@ pub fn nearest<'a>(name: &str, candidates: impl IntoIterator<Item = &'a str>) ->
 }
 
 /// The name that another one means: its synonym, or one that is spelled nearly like it.
-pub fn meant<'a>(
-    name: &str,
-    synonyms: &[(&str, &'a str)],
-    names: impl IntoIterator<Item = &'a str>,
-) -> Option<&'a str> {
+pub fn meant<'a>(name: &str, synonyms: &[(&str, &'a str)], all: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
     let synonym = synonyms.iter().find(|(other, _)| *other == name).map(|&(_, meant)| meant);
-    synonym.or_else(|| nearest(name, names))
+    synonym.or_else(|| nearest(name, all))
 }
 
 /// The number of insertions, deletions, replacements and swaps of neighbours that turn one word into the other.

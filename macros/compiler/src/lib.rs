@@ -16,15 +16,13 @@ mod methods;
 pub mod model;
 pub mod parse;
 
-use std::cell::Cell;
-
 use proc_macro2::TokenStream;
 
 pub use budget::WORK;
 pub use clebsch_symbolic::Graph;
 use clebsch_symbolic::work;
 
-use crate::budget::CompilerStage;
+use crate::budget::{CompilerStage, Stage};
 use crate::diagnostic::Diagnostics;
 use crate::lower::Program;
 pub use crate::methods::MethodProgram;
@@ -72,11 +70,7 @@ pub fn compile(graph: &Graph, item: TokenStream) -> Result<Program<'_>, Diagnost
 }
 
 /// The program of a declaration with those of its methods, which have the same system and other dials.
-fn program<'g>(
-    graph: &'g Graph,
-    declaration: &Declaration,
-    stage: &Cell<CompilerStage>,
-) -> Result<Program<'g>, Diagnostics> {
+fn program<'g>(graph: &'g Graph, declaration: &Declaration, stage: &Stage) -> Result<Program<'g>, Diagnostics> {
     let mut program = match program_of_steps(graph, declaration, stage)? {
         Program::Mechanics(program) => program,
         // what inputs move has no methods
@@ -109,7 +103,7 @@ fn program<'g>(
 fn program_of_steps<'g>(
     graph: &'g Graph,
     declaration: &Declaration,
-    stage: &Cell<CompilerStage>,
+    stage: &Stage,
 ) -> Result<Program<'g>, Diagnostics> {
     stage.set(CompilerStage::Model);
     let model = model::model(graph, declaration)?;

@@ -8,7 +8,6 @@ use crate::diagnostic::{Diagnostic, error};
 use crate::parse::{joined, shortened, spell};
 
 impl<'g> Action<'_, 'g> {
-    /// The identity moves something.
     pub(super) fn identity_moves(&self) -> Diagnostic {
         let images = self.of_identity();
         let mut moved = self.configurations.iter().zip(&images);
@@ -93,15 +92,10 @@ impl<'g> Action<'_, 'g> {
         }
     }
 
-    pub(super) fn do_not_commute(
-        &self,
-        [one, other]: [&Factor<'g>; 2],
-        then_second: &[Expr<'g>],
-        then_first: &[Expr<'g>],
-    ) -> Diagnostic {
-        let leaf = first_difference(then_second, then_first);
+    pub(super) fn do_not_commute(&self, [one, other]: [&Factor<'g>; 2], orders: [&[Expr<'g>]; 2]) -> Diagnostic {
+        let leaf = first_difference(orders[0], orders[1]);
         let declared = |factor: &Factor| format!("`{}: {}`", factor.name, factor.group.name(self.graph));
-        let [then_second, then_first] = [then_second[leaf], then_first[leaf]].map(ascii);
+        let [then_second, then_first] = orders.map(|images| ascii(images[leaf]));
         let (leaf, first, second) = (&self.configurations[leaf], verb(one), verb(other));
         let orders = if self.is_readable(&format!("{then_second}{then_first}")) {
             format!("to {then_second}, in the other order to {then_first}")

@@ -123,7 +123,7 @@ impl<'g> Action<'_, 'g> {
             let then_first = moved(first, &moved(second, &points));
             if !identity::equal(&then_second, &then_first) {
                 let factors = [first, second].map(|index| &self.factors[index]);
-                diagnostics.push(self.do_not_commute(factors, &then_second, &then_first));
+                diagnostics.push(self.do_not_commute(factors, [&then_second, &then_first]));
             }
         }
         let one_by_one = (0..count).fold(points.clone(), |point, index| moved(index, &point));

@@ -3,7 +3,6 @@
 use clebsch_symbolic::{Expr, Graph, Shape};
 use syn::{BinOp, Expr as Syntax};
 
-use super::arguments::Arguments;
 use super::elaborate::{Context, Elaborator};
 use super::groups::without_cayley_map;
 use super::power::Term;
@@ -11,11 +10,11 @@ use super::scope::Scope;
 use super::sites;
 use super::slots::{COST, LAGRANGIAN, POTENTIAL, Slot};
 use super::space::new_value_of;
-use super::typed::{Typed, Velocity};
+use super::typed::{Arguments, Typed, Velocity};
 use super::value::{Each, Value};
-use super::{Discretization, Factor, Kinetic, Spans, Written};
+use super::{Discretization, Factor, Kinetic, Written};
 use crate::diagnostic::{Location, error, refuse, report};
-use crate::parse::{self, Closure, Declaration, spell, tail};
+use crate::parse::{self, Closure, Declaration, Opaque, spell, tail};
 
 /// What an optional closure gives, if it is there; `None` where it has an error, which was reported.
 pub(super) fn optional<C, T>(closure: Option<C>, read: impl FnOnce(C) -> Option<T>) -> Option<Option<T>> {
@@ -48,7 +47,7 @@ impl<'g> Closures<'_, '_, 'g> {
             other => {
                 let is = other.describe();
                 refuse!(self.context.diagnostics, tail(body), "the action gives {is}, but it has to give a value for each site";
-                    help "write `(0..{}).map(|i| …)`", power.name)
+                    help "write `(0..{}).map(|i| …)`", power.length)
             }
         }
     }
@@ -89,8 +88,7 @@ impl<'g> Closures<'_, '_, 'g> {
             .zip(pattern)
             .and_then(|(factors, pattern)| Velocity { graph, factors, diagnostics }.of(pattern, &self.typed.element));
         let (value, velocities) = velocity.unzip();
-        let is_power = self.context.power.is_some();
-        let value = value.map(|own| if is_power { Value::PerSite(Each::Motion, Box::new(own)) } else { own });
+        let value = value.map(|own| own.of_each(Each::Motion, self.context.power.is_some()));
         let mut scope = self.arguments.scope(&matched, &[(Slot::Velocity, value)]);
         if let Some((velocities, factors)) = velocities.as_ref().zip(factors) {
             scope.set_velocities(velocities, factors);
@@ -107,33 +105,33 @@ impl<'g> Closures<'_, '_, 'g> {
         Some(Kinetic::Lagrangian { energy, velocities, name: pattern.spell(), discretization })
     }
 
-    /// V(t, q); an opaque one is known by the name of its method alone.
-    pub fn potential(&mut self) -> Option<Expr<'g>> {
-        match self.declaration.potential.as_ref()? {
-            parse::Potential::Closure(closure) => {
-                scalar(self.context, closure, self.arguments.scope_of(closure, POTENTIAL), "an energy is a scalar")
-            }
-            parse::Potential::Opaque(opaque) => {
-                let time = opaque.takes_time.then_some(self.arguments.time);
-                let points = self.typed.space.as_ref()?.leaves.iter().map(|leaf| leaf.symbol);
-                let arguments: Vec<Expr<'g>> = time.into_iter().chain(points).collect();
-                let method = opaque.value.segments.last().map(|segment| segment.ident.to_string()).unwrap_or_default();
-                Some(self.context.graph.opaque(&method, 0, &arguments, Shape::scalar()))
-            }
+    /// V(t, q), or its terms in a power; an opaque one is known by the name of its method alone. With an error, which was reported, there
+    /// is none.
+    pub fn potential(&mut self) -> (Option<Expr<'g>>, Vec<Term<'g>>) {
+        let closure = match &self.declaration.potential {
+            Some(parse::Potential::Closure(closure)) => closure,
+            Some(parse::Potential::Opaque(opaque)) => return (self.opaque(opaque), Vec::new()),
+            None => return (None, Vec::new()),
+        };
+        let scope = self.arguments.scope_of(closure, POTENTIAL);
+        if self.context.power.is_none() {
+            return (scalar(self.context, closure, scope, "an energy is a scalar"), Vec::new());
         }
-    }
-
-    /// The terms of the potential of a power; one with an error has none.
-    pub fn potential_of_power(&mut self) -> Option<Vec<Term<'g>>> {
-        // by construction: an opaque potential has been refused
-        let closure = self.declaration.potential.as_ref()?.closure()?;
-        let value = self.context.value(closure, self.arguments.scope_of(closure, POTENTIAL))?;
+        let Some(value) = self.context.value(closure, scope) else { return (None, Vec::new()) };
         if value.terms().is_none() {
             let is = value.describe();
             report!(self.context.diagnostics, tail(&closure.body), "the potential is {is}, but an energy is a scalar";
                 help "add what sites have, as in `(0..N).map(|i| …).sum()`");
         }
-        value.terms()
+        (None, value.terms().unwrap_or_default())
+    }
+
+    fn opaque(&self, opaque: &Opaque) -> Option<Expr<'g>> {
+        let time = opaque.takes_time.then_some(self.arguments.time);
+        let points = self.typed.space.as_ref()?.leaves.iter().map(|leaf| leaf.symbol);
+        let arguments: Vec<Expr<'g>> = time.into_iter().chain(points).collect();
+        let method = opaque.value.segments.last().map(|segment| segment.ident.to_string()).unwrap_or_default();
+        Some(self.context.graph.opaque(&method, 0, &arguments, Shape::scalar()))
     }
 }
 
@@ -151,7 +149,7 @@ pub(super) fn scalar<'g>(
     context: &mut Context<'_, 'g>,
     closure: &Closure,
     scope: Scope<'g>,
-    needs: &str,
+    is: &str,
 ) -> Option<Expr<'g>> {
     let key = closure.key.to_string();
     let mut elaborator = Elaborator::new(context, &key, scope);
@@ -174,7 +172,7 @@ pub(super) fn scalar<'g>(
     }
     let diagnostics = elaborator.context.diagnostics;
     let reason = diagnostics.quietly(|| because(&mut elaborator, tail, &value));
-    let error = error!(tail, "the {key} is {}, but {needs}", value.describe()).maybe_help(to_scalar(tail, &value));
+    let error = error!(tail, "the {key} is {}, but {is}", value.describe()).maybe_help(to_scalar(tail, &value));
     diagnostics.refuse(reason.into_iter().fold(error, |error, reason| error.note(reason)))
 }
 
@@ -206,11 +204,6 @@ fn because<'g>(elaborator: &mut Elaborator<'_, '_, 'g>, tail: &Syntax, value: &V
     let [left, right] = [left, right].map(|factor| Value::Matrix(factor).describe());
     let (a, b, text) = (spell(&product.left), spell(&product.right), spell(tail));
     Some(format!("`{text}` is {} because `{a}` is {left} and `{b}` is {right}", value.describe()))
-}
-
-pub(super) fn spans(declaration: &Declaration) -> Spans {
-    let order = declaration.dials.order.as_ref().map(|order| order.span);
-    Spans { action: written(&declaration.action), kinetic: written(declaration.kinetic.closure()), order }
 }
 
 pub(super) fn written(closure: &Closure) -> Written {

@@ -35,7 +35,6 @@ pub(crate) struct Found {
 }
 
 impl Found {
-    /// A feature with a place.
     pub fn at(place: impl Into<Location>) -> Found {
         Found { place: place.into(), name: String::new() }
     }

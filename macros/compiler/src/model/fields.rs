@@ -10,7 +10,7 @@ use syn::{Generics, Type};
 
 use super::arguments::sites_of;
 use super::scalar::Agreement;
-use super::shapes::{ENTRIES, GROWS, hint, last_name, last_segment, size, type_parameter, vectors};
+use super::shapes::{ENTRIES, GROWS, hint, last_name, last_segment, plain, size, type_parameter, vectors};
 use super::value::{Each, Value};
 use super::{Access, Layout, Leaf, Parameter, Promise, ScalarType};
 use crate::diagnostic::{Diagnostic, Diagnostics, bail, error};
@@ -25,7 +25,6 @@ pub(super) struct Fields<'g> {
 }
 
 impl<'g> Fields<'g> {
-    /// No fields at all.
     pub fn none() -> Fields<'g> {
         Fields { known: BTreeMap::new(), parameters: Vec::new(), scalar: ScalarType::F64 }
     }
@@ -86,8 +85,7 @@ pub(super) fn read<'g>(
         let value = parameter.as_ref().map(|parameter| {
             let leaves: Vec<Value<'g>> = parameter.leaves.iter().map(|leaf| Value::Matrix(leaf.symbol)).collect();
             let value = Value::nested(&parameter.structure, &leaves);
-            let of = Each::Field(parameters.len());
-            if parameter.per_site { Value::PerSite(of, Box::new(value)) } else { value }
+            value.of_each(Each::Field(parameters.len()), parameter.per_site)
         });
         leaf_count += parameter.as_ref().map_or(0, |parameter| parameter.leaves.len());
         parameters.extend(parameter);
@@ -98,7 +96,7 @@ pub(super) fn read<'g>(
 
 /// The shape of a field's type; an error without a message for a type that no closure can read.
 fn field_type<'t>(ty: &'t Type, generics: &Generics) -> Result<FieldType<'t>, Option<Diagnostic>> {
-    match ty {
+    match plain(ty) {
         Type::Array(array) => {
             let element = field_type(&array.elem, generics)?;
             let length = size(&array.len, generics).map_err(Some)?;
@@ -110,10 +108,11 @@ fn field_type<'t>(ty: &'t Type, generics: &Generics) -> Result<FieldType<'t>, Op
             let parts = (0..length).map(|i| element.structure.shifted(i * leaves)).collect();
             Ok(FieldType { structure: Layout::Array(parts), ..element })
         }
-        Type::Group(group) => field_type(&group.elem, generics),
-        Type::Paren(paren) => field_type(&paren.elem, generics),
-        _ => {
-            let is_scalar = is_float(ty) || type_parameter(ty, generics).is_some();
+        ty => {
+            let is_float = last_segment(ty).is_some_and(|segment| {
+                segment.arguments.is_empty() && (segment.ident == "f64" || segment.ident == "f32")
+            });
+            let is_scalar = is_float || type_parameter(ty, generics).is_some();
             let (shape, scalar) = if is_scalar {
                 (Shape::scalar(), Some(ty))
             } else {
@@ -123,11 +122,6 @@ fn field_type<'t>(ty: &'t Type, generics: &Generics) -> Result<FieldType<'t>, Op
             Ok(FieldType { structure: Layout::Leaf(0), shape, is_scalar, scalar })
         }
     }
-}
-
-fn is_float(ty: &Type) -> bool {
-    last_segment(ty)
-        .is_some_and(|segment| segment.arguments.is_empty() && (segment.ident == "f64" || segment.ident == "f32"))
 }
 
 /// The error for a type that no closure can read.
@@ -147,7 +141,6 @@ fn explain(field: &Field) -> Diagnostic {
         .note("a field that a closure reads is a scalar, a vector, a matrix, or an array of these")
 }
 
-/// The symbols of a field.
 fn parameter<'g>(
     graph: &'g Graph,
     field: &Field,

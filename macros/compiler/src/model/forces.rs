@@ -13,7 +13,6 @@ use super::{Factor, Force, LeafSpace};
 use crate::diagnostic::{Diagnostics, refuse};
 use crate::parse::{Argument, Closure, Declaration, shortened, tail};
 
-/// The forces of a declaration with their input.
 pub(super) struct Forces<'g> {
     pub force: Option<Force<'g>>,
     pub input: Space<'g>,

@@ -10,7 +10,7 @@ use syn::{GenericArgument, Generics, Type};
 use super::features::{self, Feature, Found};
 use super::shapes::{GROWS, LARGEST, arguments, last_name, last_segment, named_shape, size_argument};
 use super::{ChartChoice, Configuration, Factor, LeafSpace};
-use crate::diagnostic::{Diagnostic, Diagnostics, Location, bail, error, nearest, report};
+use crate::diagnostic::{Diagnostic, Diagnostics, bail, error, nearest, report};
 use crate::parse::{Declaration, Dials, listed, spell_type};
 
 /// What the names in types refer to, and what collects the errors of types.
@@ -38,7 +38,6 @@ impl DeclaredGroups {
         Some(*group)
     }
 
-    /// Reports groups that no type names.
     pub fn check_used(&self, diagnostics: &Diagnostics) {
         for (name, ..) in self.known.iter().filter(|(.., used)| !used.get()) {
             report!(diagnostics, name.span(), "the group `{name}` is declared and not used";
@@ -70,7 +69,8 @@ const GROUPS: [Maker; 11] = [
     maker("SL",          2, Group::SpecialLinear),
     Maker { even: true, ..maker("Sp", 2, Group::Symplectic) },
     maker("U",           1, Group::Unitary),
-    maker("SU",          2, special_unitary),
+    // SU(2) is made of quaternions, the others of real matrices
+    maker("SU",          2, |n| if n == 2 { Group::UnitQuaternions } else { Group::SpecialUnitary(n) }),
     maker("Heisenberg",  1, Group::Heisenberg),
     maker("Aff",         1, Group::Affine),
     maker("Sim",         2, Group::Similarity),
@@ -92,12 +92,6 @@ pub fn is_large(group: Group, configurations: &[Configuration<'_>]) -> bool {
     group.dimension() > COMBINED && configurations.iter().all(|leaf| leaf.space == LeafSpace::Unit)
 }
 
-/// SU(2) is made of quaternions, the others of real matrices.
-fn special_unitary(n: usize) -> Group {
-    if n == 2 { Group::UnitQuaternions } else { Group::SpecialUnitary(n) }
-}
-
-/// Whether a name is that of a group that is built in.
 pub(super) fn is_built_in(name: &str) -> bool {
     GROUPS.iter().any(|maker| maker.name == name)
 }
@@ -157,23 +151,18 @@ fn check_dimension(ty: &Type, group: Group) -> Result<Group, Diagnostic> {
 
 /// Refuses a large group that is not one of rotations of unit vectors, whose steps are found without an equation, and what is not
 /// looked at for those.
-pub(super) fn check_large(
-    declaration: &Declaration,
-    factors: &[Factor<'_>],
-    configurations: &[Configuration<'_>],
-) -> Result<(), Diagnostic> {
-    let must_be_looked_at =
-        |factor: &&Factor<'_>| factor.group.dimension() > DIMENSION || is_large(factor.group, configurations);
-    let Some(factor) = factors.iter().find(must_be_looked_at) else { return Ok(()) };
+pub(super) fn large(declaration: &Declaration, factors: &[Factor], leaves: &[Configuration]) -> Option<Diagnostic> {
+    let is_looked_at = |factor: &&Factor| factor.group.dimension() > DIMENSION || is_large(factor.group, leaves);
+    let factor = factors.iter().find(is_looked_at)?;
     let text = factor.group.name(factor.symbol.graph());
-    if !is_large(factor.group, configurations) {
-        bail!(factor.span, "`{text}` has {} dimensions, more than {DIMENSION}", factor.group.dimension();
+    if !is_large(factor.group, leaves) {
+        let dimension = factor.group.dimension();
+        return Some(error!(factor.span, "`{text}` has {dimension} dimensions, more than {DIMENSION}";
             help "use a smaller group, or a product of several";
-            note "only rotations of a unit vector may have more: the others are found by an equation in all of them");
+            note "only rotations of a unit vector may have more: the others are found by an equation in all of them"));
     }
-    let Some(symmetry) = declaration.symmetries.first() else { return Ok(()) };
-    let offered = Found::at(Location::of(&symmetry.body)).named(text);
-    Err(features::refusal((Feature::Symmetry, offered), (Feature::LargeGroup, Found::somewhere())))
+    let offered = Found::at(&declaration.symmetries.first()?.body).named(text);
+    Some(features::refusal((Feature::Symmetry, offered), (Feature::LargeGroup, Found::somewhere())))
 }
 
 /// The chart that is chosen has to stay in the group.

@@ -37,22 +37,21 @@ pub use features::features_as_markdown;
 pub use groups::is_large;
 pub use layout::{Access, Layout, Part};
 pub use outline::{Nested, Outline, outline};
-pub use power::{Linear, SiteIndex, Term};
+pub use power::{Linear, Range, SiteIndex, Term};
 pub(crate) use shapes::IN_LOOPS;
 pub use types::*;
 
 use std::rc::Rc;
 
-use clebsch_symbolic::{Expr, Graph, Property, Role, Shape};
+use clebsch_symbolic::{Expr, Graph};
 
 use self::action_laws::{Action, Law};
-use self::arguments::Arguments;
 use self::closures::{Closures, optional};
 use self::elaborate::Context;
 use self::forces::Forces;
 use self::groups::GroupNames;
 use self::sites::Sites;
-use self::typed::{ActedSystem, Typed};
+use self::typed::{ActedSystem, Arguments, Typed};
 use crate::diagnostic::Diagnostics;
 use crate::parse::{Declaration, Potential};
 
@@ -75,24 +74,22 @@ pub fn model<'g>(graph: &'g Graph, declaration: &Declaration) -> Result<Model<'g
         spaces.iter().flat_map(|spaces| &spaces.leaves).filter_map(|(leaf, _)| leaf.scalar).collect();
     let fields = fields::read(graph, declaration, &scalars, sites, &diagnostics);
     let (Some(types), Some(groups), Some(spaces)) = (types, groups, spaces) else { return Err(diagnostics) };
-    let typed = Typed::new(graph, types, groups, spaces, &diagnostics);
+    let typed = Typed::new(graph, types, groups, spaces);
     // before the laws of the action are looked at in all directions
     if let (Some(factors), Some(space)) = (&typed.factors, &typed.space)
-        && let Err(error) = groups::check_large(declaration, factors, &space.leaves)
+        && let Some(error) = groups::large(declaration, factors, &space.leaves)
     {
         diagnostics.push(error);
         return Err(diagnostics);
     }
-    let step_size = graph.symbol("h", Shape::scalar(), Role::StepSize, Property::General);
-    let time = graph.symbol("t", Shape::scalar(), Role::Time, Property::General);
-    let mut arguments = typed.arguments(types, declaration.input(), (step_size, time), &diagnostics);
-    let power = sites.zip(typed.space.clone()).map(|(length, space)| {
-        arguments.of_each_site();
-        Sites::new(graph, length, space, arguments.names.configuration.spell(), fields.leaf_count())
-    });
+    let arguments = typed.arguments(graph, types);
+    let power = sites
+        .zip(typed.space.clone())
+        .map(|(length, space)| Sites::new(graph, length, space, types.configuration.spell(), fields.leaf_count()));
     let mut context = Context::new(graph, &fields, power, &diagnostics);
     let formulas = ClosureValues::read(&mut context, declaration, &arguments, &typed, names);
     let Context { constants, power, .. } = context;
+    let Arguments { step_size, time, .. } = arguments;
     declared.check_used(&diagnostics);
     groups::check_chart(graph, &declaration.dials, typed.factors.as_deref().unwrap_or_default(), &diagnostics);
     diagnostics.propagate(())?;
@@ -128,7 +125,11 @@ pub fn model<'g>(graph: &'g Graph, declaration: &Declaration) -> Result<Model<'g
         endpoint: formulas.endpoint,
         emit: dials.emit,
         dials: dials.of_steps(),
-        spans: closures::spans(declaration),
+        spans: Spans {
+            action: closures::written(&declaration.action),
+            kinetic: closures::written(declaration.kinetic.closure()),
+            order: dials.order.as_ref().map(|order| order.span),
+        },
     };
     let kinetic = match formulas.mover {
         Mover::Momenta(kinetic) => kinetic,
@@ -138,10 +139,7 @@ pub fn model<'g>(graph: &'g Graph, declaration: &Declaration) -> Result<Model<'g
     if dials.emit.momentum {
         system = momentum::alone(system, kinetic.energy(), force.as_ref())?;
     }
-    let power = power.zip(sites).map(|(power, length)| {
-        let terms = formulas.terms;
-        sites::power_of(&mut system, kinetic.energy(), power, terms, length)
-    });
+    let power = power.map(|power| sites::power_of(&mut system, kinetic.energy(), power, formulas.terms));
     let isotropy = dials.isotropy.as_ref().map_or(Isotropy::Fixed, |isotropy| isotropy.value);
     Ok(Model::Mechanics(Box::new(Mechanics {
         system: Rc::new(system),
@@ -188,11 +186,7 @@ impl<'g> ClosureValues<'g> {
         let mut closures = Closures { context, declaration, arguments, typed };
         let action = closures.action();
         let kinetic = closures.kinetic();
-        let (potential, terms) = if closures.context.power.is_some() {
-            (None, closures.potential_of_power().unwrap_or_default())
-        } else {
-            (closures.potential(), Vec::new())
-        };
+        let (potential, terms) = closures.potential();
         let (action, factors, space) = (action?, typed.factors.as_deref()?, typed.space.as_ref()?);
         let (graph, diagnostics, closure) = (context.graph, context.diagnostics, &declaration.action);
         let acting = Action { graph, closure, factors, configurations: &space.leaves, value: &action };

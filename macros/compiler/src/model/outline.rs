@@ -41,6 +41,9 @@ pub fn outline(graph: &Graph, declaration: &Declaration) -> Option<Outline> {
     let nested = |spaces: Product<SpaceType>| {
         (spaces.layout, spaces.leaves.iter().map(|(leaf, _)| (leaf.shape, leaf.is_quaternion)).collect())
     };
+    let is_time = |argument: &Argument| matches!(&argument.pattern, Pattern::Name(ident) if ident == "t");
+    let opaque = declaration.potential.as_ref().and_then(Potential::opaque);
+    let opaque_takes_time = opaque.is_some_and(|opaque| opaque.takes_time);
     let point = || (Layout::Tuple(Vec::new()), Vec::new());
     let spaces = spaces::read_spaces(types.space, names)?;
     let input = declaration.input().and_then(|argument| spaces::read_spaces(argument.ty.as_ref()?, names));
@@ -50,16 +53,9 @@ pub fn outline(graph: &Graph, declaration: &Declaration) -> Option<Outline> {
         dimension: groups.leaves.iter().map(|(group, _)| group.dimension()).sum(),
         element: (groups.layout, groups.leaves.iter().map(of_group).collect()),
         configuration: if declaration.dials.emit.momentum { point() } else { nested(spaces) },
-        takes_time: takes_time(declaration),
+        takes_time: opaque_takes_time || declaration.closures().flat_map(|closure| &closure.arguments).any(is_time),
         scalar: scalar(declaration),
     })
-}
-
-/// Whether a closure has an argument `t`, or an opaque potential takes the time.
-fn takes_time(declaration: &Declaration) -> bool {
-    let is_time = |argument: &Argument| matches!(&argument.pattern, Pattern::Name(ident) if ident == "t");
-    let opaque = matches!(&declaration.potential, Some(Potential::Opaque(opaque)) if opaque.takes_time);
-    opaque || declaration.closures().any(|closure| closure.arguments.iter().any(is_time))
 }
 
 /// The first type parameter, or `f32` where the dial or a field says so, or `f64`.

@@ -18,11 +18,14 @@ pub struct SiteIndex<'g> {
     pub wraps: bool,
 }
 
+/// What the index of a sum runs through: from the first expression up to and without the second.
+pub type Range<'g> = (Expr<'g>, Expr<'g>);
+
 /// A term of a sum over sites, and the sums around it.
 #[derive(Clone, Debug)]
 pub struct Term<'g> {
-    /// What the index of each sum runs through, the outermost first: from the first expression up to and without the second.
-    pub ranges: Vec<(Expr<'g>, Expr<'g>)>,
+    /// The range of each sum, the outermost first.
+    pub ranges: Vec<Range<'g>>,
     /// The formula.
     pub value: Expr<'g>,
 }
@@ -30,8 +33,7 @@ pub struct Term<'g> {
 impl Term<'_> {
     /// What its indices run through, `i in 0..N, j in i + 1..N`; nothing where there is no sum.
     pub fn indices(&self) -> String {
-        let of_depth =
-            |(depth, (from, to)): (usize, &(Expr<'_>, Expr<'_>))| format!("{} in {from}..{to}", index_name(depth));
+        let of_depth = |(depth, (from, to)): (usize, &Range<'_>)| format!("{} in {from}..{to}", index_name(depth));
         self.ranges.iter().enumerate().map(of_depth).collect::<Vec<_>>().join(", ")
     }
 }
@@ -107,14 +109,16 @@ fn whole(number: Rational) -> Option<i64> {
 }
 
 /// Whether 0 ≤ index < N for every N ≥ 1 and all indices in their ranges.
-pub(super) fn is_inside<'g>(index: Expr<'g>, sites: Expr<'g>, ranges: &[(Expr<'g>, Expr<'g>)]) -> bool {
+pub(super) fn is_inside<'g>(index: Expr<'g>, sites: Expr<'g>, ranges: &[Range<'g>]) -> bool {
     let graph = index.graph();
     let above = sites - graph.integer(1) - index;
-    [index, above].into_iter().all(|expr| least(expr, ranges).is_some_and(|least| is_never_negative(&least)))
+    // c + n N ≥ 0 for every N ≥ 1
+    let is_never_negative = |Linear { constant, sites, .. }| sites >= 0 && constant.saturating_add(sites) >= 0;
+    [index, above].into_iter().all(|expr| least(expr, ranges).is_some_and(is_never_negative))
 }
 
 /// The least value over all indices in their ranges, the innermost first, as a function of N.
-fn least<'g>(mut expr: Expr<'g>, ranges: &[(Expr<'g>, Expr<'g>)]) -> Option<Linear> {
+fn least<'g>(mut expr: Expr<'g>, ranges: &[Range<'g>]) -> Option<Linear> {
     let graph = expr.graph();
     for (depth, (from, to)) in ranges.iter().enumerate().rev() {
         let is_index = |symbol: &Expr<'g>| symbol.as_symbol().is_some_and(|data| data.role == Role::Site(depth));
@@ -124,9 +128,4 @@ fn least<'g>(mut expr: Expr<'g>, ranges: &[(Expr<'g>, Expr<'g>)]) -> Option<Line
         expr = expr.substitute(&[(symbol, end)]);
     }
     Linear::of(expr).filter(|linear| linear.indices.iter().all(|&coefficient| coefficient == 0))
-}
-
-/// c + n N ≥ 0 for every N ≥ 1.
-fn is_never_negative(linear: &Linear) -> bool {
-    linear.sites >= 0 && linear.constant.saturating_add(linear.sites) >= 0
 }

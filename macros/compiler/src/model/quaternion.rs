@@ -3,20 +3,16 @@
 use clebsch_symbolic::{Expr, Graph, Shape};
 pub(super) use clebsch_symbolic::{conjugate, quaternion_product as product};
 
-/// The number of coordinates.
 pub(super) const COORDINATES: usize = 4;
 /// The position of the scalar part.
 const SCALAR: usize = 3;
 
-/// The names of the coordinates.
 pub(super) const NAMES: [&str; COORDINATES] = ["i", "j", "k", "w"];
 
-/// The vector part.
 pub(super) fn imaginary(q: Expr<'_>) -> Expr<'_> {
     q.block(0, 0, Shape::vector(SCALAR))
 }
 
-/// The scalar part.
 pub(super) fn scalar(q: Expr<'_>) -> Expr<'_> {
     q.entry(SCALAR, 0)
 }

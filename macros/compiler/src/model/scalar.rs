@@ -62,7 +62,6 @@ fn named_scalar(name: &str, generics: &Generics) -> Option<ScalarType> {
     }
 }
 
-/// The name of a scalar.
 pub(super) fn spell_scalar(scalar: &ScalarType) -> String {
     match scalar {
         ScalarType::F32 => "f32".into(),

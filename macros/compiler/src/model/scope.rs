@@ -65,7 +65,6 @@ impl<'g> Scope<'g> {
         Scope { elements: elements.to_vec(), ..Scope::default() }
     }
 
-    /// Introduces an argument.
     pub fn add_argument(&mut self, pattern: &Pattern, value: Option<Value<'g>>, diagnostics: &Diagnostics) {
         let bindings = bindings(pattern, value, diagnostics);
         self.names.extend(bindings.into_iter().map(|(ident, value)| (ident.unraw().to_string(), value)));

@@ -65,7 +65,6 @@ fn no_size(place: Location, text: &str, generics: &Generics) -> Diagnostic {
         help "write a number"; note "a macro sees the text of the declaration, not the values of constants")
 }
 
-/// The const generic with a name.
 pub(super) fn const_generic<'p>(name: &str, generics: &'p Generics) -> Option<&'p syn::Ident> {
     generics.params.iter().find_map(|parameter| match parameter {
         GenericParam::Const(constant) if constant.ident == name => Some(&constant.ident),
@@ -89,12 +88,18 @@ pub(super) struct Vectors<'t> {
     pub scalar: Option<&'t Type>,
 }
 
-/// The last segment of a type's path.
-pub(super) fn last_segment(ty: &Type) -> Option<&PathSegment> {
+/// A type without parentheses around it.
+pub(super) fn plain(ty: &Type) -> &Type {
     match ty {
+        Type::Group(group) => plain(&group.elem),
+        Type::Paren(paren) => plain(&paren.elem),
+        _ => ty,
+    }
+}
+
+pub(super) fn last_segment(ty: &Type) -> Option<&PathSegment> {
+    match plain(ty) {
         Type::Path(path) if path.qself.is_none() => path.path.segments.last(),
-        Type::Group(group) => last_segment(&group.elem),
-        Type::Paren(paren) => last_segment(&paren.elem),
         _ => None,
     }
 }
@@ -104,7 +109,6 @@ pub(super) fn last_name(ty: &Type) -> String {
     last_segment(ty).map(|segment| segment.ident.to_string()).unwrap_or_default()
 }
 
-/// The generic arguments of a segment.
 pub(super) fn arguments(segment: &PathSegment) -> Vec<&GenericArgument> {
     match &segment.arguments {
         PathArguments::AngleBracketed(arguments) => arguments.args.iter().collect(),

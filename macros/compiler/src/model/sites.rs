@@ -4,7 +4,7 @@ use clebsch_symbolic::{Expr, Graph, Property, Role, Shape};
 use proc_macro2::Ident;
 
 use super::features::{self, Feature, Found};
-use super::power::{SiteIndex, Term, index_name, is_inside};
+use super::power::{Range, SiteIndex, Term};
 use super::space::Space;
 use super::value::Value;
 use super::{Configuration, Item, Leaf, Order, Parameter, Power, ScalarType, System};
@@ -13,13 +13,14 @@ use crate::parse::{Closure, Declaration, Potential};
 
 /// What closures need to know of a power, and what they find.
 pub(super) struct Sites<'g> {
-    pub name: String,
+    /// The const generic N.
+    pub length: Ident,
     pub count: Expr<'g>,
     /// The configuration of a site.
     space: Space<'g>,
     pattern: String,
     /// What the sums around the expression that is read run through, the outermost first.
-    pub ranges: Vec<(Expr<'g>, Expr<'g>)>,
+    pub ranges: Vec<Range<'g>>,
     /// The places that have been met.
     pub places: Vec<SiteIndex<'g>>,
     /// The fields with one entry for each site that terms have read: the field, the place, and its leaves.
@@ -36,21 +37,12 @@ pub(super) struct Entry<'g> {
 }
 
 impl<'g> Sites<'g> {
-    /// Nothing met so far.
     pub fn new(graph: &'g Graph, length: &Ident, space: Space<'g>, pattern: String, next_leaf: usize) -> Sites<'g> {
-        let name = length.to_string();
-        let count = graph.symbol(&name, Shape::scalar(), Role::Sites, Property::General);
+        let count = graph.symbol(&length.to_string(), Shape::scalar(), Role::Sites, Property::General);
         let (ranges, places, entries) = (Vec::new(), Vec::new(), Vec::new());
-        Sites { name, count, space, pattern, ranges, places, entries, next_leaf }
+        Sites { length: length.clone(), count, space, pattern, ranges, places, entries, next_leaf }
     }
 
-    /// The symbol of the index of the sum inside those around.
-    pub fn index(&self, graph: &'g Graph) -> Expr<'g> {
-        let depth = self.ranges.len();
-        graph.symbol(&index_name(depth), Shape::scalar(), Role::Site(depth), Property::General)
-    }
-
-    /// The number of a place.
     pub fn place(&mut self, place: SiteIndex<'g>) -> usize {
         self.places.iter().position(|known| *known == place).unwrap_or_else(|| {
             self.places.push(place);
@@ -58,7 +50,6 @@ impl<'g> Sites<'g> {
         })
     }
 
-    /// The configuration at a place.
     pub fn configuration_at(&self, place: usize) -> Value<'g> {
         let text = self.places[place].text();
         let leaf = |(number, leaf): (usize, &Configuration<'g>)| {
@@ -84,11 +75,6 @@ impl<'g> Sites<'g> {
         let leaves: Vec<Expr<'g>> = parameter.leaves.iter().enumerate().map(leaf).collect();
         self.entries.push(Entry { field, place, leaves: leaves.clone() });
         leaves
-    }
-
-    /// Whether a place is one of the sites 0..N for every N ≥ 1, wherever the sums around it are.
-    pub fn is_inside(&self, place: &SiteIndex<'g>) -> bool {
-        place.wraps || is_inside(place.index, self.count, &self.ranges)
     }
 }
 
@@ -163,17 +149,11 @@ pub(super) fn power_of<'g>(
     energy: Expr<'g>,
     sites: Sites<'g>,
     terms: Vec<Term<'g>>,
-    length: &Ident,
 ) -> Power<'g> {
-    let is_read = |leaf: &Leaf<'g>, expr: Expr<'g>| expr.depends_on(leaf.symbol);
-    let by_site = |parameter: &&Parameter<'g>| {
-        let of_site =
-            |leaf: &Leaf<'g>| is_read(leaf, energy) || system.action.iter().any(|image| is_read(leaf, *image));
-        parameter.leaves.iter().any(of_site)
-    };
-    let by_terms = |parameter: &&Parameter<'g>| {
-        !parameter.per_site && parameter.leaves.iter().any(|leaf| terms.iter().any(|term| is_read(leaf, term.value)))
-    };
+    let reads = |expr: Expr<'g>, field: &Parameter<'g>| field.leaves.iter().any(|leaf| expr.depends_on(leaf.symbol));
+    let by_site =
+        |field: &&Parameter<'g>| reads(energy, field) || system.action.iter().any(|image| reads(*image, field));
+    let by_terms = |field: &&Parameter<'g>| !field.per_site && terms.iter().any(|term| reads(term.value, field));
     let mut parameters: Vec<Parameter<'g>> = system.parameters.iter().filter(by_terms).cloned().collect();
     for entry in &sites.entries {
         let field = &system.parameters[entry.field];
@@ -205,7 +185,7 @@ pub(super) fn power_of<'g>(
         krate: system.item.krate.clone(),
     };
     let item = std::mem::replace(&mut system.item, site);
-    let Sites { count, places, .. } = sites;
+    let Sites { length, count, places, .. } = sites;
     system.parameters = of_site;
-    Power { item, length: length.clone(), sites: count, places, terms, parameters, copied, is_uniform }
+    Power { item, length, sites: count, places, terms, parameters, copied, is_uniform }
 }

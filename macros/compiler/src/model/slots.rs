@@ -1,9 +1,10 @@
-//! Which argument stands for what: each is found by its name, and they keep their order.
+//! Which argument stands for what: each is found by the name that the action gives, and they keep their order.
 
 use syn::ext::IdentExt;
 
+use super::arguments::TypedArguments;
 use super::scope::check_reserved;
-use crate::diagnostic::{Diagnostic, Diagnostics, error, report};
+use crate::diagnostic::{Diagnostic, error, report};
 use crate::parse::{Argument, Closure, Pattern, joined, spell_type};
 
 #[derive(Copy, Clone, PartialEq, Eq)]
@@ -32,19 +33,7 @@ pub(super) const PRICE: &[Slot] = &[Slot::Time, Slot::Step, Slot::Configuration,
 pub(super) const BOUNDS: &[Slot] = &[Slot::Time, Slot::Configuration, Slot::Chosen];
 pub(super) const SYMMETRY: &[Slot] = &[Slot::Offered, Slot::Configuration, Slot::Element];
 
-/// The names that the closures of a declaration share.
-#[derive(Copy, Clone)]
-pub(super) struct SharedNames<'d> {
-    /// The group element, as the action calls it.
-    pub element: &'d Pattern,
-    /// The configuration, as the action calls it.
-    pub configuration: &'d Pattern,
-    /// The input, as the closure that introduces it calls it.
-    pub input: Option<&'d Pattern>,
-    pub diagnostics: &'d Diagnostics,
-}
-
-impl<'d> SharedNames<'d> {
+impl<'d> TypedArguments<'d> {
     /// The pattern and the meaning of a slot; a velocity and the element of a symmetry are introduced by their closures.
     fn names(&self, slot: Slot) -> (String, &'static str) {
         match slot {
@@ -86,7 +75,7 @@ impl<'d> SharedNames<'d> {
 /// The arguments of a closure, with the slot that each takes.
 pub(super) struct Matched<'d> {
     pub closure: &'d Closure,
-    names: SharedNames<'d>,
+    names: TypedArguments<'d>,
     slots: &'static [Slot],
     /// `None` for an argument with an error, which was reported.
     taken: Vec<Option<Slot>>,
@@ -94,7 +83,7 @@ pub(super) struct Matched<'d> {
 
 impl<'d> Matched<'d> {
     /// Finds the slot that each argument takes, and reports what is wrong with them.
-    pub fn new(names: SharedNames<'d>, closure: &'d Closure, slots: &'static [Slot]) -> Matched<'d> {
+    pub fn new(names: TypedArguments<'d>, closure: &'d Closure, slots: &'static [Slot]) -> Matched<'d> {
         let arguments = &closure.arguments;
         let mut taken: Vec<Option<Slot>> =
             arguments.iter().map(|argument| names.find(&argument.pattern, slots)).collect();

@@ -1,14 +1,13 @@
 //! The two typed arguments of the action: the group and the space of configurations, with products of both.
 
 use clebsch_symbolic::{Group, Property, Shape};
-use proc_macro2::Span;
 use syn::{GenericArgument, Type};
 
 use super::groups::{GroupNames, group, known_group, suggestion};
 use super::quaternion;
-use super::shapes::{IN_LOOPS, LEAVES, Vectors, arguments, hint, last_name, last_segment, length, vectors};
+use super::shapes::{IN_LOOPS, LEAVES, Vectors, arguments, hint, last_name, last_segment, length, plain, vectors};
 use super::{Layout, LeafSpace};
-use crate::diagnostic::{Diagnostic, Location, error};
+use crate::diagnostic::{Diagnostic, error, refuse};
 use crate::parse::spell_type;
 
 /// A type as a product of leaves.
@@ -40,12 +39,10 @@ impl SpaceType<'_> {
     }
 }
 
-/// Reads the type of the group element.
 pub(super) fn read_groups<'t>(ty: &'t Type, names: GroupNames) -> Option<Product<'t, Group>> {
     Product::read(ty, names, &|ty| known_group(ty, names))
 }
 
-/// Reads the type of the configuration.
 pub(super) fn read_spaces<'t>(ty: &'t Type, names: GroupNames) -> Option<Product<'t, SpaceType<'t>>> {
     Product::read(ty, names, &|ty| read_space(ty, names))
 }
@@ -56,11 +53,10 @@ impl<'t, L: Clone> Product<'t, L> {
         names: GroupNames,
         leaf: &impl Fn(&'t Type) -> Result<L, Diagnostic>,
     ) -> Option<Product<'t, L>> {
+        let ty = plain(ty);
         let read = |ty: &'t Type| Product::read(ty, names, leaf);
         let diagnostics = names.diagnostics;
         let product = match ty {
-            Type::Group(group) => read(&group.elem)?,
-            Type::Paren(paren) => read(&paren.elem)?,
             Type::Tuple(tuple) if !tuple.elems.is_empty() => {
                 let factors: Vec<_> = tuple.elems.iter().filter_map(read).collect();
                 (factors.len() == tuple.elems.len()).then(|| Product::of(factors, Layout::Tuple))?
@@ -72,7 +68,10 @@ impl<'t, L: Clone> Product<'t, L> {
             _ => Product { layout: Layout::Leaf(0), leaves: vec![(diagnostics.take(leaf(ty))?, ty)] },
         };
         if product.leaves.len() > LEAVES {
-            return diagnostics.refuse(too_many(ty, product.leaves.len()));
+            let count = product.leaves.len();
+            refuse!(diagnostics, ty, "`{}` has {count} factors, more than {LEAVES}", spell_type(ty);
+                help "{IN_LOOPS}";
+                note "the code of a step is written out at compile time and grows with the number of factors");
         }
         Some(product)
     }
@@ -86,12 +85,6 @@ impl<'t, L: Clone> Product<'t, L> {
         }
         Product { layout: nest(layouts), leaves }
     }
-}
-
-fn too_many(ty: &Type, count: usize) -> Diagnostic {
-    error!(ty, "`{}` has {count} factors, more than {LEAVES}", spell_type(ty);
-        help "{IN_LOOPS}";
-        note "the code of a step is written out at compile time and grows with the number of factors")
 }
 
 fn read_space<'t>(ty: &'t Type, names: GroupNames) -> Result<SpaceType<'t>, Diagnostic> {
@@ -147,8 +140,4 @@ fn unknown_space(ty: &Type, name: &str, names: GroupNames) -> Diagnostic {
         help.as_deref()
             .unwrap_or("write a space of vectors (`Vector3`), of unit vectors (`Unit<Vector3>`) or a group (`SO<3>`)"),
     )
-}
-
-pub(super) fn span_of(ty: &Type) -> Span {
-    Location::of(ty).start()
 }

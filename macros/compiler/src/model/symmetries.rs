@@ -9,7 +9,7 @@ use super::closures;
 use super::groups::known_group;
 use super::slots::{Matched, SYMMETRY, Slot};
 use super::space::{Space, new_value_of};
-use super::spaces::{space_of, span_of};
+use super::spaces::space_of;
 use super::typed::ActedSystem;
 use super::value::Value;
 use super::{Access, Configuration, Factor, OfferedSymmetry, Side};
@@ -67,8 +67,7 @@ impl<'g> ActedSystem<'_, '_, 'g> {
                 help "offer several symmetries, `symmetry = [|S: SO<3>, …| …, …]`");
         }
         let group = diagnostics.take(known_group(ty, self.names))?;
-        let (role, whole) = (Role::OfferedElement(index), Access::default());
-        Some(Factor::new(self.context.graph, group, name, role, whole, span_of(ty)))
+        Some(Factor::new(self.context.graph, (group, ty), name, Role::OfferedElement(index)))
     }
 
     /// q′ and F′ of the pair that the closure gives.

@@ -1,18 +1,19 @@
 //! The factors of the group, the leaves of the configuration and velocities: their symbols, and what they are in closures.
 
 use clebsch_symbolic::{Block, Expr, Graph, Group, Property, Role, Shape};
-use proc_macro2::Span;
+use syn::Type;
 
-use super::arguments::{Arguments, TypedArguments};
+use super::arguments::TypedArguments;
 use super::elaborate::Context;
 use super::groups::GroupNames;
-use super::slots::SharedNames;
+use super::scope::Scope;
+use super::slots::{Matched, Slot};
 use super::space::{Space, leaf_names};
-use super::spaces::{Product, SpaceType, span_of};
-use super::value::Value;
+use super::spaces::{Product, SpaceType};
+use super::value::{Each, Value};
 use super::{Access, Factor, Layout, LeafSpace, Side};
-use crate::diagnostic::Diagnostics;
-use crate::parse::{Argument, Pattern};
+use crate::diagnostic::{Diagnostics, Location};
+use crate::parse::{Closure, Pattern};
 
 /// What the two arguments of the action stand for. A part with an error, which was reported, is `None`.
 pub(super) struct Typed<'g> {
@@ -34,37 +35,30 @@ pub(super) struct ActedSystem<'a, 'c, 'g> {
 }
 
 impl<'g> Typed<'g> {
-    /// The symbols of all factors and leaves.
     pub fn new(
         graph: &'g Graph,
         typed: TypedArguments,
         groups: Product<Group>,
         spaces: Product<SpaceType>,
-        diagnostics: &Diagnostics,
     ) -> Typed<'g> {
-        let factors = leaf_names(typed.element, &groups.layout, diagnostics).map(|names| {
+        let factors = leaf_names(typed.element, &groups.layout, typed.diagnostics).map(|names| {
             let names = names.into_iter().zip(groups.layout.accessors());
-            let factors = names.zip(&groups.leaves).enumerate().map(|(k, ((name, accessor), (group, ty)))| {
-                Factor::new(graph, *group, name, Role::Element(k), accessor, span_of(ty))
+            let factors = names.zip(&groups.leaves).enumerate().map(|(k, ((name, accessor), leaf))| Factor {
+                accessor,
+                ..Factor::new(graph, *leaf, name, Role::Element(k))
             });
             factors.collect()
         });
-        let space = Space::new(graph, typed.configuration, spaces, Role::Configuration, diagnostics);
+        let space = Space::new(graph, typed.configuration, spaces, Role::Configuration, typed.diagnostics);
         Typed { element: groups.layout, factors, space }
     }
 
-    /// The arguments of all closures.
-    pub fn arguments<'d>(
-        &self,
-        typed: TypedArguments<'d>,
-        input: Option<&'d Argument>,
-        (step_size, time): (Expr<'g>, Expr<'g>),
-        diagnostics: &'d Diagnostics,
-    ) -> Arguments<'d, 'g> {
+    pub fn arguments<'d>(&self, graph: &'g Graph, names: TypedArguments<'d>) -> Arguments<'d, 'g> {
         let element = |all: &Vec<Factor<'g>>| {
             let leaf = |factor: &Factor<'g>| Value::leaf(factor.symbol, factor.group == Group::UnitQuaternions);
             Value::nested(&self.element, &all.iter().map(leaf).collect::<Vec<_>>())
         };
+        let is_power = names.sites.is_some() && self.space.is_some();
         let mut members = Vec::new();
         for factor in self.factors.iter().flatten().filter(|factor| !factor.group.is_translation()) {
             members.push((factor.symbol, factor.group));
@@ -74,29 +68,73 @@ impl<'g> Typed<'g> {
                 members.push((leaf.symbol, group));
             }
         }
-        let input = input.map(|argument| &argument.pattern);
         Arguments {
-            names: SharedNames { element: typed.element, configuration: typed.configuration, input, diagnostics },
-            element_value: self.factors.as_ref().map(element),
-            configuration_value: self.space.as_ref().map(Space::value),
+            names,
+            element_value: self.factors.as_ref().map(|all| element(all).of_each(Each::Motion, is_power)),
+            configuration_value: self.space.as_ref().map(|space| space.value().of_each(Each::Configuration, is_power)),
             members,
-            step_size,
-            time,
+            step_size: graph.symbol("h", Shape::scalar(), Role::StepSize, Property::General),
+            time: graph.symbol("t", Shape::scalar(), Role::Time, Property::General),
         }
+    }
+}
+
+/// The arguments of closures by their names: their values.
+pub(super) struct Arguments<'d, 'g> {
+    pub names: TypedArguments<'d>,
+    pub element_value: Option<Value<'g>>,
+    pub configuration_value: Option<Value<'g>>,
+    /// The symbols that lie on a group.
+    pub members: Vec<(Expr<'g>, Group)>,
+    pub step_size: Expr<'g>,
+    pub time: Expr<'g>,
+}
+
+impl<'d, 'g> Arguments<'d, 'g> {
+    /// The names in the action itself.
+    pub fn action_scope(&self) -> Scope<'g> {
+        let mut scope = Scope::new(&self.members);
+        scope.add_argument(self.names.element, self.element_value.clone(), self.names.diagnostics);
+        scope.add_argument(self.names.configuration, self.configuration_value.clone(), self.names.diagnostics);
+        let (f, q) = (self.names.element.spell(), self.names.configuration.spell());
+        let help = format!("the action depends on `{f}` and `{q}` alone");
+        scope.missing = ["h", "t"].map(|name| (name.to_string(), help.clone())).into();
+        scope
+    }
+
+    /// The arguments of a closure, with the slot that each takes.
+    pub fn matched(&self, closure: &'d Closure, slots: &'static [Slot]) -> Matched<'d> {
+        Matched::new(self.names, closure, slots)
+    }
+
+    /// The names in a closure that introduces none.
+    pub fn scope_of(&self, closure: &'d Closure, slots: &'static [Slot]) -> Scope<'g> {
+        self.scope(&self.matched(closure, slots), &[])
+    }
+
+    /// The scope in which arguments have the values of their slots, and what is left out has a reason.
+    pub fn scope(&self, matched: &Matched, introduced: &[(Slot, Option<Value<'g>>)]) -> Scope<'g> {
+        let mut scope = Scope::new(&self.members);
+        for (argument, slot) in matched.arguments() {
+            let value = slot.and_then(|slot| match slot {
+                Slot::Time => Some(Value::Matrix(self.time)),
+                Slot::Step => Some(Value::Matrix(self.step_size)),
+                Slot::Configuration => self.configuration_value.clone(),
+                Slot::Element => self.element_value.clone(),
+                new => introduced.iter().find(|(slot, _)| *slot == new).and_then(|(_, value)| value.clone()),
+            });
+            scope.add_argument(&argument.pattern, value, self.names.diagnostics);
+        }
+        scope.missing = matched.missing();
+        scope
     }
 }
 
 impl<'g> Factor<'g> {
     /// A factor with its symbol, the side still open.
-    pub(super) fn new(
-        graph: &'g Graph,
-        group: Group,
-        name: String,
-        role: Role,
-        accessor: Access,
-        span: Span,
-    ) -> Factor<'g> {
+    pub(super) fn new(graph: &'g Graph, (group, ty): (Group, &Type), name: String, role: Role) -> Factor<'g> {
         let symbol = graph.symbol(&name, group.element_shape(), role, group.element_property());
+        let (accessor, span) = (Access::default(), Location::of(ty).start());
         Factor { group, symbol, name, side: Side::Left, moves: true, accessor, span }
     }
 }
@@ -118,7 +156,9 @@ impl<'g> Velocity<'_, 'g> {
                 let (values, symbols): (Vec<_>, Vec<_>) = parts.collect::<Option<Vec<_>>>()?.into_iter().unzip();
                 Some((Value::Tuple(values), symbols.concat()))
             }
-            (Pattern::Tuple(patterns, _), Layout::Leaf(k)) if self.has_blocks(*k, patterns.len()) => {
+            (Pattern::Tuple(patterns, _), Layout::Leaf(k))
+                if patterns.len() > 1 && self.graph.blocks(self.factors[*k].group).len() == patterns.len() =>
+            {
                 let names: Vec<String> = pattern.names().iter().map(ToString::to_string).collect();
                 let symbol = self.symbol(*k, &names.join("_"));
                 let part = |block: &Block| symbol.block(block.offset, 0, Shape::vector(block.algebra.dimension));
@@ -141,11 +181,6 @@ impl<'g> Velocity<'_, 'g> {
     /// The symbols of a velocity that the closure does not ask for.
     pub fn unnamed(&self) -> Vec<Expr<'g>> {
         (0..self.factors.len()).map(|k| self.symbol(k, "velocity")).collect()
-    }
-
-    /// Whether the algebra of a factor has several blocks, and as many as there are names.
-    fn has_blocks(&self, factor: usize, names: usize) -> bool {
-        names > 1 && self.graph.blocks(self.factors[factor].group).len() == names
     }
 
     fn symbol(&self, factor: usize, name: &str) -> Expr<'g> {

@@ -1,9 +1,9 @@
 //! What an expression of a closure may be: a matrix, the identity of a size that is still open, a tuple, an array.
 
-use clebsch_symbolic::{Expr, Shape};
+use clebsch_symbolic::Expr;
 
 use super::Layout;
-use super::power::Term;
+use super::power::{Range, Term};
 
 #[derive(Clone, Debug)]
 pub(super) enum Value<'g> {
@@ -22,7 +22,7 @@ pub(super) enum Value<'g> {
     /// An index modulo N, `(i + 1) % N`.
     Wrapped(Expr<'g>),
     /// A value for each index of a range.
-    Sequence((Expr<'g>, Expr<'g>), Box<Value<'g>>),
+    Sequence(Range<'g>, Box<Value<'g>>),
     Sum(Vec<Term<'g>>),
 }
 
@@ -30,6 +30,11 @@ impl<'g> Value<'g> {
     /// A leaf of the configuration, a parameter or a group element.
     pub fn leaf(expr: Expr<'g>, is_quaternion: bool) -> Value<'g> {
         if is_quaternion { Value::Quaternion(expr) } else { Value::Matrix(expr) }
+    }
+
+    /// The value for each site of a power, where there is one; this is that of the site itself.
+    pub fn of_each(self, each: Each, is_power: bool) -> Value<'g> {
+        if is_power { Value::PerSite(each, Box::new(self)) } else { self }
     }
 
     /// Nests values as a layout says.
@@ -81,10 +86,6 @@ impl<'g> Value<'g> {
             Value::Matrix(value) if value.shape().is_scalar() => Some(vec![Term { ranges: Vec::new(), value: *value }]),
             _ => None,
         }
-    }
-
-    pub fn shape(&self) -> Option<Shape> {
-        self.matrix().map(Expr::shape)
     }
 
     /// What it is, for messages: `3x3`, `a pair`.

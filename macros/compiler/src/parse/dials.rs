@@ -51,7 +51,6 @@ pub(super) trait Word: Copy + PartialEq + 'static {
     /// The words with their values.
     const WORDS: &'static [(&'static str, Self)];
 
-    /// The word of a value.
     fn word(self) -> &'static str {
         // by construction: every value has a word
         Self::WORDS.iter().find(|(_, value)| *value == self).map_or("", |(word, _)| word)

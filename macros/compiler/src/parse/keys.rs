@@ -119,7 +119,6 @@ fn somewhere(value: String) -> Located<String> {
 }
 
 impl Key {
-    /// Whether it belongs to a later version.
     pub fn comes_later(&self) -> bool {
         matches!(self.kind, Kind::Later)
     }
@@ -155,7 +154,6 @@ pub(super) struct Keys<'d> {
 }
 
 impl<'d> Keys<'d> {
-    /// No keys yet.
     pub fn new(diagnostics: &'d Diagnostics) -> Keys<'d> {
         Keys {
             diagnostics,

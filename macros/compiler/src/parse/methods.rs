@@ -72,7 +72,6 @@ fn read_dial(stream: ParseStream, keys: &mut Keys) -> Result<(), Diagnostic> {
     }
 }
 
-/// The dials that a method takes.
 fn dials() -> impl Iterator<Item = &'static str> {
     KEYS.iter().filter(|key| key.of_method).map(|key| key.name)
 }

@@ -2,7 +2,7 @@
 
 use proc_macro2::{Delimiter, Spacing, TokenStream, TokenTree};
 use quote::ToTokens;
-use syn::{Block, Expr, RangeLimits, Stmt, Type};
+use syn::{Expr, RangeLimits, Stmt, Type};
 
 /// Parts within parts that are spelled: messages are read by people, and chains of operators are deeper than a stack.
 const LEVELS: usize = 100;
@@ -53,7 +53,10 @@ fn spell_within(expr: &Expr, levels: usize) -> String {
         Expr::Binary(binary) => {
             format!("{} {} {}", spell(&binary.left), tokens(&binary.op).trim(), spell(&binary.right))
         }
-        Expr::Block(block) => spell_block(&block.block, levels),
+        Expr::Block(block) => {
+            let statements = block.block.stmts.iter().map(|statement| spell_statement(statement, levels));
+            format!("{{ {} }}", statements.collect::<Vec<_>>().join(" "))
+        }
         Expr::Call(call) => format!("{}({})", spell(&call.func), list(&call.args, levels)),
         Expr::Cast(cast) => format!("{} as {}", spell(&cast.expr), spell_type(&cast.ty)),
         Expr::Closure(closure) => {
@@ -84,12 +87,6 @@ fn spell_within(expr: &Expr, levels: usize) -> String {
 
 fn list<'a>(items: impl IntoIterator<Item = &'a Expr>, levels: usize) -> String {
     joined(items.into_iter().map(|item| spell_within(item, levels)))
-}
-
-/// A block on one line.
-fn spell_block(block: &Block, levels: usize) -> String {
-    let statements: Vec<String> = block.stmts.iter().map(|statement| spell_statement(statement, levels)).collect();
-    format!("{{ {} }}", statements.join(" "))
 }
 
 fn spell_statement(statement: &Stmt, levels: usize) -> String {

@@ -12,13 +12,15 @@ use super::dials::{EMITTED, Emit, Word};
 use super::keys::{Key, Keys, Kind, Located};
 use super::spelling::tokens;
 use super::{Closure, Potential, opaque};
-use crate::diagnostic::{Diagnostic, Diagnostics, Location, error, nearest, refuse};
+use crate::diagnostic::{Diagnostic, Diagnostics, Location, bail, error, nearest, refuse};
 
 /// Reads the value of a key and puts it in its place.
 pub(super) fn read(name: &Ident, key: &Key, stream: ParseStream, keys: &mut Keys) -> Result<(), Diagnostic> {
     let mut reader = Reader { name, example: key.example, stream, diagnostics: keys.diagnostics };
     match key.kind {
-        Kind::Closure if opaque::comes_next(stream) => return Err(only_potentials_are_opaque(name, stream)),
+        Kind::Closure if opaque::comes_next(stream) => bail!(stream.span(), "the {name} cannot be opaque";
+            help "write the {name} as a closure; `potential = opaque(Self::value, Self::gradient)` is for potentials";
+            note "a step needs second derivatives of it, and two methods give a value and a gradient"),
         Kind::Closure => keys.closures.extend(reader.closure(stream)?.map(|closure| (key.name, closure))),
         Kind::Potential if opaque::comes_next(stream) => {
             keys.potential = Some(Potential::Opaque(opaque::read(stream)?));
@@ -32,7 +34,6 @@ pub(super) fn read(name: &Ident, key: &Key, stream: ParseStream, keys: &mut Keys
     Ok(())
 }
 
-/// Reads the value of one key.
 pub(super) struct Reader<'a, 's> {
     name: &'a Ident,
     example: &'static str,
@@ -72,7 +73,6 @@ impl Reader<'_, '_> {
         Ok(closures)
     }
 
-    /// A word of a dial.
     pub fn word<T: Word>(self, dial: &mut Option<Located<T>>) -> Result<(), Diagnostic> {
         let stream = self.stream;
         let word = stream.call(Ident::parse_any).map_err(|_| self.expected(stream, "a name"))?;
@@ -137,15 +137,8 @@ impl Reader<'_, '_> {
     }
 }
 
-/// Whether a closure follows.
 pub(super) fn is_closure(stream: ParseStream) -> bool {
     stream.peek(Token![|]) || stream.peek(Token![||]) || stream.peek(Token![move])
-}
-
-fn only_potentials_are_opaque(key: &Ident, stream: ParseStream) -> Diagnostic {
-    error!(stream.span(), "the {key} cannot be opaque";
-        help "write the {key} as a closure; `potential = opaque(Self::value, Self::gradient)` is for potentials";
-        note "a step needs second derivatives of it, and two methods give a value and a gradient")
 }
 
 fn bracket<'s>(stream: ParseStream<'s>) -> syn::Result<ParseBuffer<'s>> {

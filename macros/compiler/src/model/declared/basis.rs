@@ -1,6 +1,6 @@
 //! A group by a basis of its Lie algebra: matrices of numbers, independent, with brackets in their span.
 
-use clebsch_symbolic::{Expr, Graph, Group, Rational, Shape, Sparse, reduce};
+use clebsch_symbolic::{Graph, Group, Rational, Shape, Sparse, reduce};
 use quote::ToTokens;
 use syn::Expr as Syntax;
 
@@ -42,20 +42,13 @@ fn literal(graph: &Graph, name: &str, k: usize, element: &Syntax) -> Result<Matr
         let example = if is_identity { "Matrix3::identity()" } else { "Matrix3::new(0, 1, 0, 0, 0, 0, 0, 0, 0)" };
         bail!(element, "`E{}` of `{name}` is {}, not a matrix", k + 1, value.describe(); help "write `{example}`");
     };
-    let entries = exact(expr).ok_or_else(|| {
+    // without symbols none is asked for: any will do
+    let values = at_identity(expr, graph.identity(1)).filter(|_| expr.symbols().is_empty());
+    let entries = values.ok_or_else(|| {
         error!(element, "the entries of `{}` are not rational", shortened(element);
             note "whether brackets stay in the span is decided exactly, over the rational numbers")
     })?;
     Ok(Matrix { shape: expr.shape(), entries })
-}
-
-/// The values of an expression without symbols.
-fn exact(expr: Expr<'_>) -> Option<Vec<Rational>> {
-    if !expr.symbols().is_empty() {
-        return None;
-    }
-    // no symbol is asked for: any will do
-    at_identity(expr, expr.graph().identity(1))
 }
 
 fn common_shape(name: &str, matrices: &[Matrix], elements: &[Syntax]) -> Result<Shape, Diagnostics> {
@@ -99,15 +92,9 @@ fn combination(terms: impl Iterator<Item = (usize, Rational)>) -> String {
 
 fn closed(graph: &Graph, name: &str, shape: Shape, basis: &[Sparse], place: Location) -> Result<(), Diagnostics> {
     let Some((i, j, bracket)) = open_bracket(graph, shape, basis) else { return Ok(()) };
-    let (i, j) = (i + 1, j + 1);
+    let (i, j, n) = (i + 1, j + 1, shape.rows);
+    let name_of_type = if n <= 6 { format!("Matrix{n}::new") } else { format!("SMatrix::<f64, {n}, {n}>::new") };
     bail!(place, "the basis of `{name}` is not closed: [E{i}, E{j}] is outside of its span";
-        help "add `{}`, and whatever its brackets need", constructor(shape, &bracket);
+        help "add `{name_of_type}({})`, and whatever its brackets need", joined(&bracket);
         note "[E{i}, E{j}] = E{i}*E{j} - E{j}*E{i} = {}", spell_matrix(shape, &bracket))
-}
-
-/// The text of a matrix in a declaration.
-fn constructor(shape: Shape, entries: &[Rational]) -> String {
-    let n = shape.rows;
-    let name = if n <= 6 { format!("Matrix{n}::new") } else { format!("SMatrix::<f64, {n}, {n}>::new") };
-    format!("{name}({})", joined(entries))
 }

@@ -165,12 +165,7 @@ impl<'g> GroupEquation<'_, 'g> {
     }
 
     /// The equation holds on the group of the algebra.
-    fn holds_along(
-        &self,
-        equation: Expr<'g>,
-        derivative: &[Vec<Rational>],
-        basis: &[Sparse],
-    ) -> Result<(), Diagnostic> {
+    fn holds_along(&self, equation: Expr<'g>, slopes: &[Vec<Rational>], basis: &[Sparse]) -> Result<(), Diagnostic> {
         let alone = (0..basis.len()).map(|k| vec![(1, &basis[k])]);
         // integers without a pattern stand for a general direction
         let general =
@@ -180,7 +175,7 @@ impl<'g> GroupEquation<'_, 'g> {
             Some((spell_matrix(self.symbol.shape(), &dense(self.symbol.shape(), &direction)), order))
         };
         let Some((along, order)) = alone.chain([general.collect()]).find_map(leaves) else { return Ok(()) };
-        let rank = reduce(&mut derivative.to_vec()).len();
+        let rank = reduce(&mut slopes.to_vec()).len();
         let general_rank = follow::general_rank(equation, self.symbol);
         let f = self.symbol;
         if rank < general_rank {

@@ -7,7 +7,7 @@ mod numbers;
 #[cfg(test)]
 mod tests;
 
-use clebsch_symbolic::{Graph, Group, Rational, Shape, Sparse, Zero, integer};
+use clebsch_symbolic::{Graph, Rational, Shape, Sparse, Zero, integer};
 use proc_macro2::{Ident, Span, TokenStream, TokenTree};
 use syn::ext::IdentExt;
 
@@ -27,7 +27,12 @@ const LARGEST: usize = 10;
 pub(super) fn read_all(graph: &Graph, groups: &[DeclaredGroup], diagnostics: &Diagnostics) -> DeclaredGroups {
     let mut known = DeclaredGroups::default();
     for declared in groups {
-        if let Some(group) = diagnostics.take(check_name(&declared.name).and_then(|()| read(graph, declared))) {
+        let name = declared.name.unraw().to_string();
+        let group = check_name(&declared.name).and_then(|()| match &declared.definition {
+            Definition::Equation(closure) => equation::read(graph, &name, closure),
+            Definition::Basis(elements, place) => basis::read(graph, &name, elements, *place),
+        });
+        if let Some(group) = diagnostics.take(group) {
             known.add(declared.name.clone(), group);
         }
     }
@@ -44,14 +49,6 @@ fn check_name(name: &Ident) -> Result<(), Diagnostics> {
         bail!(name, "`{text}` is a {what} that is built in"; help "choose another name, `My{text}`");
     }
     Ok(())
-}
-
-fn read(graph: &Graph, declared: &DeclaredGroup) -> Result<Group, Diagnostics> {
-    let name = declared.name.unraw().to_string();
-    match &declared.definition {
-        Definition::Equation(closure) => equation::read(graph, &name, closure),
-        Definition::Basis(elements, place) => basis::read(graph, &name, elements, *place),
-    }
 }
 
 /// Elaborates literals: with the names that are given, and no others.

@@ -127,12 +127,7 @@ impl<'g> Elaborator<'_, '_, 'g> {
 }
 
 pub(super) fn is_self(syntax: &Syntax) -> bool {
-    match syntax {
-        Syntax::Path(path) => path.path.is_ident("self"),
-        Syntax::Paren(inner) => is_self(&inner.expr),
-        Syntax::Reference(inner) => is_self(&inner.expr),
-        _ => false,
-    }
+    matches!(strip(syntax), Syntax::Path(path) if path.path.is_ident("self"))
 }
 
 /// An expression without parentheses and references around it.

@@ -8,10 +8,6 @@ use crate::diagnostic::{error, refuse, report};
 use crate::parse::{Pattern, shortened};
 
 impl<'g> Elaborator<'_, '_, 'g> {
-    pub(super) fn block(&mut self, block: &Block) -> Option<Value<'g>> {
-        self.with_names(|this| this.statements(block))
-    }
-
     /// Does something after which the names that it introduces are forgotten.
     pub(super) fn with_names<T>(&mut self, work: impl FnOnce(&mut Self) -> T) -> T {
         let known = self.scope.names.len();
@@ -20,7 +16,7 @@ impl<'g> Elaborator<'_, '_, 'g> {
         value
     }
 
-    fn statements(&mut self, block: &Block) -> Option<Value<'g>> {
+    pub(super) fn statements(&mut self, block: &Block) -> Option<Value<'g>> {
         let Some((last, before)) = block.stmts.split_last() else {
             refuse!(self, block.brace_token.span.join(), "this block is empty"; help "end it with an expression");
         };

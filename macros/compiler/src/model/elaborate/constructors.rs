@@ -153,7 +153,6 @@ impl<'g> Elaborator<'_, '_, 'g> {
         found.into_iter().collect()
     }
 
-    /// A matrix of these scalars.
     pub(super) fn stack(&mut self, at: &dyn ToTokens, shape: Shape, entries: Vec<Expr<'g>>) -> Option<Value<'g>> {
         let graph = self.graph();
         self.build(at, &entries.clone(), Growth::Product, || graph.stack(shape, entries))

@@ -52,21 +52,20 @@ pub(super) fn point_moved(link: &ExprBinary, left: Expr, right: Expr) -> Diagnos
 pub(super) fn no_product(link: &ExprBinary, left: Expr, right: Expr) -> Diagnostic {
     let (a, b) = (parenthesized(&link.left), parenthesized(&link.right));
     let (left, right) = (left.shape(), right.shape());
-    let help = if left == right && left.is_column() {
-        Some(format!("write `{a}.dot(&{b})` for the scalar product, `{a}.cross(&{b})` for the cross product"))
+    let (first, second) = (spell(&link.left), spell(&link.right));
+    let error = error!(link, "`{first}` is {left} and `{second}` is {right}: they cannot be multiplied");
+    let error = if left == right && left.is_column() {
+        error.help(format!("write `{a}.dot(&{b})` for the scalar product, `{a}.cross(&{b})` for the cross product"))
     } else if left.is_column() && right.is_square() && right.rows == left.rows {
-        Some(format!("write the matrix first: `{b} * {a}`"))
+        error.help(format!("write the matrix first: `{b} * {a}`"))
     } else if left.rows == right.rows {
-        Some(format!("transpose the first: `{a}.transpose() * {b}`"))
+        error.help(format!("transpose the first: `{a}.transpose() * {b}`"))
     } else if left.columns == right.columns {
-        Some(format!("transpose the second: `{a} * {b}.transpose()`"))
+        error.help(format!("transpose the second: `{a} * {b}.transpose()`"))
     } else {
-        None
+        error
     };
-    let (a, b) = (spell(&link.left), spell(&link.right));
-    error!(link, "`{a}` is {left} and `{b}` is {right}: they cannot be multiplied")
-        .maybe_help(help)
-        .note("a product needs as many columns on the left as there are rows on the right")
+    error.note("a product needs as many columns on the left as there are rows on the right")
 }
 
 impl<'g> Elaborator<'_, '_, 'g> {
@@ -74,7 +73,7 @@ impl<'g> Elaborator<'_, '_, 'g> {
     pub(super) fn refused(&mut self, syntax: &Syntax) -> Option<Value<'g>> {
         let (place, what, help) = describe(syntax);
         let error = error!(place, "{what} cannot stand in the {}", self.key);
-        let error = if help.is_empty() { error } else { error.help(help) };
+        let error = error.maybe_help(Some(help).filter(|help| !help.is_empty()));
         self.refuse(error.note("a closure is one formula: it is differentiated, not run"))
     }
 }

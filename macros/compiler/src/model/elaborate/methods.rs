@@ -11,7 +11,6 @@ use crate::diagnostic::{Diagnostic, error, meant, refuse};
 use crate::parse::{listed, parenthesized, shortened, spell};
 
 impl<'g> Elaborator<'_, '_, 'g> {
-    /// `receiver.method(arguments)`.
     pub(super) fn method_call(&mut self, call: &ExprMethodCall) -> Option<Value<'g>> {
         let name = call.method.to_string();
         if is_self(&call.receiver) {
@@ -142,7 +141,6 @@ impl<'g> Elaborator<'_, '_, 'g> {
         self.build(call, &[a], Growth::Power(1), || a.function(function))
     }
 
-    /// `map` and `sum`.
     fn sequence_method(&mut self, call: &ExprMethodCall, receiver: Value<'g>) -> Option<Value<'g>> {
         let method = &call.method;
         match (method == "map", receiver) {
@@ -173,24 +171,17 @@ pub(super) fn no_real_value(call: &ExprMethodCall) -> Diagnostic {
 }
 
 fn wrong_receiver(rule: Rule, call: &ExprMethodCall, shape: Shape) -> Diagnostic {
-    let needs = match rule {
-        Rule::Square(_) => "a square matrix",
-        Rule::Vector(_) => "a vector or a matrix",
-        Rule::Three(_) => "a vector 3x1",
-        _ => "a scalar",
-    };
     let is = if shape.is_scalar() { "a scalar".into() } else { shape.to_string() };
     let (receiver, method) = (parenthesized(&call.receiver), &call.method);
-    let error = error!(method, "`{}` is {is}, but `{method}` is of {needs}", spell(&call.receiver));
+    let error = |needs: &str| error!(method, "`{}` is {is}, but `{method}` is of {needs}", spell(&call.receiver));
     match rule {
-        Rule::Scalar(_) | Rule::OfScalar(_) if shape.is_column() => {
-            error.help(format!("take a component, as in `{receiver}.x.{method}(…)`"))
+        Rule::Square(_) => error("a square matrix")
+            .note("only a square matrix has a trace, a determinant, an inverse and a symmetric part"),
+        Rule::Three(_) => error("a vector 3x1").note("the cross product lives in three dimensions"),
+        Rule::Vector(_) => {
+            error("a vector or a matrix").help(format!("write `{receiver}` alone: a scalar has no direction"))
         }
-        Rule::Scalar(_) | Rule::OfScalar(_) => error.help(format!("take an entry, as in `{receiver}[(0, 0)]`")),
-        Rule::Square(_) => {
-            error.note("only a square matrix has a trace, a determinant, an inverse and a symmetric part")
-        }
-        Rule::Three(_) => error.note("the cross product lives in three dimensions"),
-        _ => error.help(format!("write `{receiver}` alone: a scalar has no direction")),
+        _ if shape.is_column() => error("a scalar").help(format!("take a component, as in `{receiver}.x.{method}(…)`")),
+        _ => error("a scalar").help(format!("take an entry, as in `{receiver}[(0, 0)]`")),
     }
 }

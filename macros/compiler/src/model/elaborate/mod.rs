@@ -48,13 +48,12 @@ pub(super) struct Context<'c, 'g> {
 }
 
 impl<'c, 'g> Context<'c, 'g> {
-    /// No constants met so far.
     pub fn new(
         graph: &'g Graph,
         fields: &'c Fields<'g>,
         power: Option<Sites<'g>>,
         diagnostics: &'c Diagnostics,
-    ) -> Context<'c, 'g> {
+    ) -> Self {
         Context { graph, fields, constants: Vec::new(), power, diagnostics }
     }
 
@@ -155,9 +154,9 @@ impl<'e, 'c, 'g> Elaborator<'e, 'c, 'g> {
 
     fn dispatch(&mut self, syntax: &Syntax) -> Option<Value<'g>> {
         match syntax {
-            Syntax::Array(array) => self.array(array),
+            Syntax::Array(array) => self.all(&array.elems).map(Value::Array),
             Syntax::Binary(binary) => self.binary(binary),
-            Syntax::Block(block) if block.label.is_none() => self.block(&block.block),
+            Syntax::Block(block) if block.label.is_none() => self.with_names(|this| this.statements(&block.block)),
             Syntax::Call(call) => self.call(call),
             Syntax::Field(field) => self.field(field),
             Syntax::Group(group) => self.elaborate(&group.expr),
@@ -170,7 +169,7 @@ impl<'e, 'c, 'g> Elaborator<'e, 'c, 'g> {
             Syntax::Range(range) => self.range(range),
             Syntax::Reference(reference) if reference.mutability.is_none() => self.elaborate(&reference.expr),
             Syntax::Repeat(repeat) => self.repeat(repeat),
-            Syntax::Tuple(tuple) => self.tuple(tuple),
+            Syntax::Tuple(tuple) => self.all(&tuple.elems).map(Value::Tuple),
             Syntax::Unary(unary) => self.unary(unary),
             other => self.refused(other),
         }

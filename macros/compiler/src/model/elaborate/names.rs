@@ -21,7 +21,10 @@ impl<'g> Elaborator<'_, '_, 'g> {
         }
         match path.path.get_ident() {
             Some(ident) => self.name(ident),
-            None if is_pi(&path.path) => Some(Value::Matrix(self.graph().pi())),
+            // `std::f64::consts::PI` and the like
+            None if format!("::{}", spell_tokens(&path.path)).ends_with("::consts::PI") => {
+                Some(Value::Matrix(self.graph().pi()))
+            }
             None => self.constant(&path.path),
         }
     }
@@ -32,7 +35,7 @@ impl<'g> Elaborator<'_, '_, 'g> {
             // a name whose definition has an error has no value, and the error was reported
             return value.clone();
         }
-        if let Some(power) = self.context.power.as_ref().filter(|power| power.name == name) {
+        if let Some(power) = self.context.power.as_ref().filter(|power| power.length == name) {
             return Some(Value::Matrix(power.count));
         }
         match name.as_str() {
@@ -97,12 +100,6 @@ impl<'g> Elaborator<'_, '_, 'g> {
         };
         Some(Value::Matrix(self.graph().number(value)))
     }
-}
-
-/// `std::f64::consts::PI` and the like.
-fn is_pi(path: &Path) -> bool {
-    let names: Vec<String> = path.segments.iter().map(|segment| segment.ident.to_string()).collect();
-    matches!(names.as_slice(), [.., module, name] if module == "consts" && name == "PI")
 }
 
 /// A single name is a constant if it is written like one: `GRAVITY`, `G0`.

@@ -198,7 +198,6 @@ impl<'g> Elaborator<'_, '_, 'g> {
         }
     }
 
-    /// Unary minus.
     pub(super) fn unary(&mut self, unary: &ExprUnary) -> Option<Value<'g>> {
         match unary.op {
             UnOp::Neg(_) => match self.elaborate(&unary.expr)? {

@@ -9,7 +9,6 @@ use crate::diagnostic::{Diagnostic, refuse};
 use crate::parse::{parenthesized, spell};
 
 impl<'g> Elaborator<'_, '_, 'g> {
-    /// Rows, columns, blocks.
     pub(super) fn part(&mut self, part: Part, call: &ExprMethodCall, a: Expr<'g>) -> Option<Value<'g>> {
         let (name, all) = (&call.method, a.shape());
         let written: Vec<&GenericArgument> = call.turbofish.iter().flat_map(|turbofish| &turbofish.args).collect();

@@ -37,11 +37,6 @@ pub(super) fn is_of_quaternions(name: &str) -> bool {
 }
 
 impl<'g> Elaborator<'_, '_, 'g> {
-    /// Whether a quaternion is known to have length one.
-    fn is_unit_quaternion(&self, q: Expr<'g>) -> bool {
-        self.group_of(q).is_some()
-    }
-
     /// An operator of which at least one side is a quaternion.
     pub(super) fn quaternions(
         &mut self,
@@ -72,7 +67,8 @@ impl<'g> Elaborator<'_, '_, 'g> {
                 self.grow(link, &[a, s], Growth::Sum, || s * a).map(Value::Quaternion)
             }
             (Multiply, Value::Quaternion(a), Value::Matrix(v)) if v.shape() == Shape::vector(3) => {
-                let turn = if self.is_unit_quaternion(a) { algebra::turn } else { algebra::turn_by_any };
+                // a quaternion on a group has length one
+                let turn = if self.group_of(a).is_some() { algebra::turn } else { algebra::turn_by_any };
                 self.build(link, &[a, a, v], Growth::Pairs, || turn(a, v))
             }
             (Divide, Value::Quaternion(a), Value::Matrix(s)) if s.shape().is_scalar() => {
@@ -90,13 +86,13 @@ impl<'g> Elaborator<'_, '_, 'g> {
         if method == "identity" && call.args.is_empty() {
             return Some(Value::Quaternion(algebra::real(self.graph(), self.graph().integer(1))));
         }
-        if method != "new" {
-            refuse!(self, method, "unknown constructor `{method}` of a quaternion";
-                help "write `Quaternion::new(w, i, j, k)`, the scalar part first");
-        }
-        if call.args.len() != algebra::COORDINATES {
-            refuse!(self, method, "`Quaternion::new` has 4 coordinates, not {}", call.args.len();
-                help "write `Quaternion::new(w, i, j, k)`, the scalar part first");
+        if method != "new" || call.args.len() != algebra::COORDINATES {
+            let error = if method == "new" {
+                error!(method, "`Quaternion::new` has 4 coordinates, not {}", call.args.len())
+            } else {
+                error!(method, "unknown constructor `{method}` of a quaternion")
+            };
+            return self.refuse(error.help("write `Quaternion::new(w, i, j, k)`, the scalar part first"));
         }
         let mut coordinates = self.scalars(&call.args)?;
         coordinates.rotate_left(1);
@@ -125,7 +121,7 @@ impl<'g> Elaborator<'_, '_, 'g> {
             return self.refuse(no_method(call, &name));
         };
         // q⁻¹ is q̄ where |q| = 1
-        let is_conjugate = name == "conjugate" || (name == "inverse" && self.is_unit_quaternion(q));
+        let is_conjugate = name == "conjugate" || (name == "inverse" && self.group_of(q).is_some());
         if is_conjugate {
             let conjugate = self.grow(call, &[q], Growth::Sum, || algebra::conjugate(q))?;
             self.note_inverse(q, conjugate);
@@ -166,7 +162,7 @@ fn no_method(call: &ExprMethodCall, name: &str) -> Diagnostic {
 fn misfit(operator: Operator, link: &ExprBinary, left: &Value, right: &Value) -> Diagnostic {
     let (a, b, verb) = (spell(&link.left), spell(&link.right), operator.verb());
     let error = error!(link, "`{a}` is {} and `{b}` is {}: they cannot be {verb}", left.describe(), right.describe());
-    let vector = |value: &Value| value.shape() == Some(Shape::vector(3));
+    let vector = |value: &Value| value.matrix().is_some_and(|expr| expr.shape() == Shape::vector(3));
     let (a, b) = (parenthesized(&link.left), parenthesized(&link.right));
     match (operator, left, right) {
         (Operator::Multiply, left, Value::Quaternion(_)) if vector(left) => {

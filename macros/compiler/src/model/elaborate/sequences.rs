@@ -1,7 +1,7 @@
 //! Arrays, tuples, ranges, and what is done to them: `[a, b]`, `(0..3).map(|i| …).sum()`.
 
 use clebsch_symbolic::Expr;
-use syn::{Expr as Syntax, ExprArray, ExprClosure, ExprMethodCall, ExprRange, ExprRepeat, ExprTuple, RangeLimits};
+use syn::{Expr as Syntax, ExprClosure, ExprMethodCall, ExprRange, ExprRepeat, RangeLimits};
 
 use super::super::shapes::TERMS;
 use super::{Elaborator, Growth, Value};
@@ -12,19 +12,9 @@ use crate::parse::{Pattern, spell};
 const RANGE: usize = 1 << 32;
 
 impl<'g> Elaborator<'_, '_, 'g> {
-    /// `[a, b]`.
-    pub(super) fn array(&mut self, array: &ExprArray) -> Option<Value<'g>> {
-        self.all(array.elems.iter()).map(Value::Array)
-    }
-
-    /// `(a, b)`.
-    pub(super) fn tuple(&mut self, tuple: &ExprTuple) -> Option<Value<'g>> {
-        self.all(tuple.elems.iter()).map(Value::Tuple)
-    }
-
     /// The values of all expressions, or all of their errors.
-    fn all<'s>(&mut self, parts: impl Iterator<Item = &'s Syntax>) -> Option<Vec<Value<'g>>> {
-        let values: Vec<Option<Value<'g>>> = parts.map(|part| self.elaborate(part)).collect();
+    pub(super) fn all<'s>(&mut self, parts: impl IntoIterator<Item = &'s Syntax>) -> Option<Vec<Value<'g>>> {
+        let values: Vec<Option<Value<'g>>> = parts.into_iter().map(|part| self.elaborate(part)).collect();
         values.into_iter().collect()
     }
 

@@ -1,9 +1,9 @@
 //! Powers: `0..N`, `(0..N).map(|i| …)`, sums over sites, `q[(i + 1) % N]`.
 
-use clebsch_symbolic::Expr;
+use clebsch_symbolic::{Expr, Property, Role, Shape};
 use syn::{Expr as Syntax, ExprBinary, ExprIndex, ExprMethodCall, ExprRange, RangeLimits};
 
-use super::super::power::{Linear, SiteIndex, Term};
+use super::super::power::{Linear, Range, SiteIndex, Term, index_name, is_inside};
 use super::super::value::{Each, Value};
 use super::Elaborator;
 use super::operators::{Operator, division_by_zero};
@@ -19,7 +19,6 @@ pub(super) fn scaled<'g>(terms: Vec<Term<'g>>, factor: Expr<'g>) -> Vec<Term<'g>
 }
 
 impl<'g> Elaborator<'_, '_, 'g> {
-    /// Whether an expression is N.
     pub(super) fn is_number_of_sites(&self, expr: Expr<'g>) -> bool {
         self.context.power.as_ref().is_some_and(|power| power.count == expr)
     }
@@ -43,7 +42,7 @@ impl<'g> Elaborator<'_, '_, 'g> {
     }
 
     /// `.map(|i| …)` of a range: the closure is read once, for all indices.
-    pub(super) fn map_of_range(&mut self, call: &ExprMethodCall, range: (Expr<'g>, Expr<'g>)) -> Option<Value<'g>> {
+    pub(super) fn map_of_range(&mut self, call: &ExprMethodCall, range: Range<'g>) -> Option<Value<'g>> {
         let (pattern, closure) = self.closure_of_map(call)?;
         let graph = self.graph();
         let power = self.context.power.as_mut()?;
@@ -51,7 +50,8 @@ impl<'g> Elaborator<'_, '_, 'g> {
             refuse!(self, call, "more than {SUMS} ranges inside each other";
                 note "the terms of such a sum are too many for any N");
         }
-        let index = power.index(graph);
+        let depth = power.ranges.len();
+        let index = graph.symbol(&index_name(depth), Shape::scalar(), Role::Site(depth), Property::General);
         power.ranges.push(range);
         let value = self.applied(&pattern, closure, Value::Matrix(index));
         self.context.power.as_mut()?.ranges.pop();
@@ -62,7 +62,7 @@ impl<'g> Elaborator<'_, '_, 'g> {
     pub(super) fn sum_over_sites(
         &mut self,
         call: &ExprMethodCall,
-        range: (Expr<'g>, Expr<'g>),
+        range: Range<'g>,
         body: Value<'g>,
     ) -> Option<Value<'g>> {
         let Some(mut terms) = body.terms() else {
@@ -136,14 +136,14 @@ impl<'g> Elaborator<'_, '_, 'g> {
         }
         let fields = self.context.fields;
         let power = self.context.power.as_mut()?;
-        let name = power.name.clone();
-        if !power.is_inside(&place) {
+        let name = power.length.clone();
+        if !place.wraps && !is_inside(place.index, power.count, &power.ranges) {
             refuse!(self, &index.index, "`{}` leaves the sites 0..{name}", spell(&Syntax::Index(index.clone()));
                 help "write `({text}) % {name}` for a ring, or let the range end earlier, as `0..{name} - 1` does");
         }
         let is_own = !place.wraps
             && power.ranges.len() == 1
-            && place.index.as_symbol().is_some_and(|data| data.role == clebsch_symbolic::Role::Site(0));
+            && place.index.as_symbol().is_some_and(|data| data.role == Role::Site(0));
         match (of, self.key == "potential") {
             (_, false) if is_own => Some(own),
             (Each::Configuration, true) => {

@@ -5,9 +5,7 @@ use syn::ExprMethodCall;
 
 use super::{Elaborator, Value};
 
-/// A map of matrices.
 pub(super) type Unary = for<'g> fn(Expr<'g>) -> Expr<'g>;
-/// A map of pairs of matrices.
 pub(super) type Binary = for<'g> fn(Expr<'g>, Expr<'g>) -> Expr<'g>;
 
 /// A method with a function of its own, of a matrix.

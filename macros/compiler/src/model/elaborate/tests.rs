@@ -1,9 +1,9 @@
 //! Tables: an expression and what it means, an expression and what is wrong with it.
 
-use super::super::slots::{COST, SharedNames};
+use super::super::slots::COST;
 use clebsch_symbolic::{Graph, Property, Role, Shape, identity};
 
-use super::super::arguments::{Arguments, TypedArguments};
+use super::super::typed::Arguments;
 use super::super::value::Value;
 use super::super::{arguments, fields};
 use super::{Context, Elaborator};
@@ -38,12 +38,11 @@ fn with_value<R>(expression: &str, look: impl FnOnce(&Value) -> R) -> Result<R, 
     let fields = fields::read(&graph, &declaration, &[], None, &diagnostics);
     diagnostics.propagate(())?;
     let diagnostics = Diagnostics::new();
-    let TypedArguments { element, configuration, .. } =
-        arguments::of_action(&declaration, &diagnostics).expect("two typed arguments");
+    let names = arguments::of_action(&declaration, &diagnostics).expect("two typed arguments");
     let symbol = |name, shape, role, property| Value::Matrix(graph.symbol(name, shape, role, property));
     let point = |index, name| symbol(name, Shape::vector(2), Role::Configuration(index), Property::General);
     let arguments = Arguments {
-        names: SharedNames { element, configuration, input: None, diagnostics: &diagnostics },
+        names,
         element_value: Some(Value::Tuple(vec![
             symbol("F", Shape::square(3), Role::Element(0), Property::Orthogonal),
             symbol("a", Shape::vector(2), Role::Element(1), Property::General),

@@ -206,12 +206,9 @@ pub(super) const ROWS: [Row; 48] = [
     row(&[Matrices], WITHOUT_MATRICES, "{beside} has no code with whole matrices yet", "", UNROLLED),
 ];
 
-const fn row(
-    refused: &'static [Feature],
-    beside: &'static [Feature],
-    message: &'static str,
-    why: &'static str,
-    help: &'static str,
-) -> Row {
+type Features = &'static [Feature];
+type Text = &'static str;
+
+const fn row(refused: Features, beside: Features, message: Text, why: Text, help: Text) -> Row {
     Row { refused, beside, message, why, help }
 }
