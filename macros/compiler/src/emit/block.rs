@@ -173,4 +173,14 @@ impl Block<'_> {
         generics.params.insert(0, parse_quote!(#lifetime));
         Target::new(ident, &generics, self.scalar, &self.names)
     }
+
+    /// What depends on how the system is stepped, by a unit struct of the user.
+    pub(super) fn implementation_of_method(&self, name: &Ident, stepping: &TokenStream) -> TokenStream {
+        let Target { parameters, predicates, .. } = &self.target;
+        let (system, name) = (self.target.of_type(), self.names.of_user(quote!(#name)));
+        quote! {
+            #[automatically_derived]
+            impl #parameters runtime::Method<#system> for #name #predicates { #stepping }
+        }
+    }
 }

@@ -14,33 +14,56 @@ use crate::model::{Access, Promise, Side};
 impl Emitter<'_, '_> {
     pub(super) fn constants_type(&self) -> TokenStream {
         let name = self.names.free("Constants");
-        let names = self.kernels.constant_names.iter().map(|name| format_ident!("{name}"));
-        let orientations = self.implicit_solves().map(|(name, _)| name);
-        let inverse = if self.has_uniform_inertia() {
-            quote!(T)
-        } else if self.keeps_matrices {
-            let dimension = size(self.dimension);
-            quote!(runtime::InertiaInverse<T, #dimension>)
-        } else {
-            matrix(self.dimension, self.dimension)
-        };
-        let inverse = (!self.formulas.inertia_moves()).then(|| quote!(inertia_inverse: #inverse,));
-        let kind = self.kind_of_free_rotation();
-        let rotations = self.free_rotations().map(|(name, _)| name);
-        let step_size = self.needs_step_size().then(|| quote!(step_size: T,));
+        let constants = self.constants_of_stepper().into_iter().map(|[name, ty, _]| quote!(#name: #ty,));
         let [declared, parameter] =
             [quote!(<T: runtime::Scalar>), quote!(<T>)].map(|tokens| self.is_generic().then_some(tokens));
         quote! {
             /// What no step changes: made once per stepper.
             #[derive(::core::clone::Clone, ::core::fmt::Debug)]
-            pub struct #name #declared {
-                #(#names: T,)*
-                #(#orientations: runtime::Orientation,)*
-                #(#rotations: runtime::#kind<T>,)*
-                #step_size
-                #inverse
-            }
+            pub struct #name #declared { #(#constants)* }
             type C = #name #parameter;
+        }
+    }
+
+    /// Each constant with its type and its value, that of the variable with its name where it says none.
+    fn constants_of_stepper(&self) -> Vec<[TokenStream; 3]> {
+        let (scope, kernel) = (self.scope_of_system(), self.program.kernel(Id::Constants));
+        let numbers = self.kernels.constant_names.iter().enumerate().map(|(index, name)| {
+            let (name, value) = (format_ident!("{name}"), scope.scalar(kernel, index));
+            [quote!(#name), quote!(T), quote!(: #value)]
+        });
+        let orientations = self.solves().filter(|solve| self.has_orientation(solve)).map(|solve| {
+            let name = self.constant_of(solve);
+            let whole = self.orientation_of_inertia(&[solve.components.as_slice(), &solve.coupled].concat());
+            // det Σ is the product of those of what was put in and of what that leaves
+            let coupled = (!solve.coupled.is_empty()).then(|| self.orientation_of_inertia(&solve.coupled));
+            let coupled = coupled.map(|coupled| quote!(* #coupled));
+            [quote!(#name), quote!(runtime::Orientation), quote!(: #whole #coupled)]
+        });
+        let rotations = self.free_rotations().map(|(name, solve)| {
+            let (inertia, kind) = (self.block_of_inertia(solve), self.kind_of_free_rotation());
+            let value = match self.tolerance() {
+                Some(part) => quote!(: runtime::#kind::to_tolerance(&#inertia, h, #part)?),
+                None => quote!(: runtime::#kind::new(&#inertia, h)?),
+            };
+            [quote!(#name), quote!(runtime::#kind<T>), value]
+        });
+        let formulas = &self.formulas;
+        let needs_step_size = formulas.splitting.is_some() || formulas.collocation.is_some() || self.keeps_matrices;
+        let step_size = needs_step_size.then(|| [quote!(step_size), quote!(T), quote!(: h)]);
+        let inverse = (!formulas.inertia_moves()).then(|| [quote!(inertia_inverse), self.inverse().0, quote!()]);
+        numbers.chain(orientations).chain(rotations).chain(step_size).chain(inverse).collect()
+    }
+
+    /// The type of Σ⁻¹, and the function that makes it.
+    fn inverse(&self) -> (TokenStream, TokenStream) {
+        let dimension = size(self.dimension);
+        if self.has_uniform_inertia() {
+            (quote!(T), quote!(invert_uniform))
+        } else if self.keeps_matrices {
+            (quote!(runtime::InertiaInverse<T, #dimension>), quote!(InertiaInverse::new))
+        } else {
+            (matrix(self.dimension, self.dimension), quote!(invert))
         }
     }
 
@@ -62,12 +85,6 @@ impl Emitter<'_, '_> {
         quote!(#locals #inertia)
     }
 
-    /// Whether the size of a step is a constant by itself.
-    fn needs_step_size(&self) -> bool {
-        let formulas = &self.formulas;
-        formulas.splitting.is_some() || formulas.collocation.is_some() || self.keeps_matrices
-    }
-
     /// Whether the orientation of an equation is a constant, made of Σ.
     pub(super) fn has_orientation(&self, solve: &Solve) -> bool {
         let iterates = matches!(solve.solution, Solution::Newton | Solution::Linear);
@@ -76,12 +93,6 @@ impl Emitter<'_, '_> {
 
     fn solves(&self) -> impl Iterator<Item = &Solve> {
         self.program.steps.iter().flat_map(|step| &step.solves)
-    }
-
-    /// For each equation whose orientation is a constant: the name of its orientation, and the equation.
-    fn implicit_solves(&self) -> impl Iterator<Item = (Ident, &Solve)> {
-        let implicit = self.solves().filter(|solve| self.has_orientation(solve));
-        implicit.map(|solve| (self.constant_of(solve), solve))
     }
 
     /// The name of the constant that belongs to an equation: its orientation, or those of a free rotation.
@@ -143,56 +154,14 @@ impl Emitter<'_, '_> {
 
     /// The body of the function that makes the constants.
     pub(super) fn constants(&self, kernel: &Kernel) -> TokenStream {
-        let scope = self.scope_of_system();
-        let (constants, checks) = (self.names.free("Constants"), self.checks());
-        let moves = self.formulas.inertia_moves();
-        let inertia = (!moves).then(|| {
-            let inertia = self.inertia(&scope);
-            let invert = if self.has_uniform_inertia() {
-                quote!(invert_uniform)
-            } else if self.keeps_matrices {
-                quote!(InertiaInverse::new)
-            } else {
-                quote!(invert)
-            };
-            quote! {
-                let inertia = { #inertia };
-                let inertia_inverse = runtime::#invert(&inertia)?;
-            }
+        let (scope, checks, name) = (self.scope_of_system(), self.checks(), self.names.free("Constants"));
+        let inertia = (!self.formulas.inertia_moves()).then(|| {
+            let (inertia, (_, invert)) = (self.inertia(&scope), self.inverse());
+            quote!(let inertia = { #inertia }; let inertia_inverse = runtime::#invert(&inertia)?;)
         });
-        let inverse = (!moves).then(|| quote!(inertia_inverse,));
         let locals = scope.locals(kernel);
-        let fields = self.kernels.constant_names.iter().enumerate().map(|(index, name)| {
-            let (name, value) = (format_ident!("{name}"), scope.scalar(kernel, index));
-            quote!(#name: #value,)
-        });
-        let orientations = self.implicit_solves().map(|(name, solve)| {
-            let whole = self.orientation_of_inertia(&[solve.components.as_slice(), &solve.coupled].concat());
-            // det Σ is the product of those of what was put in and of what that leaves
-            let coupled = (!solve.coupled.is_empty()).then(|| self.orientation_of_inertia(&solve.coupled));
-            let coupled = coupled.map(|coupled| quote!(* #coupled));
-            quote!(#name: #whole #coupled,)
-        });
-        let rotations = self.free_rotations().map(|(name, solve)| {
-            let (inertia, kind) = (self.block_of_inertia(solve), self.kind_of_free_rotation());
-            match self.tolerance() {
-                Some(part) => quote!(#name: runtime::#kind::to_tolerance(&#inertia, h, #part)?,),
-                None => quote!(#name: runtime::#kind::new(&#inertia, h)?,),
-            }
-        });
-        let step_size = self.needs_step_size().then(|| quote!(step_size: h,));
-        quote! {
-            #checks
-            #inertia
-            #locals
-            runtime::Ok(#constants {
-                #(#fields)*
-                #(#orientations)*
-                #(#rotations)*
-                #step_size
-                #inverse
-            })
-        }
+        let constants = self.constants_of_stepper().into_iter().map(|[name, _, value]| quote!(#name #value,));
+        quote!(#checks #inertia #locals runtime::Ok(#name { #(#constants)* }))
     }
 }
 

@@ -10,7 +10,6 @@ mod equation;
 mod function;
 mod functions;
 mod matrices;
-mod methods;
 mod names;
 mod parts;
 mod power;
@@ -25,7 +24,7 @@ use std::cell::RefCell;
 use std::ops::Deref;
 
 use clebsch_symbolic::Group;
-use proc_macro2::{Ident, TokenStream};
+use proc_macro2::{Ident, Literal, TokenStream};
 use quote::{ToTokens, format_ident, quote};
 
 use crate::MethodProgram;
@@ -157,6 +156,34 @@ impl<'a, 'g> Emitter<'a, 'g> {
         let (check, parts, equations) = (self.potential_check(), self.parts(), self.equations());
         let (velocity, methods) = (self.velocity(), self.methods());
         quote!(#power #constants #system #conserves #variational #sensitive #controlled #check #parts #equations #velocity #methods)
+    }
+
+    /// The blocks of all methods. The names of types are those of the block around; what is of the steps has names of its own.
+    pub(super) fn methods(&self) -> TokenStream {
+        let blocks = self.program.methods.iter().map(|method| {
+            let emitter = self.of_method(method);
+            let stepping = emitter.stepping(None, &emitter.program.derivation_by(&method.name));
+            let (constants, method) =
+                (emitter.constants_type(), emitter.implementation_of_method(&method.name, &stepping));
+            let (edges, parts) = (emitter.edges(), emitter.parts());
+            let (equations, velocity) = (emitter.equations(), emitter.velocity());
+            quote!(const _: () = { #constants #method #edges #parts #equations #velocity };)
+        });
+        blocks.collect()
+    }
+
+    /// An implementation of a hidden trait of the runtime.
+    pub(super) fn implementation(&self, name: &str, sizes: &[Literal], items: TokenStream) -> TokenStream {
+        self.target.implementation(Some(self.trait_of_parts(name, sizes)), items)
+    }
+
+    /// A trait of the parts of a step: by its sizes, and by the method that is emitted where there are several.
+    pub(super) fn trait_of_parts(&self, name: &str, sizes: &[Literal]) -> TokenStream {
+        let declared = || (!self.program.methods.is_empty()).then(|| quote!(runtime::Declared));
+        let method = self.method.map(|method| self.names.of_user(quote!(#method))).or_else(declared);
+        let (name, mut arguments) =
+            (format_ident!("{name}"), sizes.iter().map(|size| quote!(#size)).chain(method).peekable());
+        if arguments.peek().is_none() { quote!(runtime::#name) } else { quote!(runtime::#name::<#(#arguments),*>) }
     }
 }
 
