@@ -2,9 +2,11 @@
 
 use clebsch_symbolic::{Analytic, Function, Rational, Role, Shape, integer};
 
-use super::kernel::DEEPEST_EXPRESSION;
 use super::scalar::{Callee, Output, is_unit};
 use super::{Cost, Input};
+
+/// An expression that nests deeper is cut into terms of its own: a parser takes more of its stack for a level than for an operation.
+pub(super) const DEEPEST_EXPRESSION: usize = 24;
 
 /// Straight-line code of one output entry or shared term.
 #[derive(Clone, PartialEq, Eq, Hash, Debug)]
@@ -254,7 +256,7 @@ impl Kernel {
             Code::Term(index) => Some(terms[*index].clone()),
             _ => None,
         };
-        let mapped = |code: &Code| code.mapped(&put_in);
+        let mapped = |code: &Code| code.clone().mapped(&put_in);
         Kernel { locals: self.locals.iter().map(mapped).collect(), outputs: self.outputs_by(mapped) }
     }
 
@@ -391,7 +393,7 @@ impl Code {
 
     /// The same with other codes for its shared terms.
     pub(super) fn with_locals(&self, other: &impl Fn(usize) -> Code) -> Code {
-        self.mapped(&|part| match part {
+        self.clone().mapped(&|part| match part {
             Code::Local(index) => Some(other(*index)),
             Code::Output(index, callee, output) => match other(*index) {
                 Code::Local(index) => Some(Code::Output(index, callee.clone(), *output)),
@@ -403,29 +405,30 @@ impl Code {
     }
 
     /// The same with other codes for some of its parts.
-    fn mapped(&self, other: &impl Fn(&Code) -> Option<Code>) -> Code {
-        if let Some(code) = other(self) {
-            return code;
-        }
-        let inner = |code: &Code| code.mapped(other);
+    fn mapped(self, other: &impl Fn(&Code) -> Option<Code>) -> Code {
+        other(&self).unwrap_or_else(|| self.of(&mut |part| part.mapped(other)))
+    }
+
+    /// The same operation of other codes.
+    pub(super) fn of(self, other: &mut dyn FnMut(Code) -> Code) -> Code {
         match self {
             Code::Sum(constant, terms) => {
-                Code::Sum(constant.clone(), terms.iter().map(|(weight, term)| (weight.clone(), inner(term))).collect())
+                Code::Sum(constant, terms.into_iter().map(|(weight, term)| (weight, other(term))).collect())
             }
-            Code::Product(factors) => Code::Product(factors.iter().map(inner).collect()),
-            Code::Reciprocal(x) => Code::Reciprocal(Box::new(inner(x))),
-            Code::Root(x, exponent) => Code::Root(Box::new(inner(x)), *exponent),
-            Code::PerOnePlusCosine(x) => Code::PerOnePlusCosine(Box::new(inner(x))),
-            Code::Function(function, x) => Code::Function(*function, Box::new(inner(x))),
+            Code::Product(factors) => Code::Product(factors.into_iter().map(other).collect()),
+            Code::Reciprocal(x) => Code::Reciprocal(Box::new(other(*x))),
+            Code::Root(x, exponent) => Code::Root(Box::new(other(*x)), exponent),
+            Code::PerOnePlusCosine(x) => Code::PerOnePlusCosine(Box::new(other(*x))),
+            Code::Function(function, x) => Code::Function(function, Box::new(other(*x))),
             Code::Call(callee, arguments) => {
-                let inner = |(shape, entries): &(Shape, Vec<Code>)| (*shape, entries.iter().map(inner).collect());
-                Code::Call(callee.clone(), arguments.iter().map(inner).collect())
+                let mut each = |entries: Vec<Code>| entries.into_iter().map(&mut *other).collect();
+                Code::Call(callee, arguments.into_iter().map(|(shape, entries)| (shape, each(entries))).collect())
             }
-            Code::Whole(whole) => {
-                let operands = whole.operands.iter().map(inner).collect();
-                Code::Whole(Box::new(Whole { operands, ..(**whole).clone() }))
+            Code::Whole(mut whole) => {
+                whole.operands = whole.operands.into_iter().map(other).collect();
+                Code::Whole(whole)
             }
-            other => other.clone(),
+            read => read,
         }
     }
 }

@@ -6,6 +6,7 @@ mod shorten;
 use clebsch_symbolic::{Function, Interner, Rational, Role, Shape, Table, Zero, integer, work};
 
 use super::balance;
+use super::code::DEEPEST_EXPRESSION;
 use super::entries::Grid;
 use super::pairs::Pairs;
 use super::scalar::{Callee, Factors, Output};
@@ -50,8 +51,6 @@ fn repeated(factors: &[(Scalar, u32)]) -> impl Iterator<Item = Scalar> {
 
 /// An expression of more operations is cut into terms of its own: compilers recurse into expressions.
 const LONGEST_EXPRESSION: usize = 256;
-/// An expression that nests deeper is cut too: a parser takes more of its stack for a level than for an operation.
-pub(super) const DEEPEST_EXPRESSION: usize = 24;
 /// A sum of more terms is cut into sums, for the same reason.
 const LONGEST_SUM: usize = 96;
 /// The index of an operation of a kernel.
@@ -146,26 +145,22 @@ impl Builder<'_, '_> {
                 let (coefficient, product) = self.convert_product(integer(1), &factors);
                 self.scaled(coefficient, product)
             }
-            ScalarNode::Reciprocal(x) => {
-                let x = self.convert(x);
-                self.intern(Operation::Reciprocal(x))
+            node => {
+                let operation = match node {
+                    ScalarNode::Reciprocal(x) => Operation::Reciprocal(self.convert(x)),
+                    ScalarNode::Root(x, exponent) => Operation::Root(self.convert(x), exponent),
+                    ScalarNode::Function(function, x) => Operation::Function(function, self.convert(x)),
+                    ScalarNode::Output(call, output) => {
+                        let call = self.scalars.call_of(call).clone();
+                        let mut entries = |grid: &Grid| grid.entries.iter().map(|entry| self.convert(*entry)).collect();
+                        let arguments = call.arguments.iter().map(|grid| (grid.shape, entries(grid))).collect();
+                        let id = self.intern(Operation::Call(call.callee.clone(), arguments));
+                        Operation::Output(id, call.callee, output)
+                    }
+                    _ => Operation::Leaf(scalar),
+                };
+                self.intern(operation)
             }
-            ScalarNode::Root(x, exponent) => {
-                let x = self.convert(x);
-                self.intern(Operation::Root(x, exponent))
-            }
-            ScalarNode::Function(function, x) => {
-                let x = self.convert(x);
-                self.intern(Operation::Function(function, x))
-            }
-            ScalarNode::Output(call, output) => {
-                let call = self.scalars.call_of(call).clone();
-                let mut entries = |grid: &Grid| grid.entries.iter().map(|entry| self.convert(*entry)).collect();
-                let arguments = call.arguments.iter().map(|grid| (grid.shape, entries(grid))).collect();
-                let id = self.intern(Operation::Call(call.callee.clone(), arguments));
-                self.intern(Operation::Output(id, call.callee, output))
-            }
-            ScalarNode::Input(_) | ScalarNode::Pi => self.intern(Operation::Leaf(scalar)),
         };
         self.known.insert(scalar, id);
         id

@@ -5,11 +5,9 @@
 
 mod balance;
 mod code;
-mod control;
 mod cost;
 mod entries;
 mod factors;
-mod fixed_point;
 mod form;
 mod grid;
 mod kernel;
@@ -23,7 +21,6 @@ mod scalar;
 mod signs;
 mod stepping;
 mod sums;
-mod told;
 mod variation;
 
 use clebsch_symbolic::Expr;

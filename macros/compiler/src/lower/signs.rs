@@ -95,10 +95,6 @@ impl Signs {
         }
     }
 
-    fn boxed(&mut self, code: Code) -> Box<Code> {
-        Box::new(self.whole(code))
-    }
-
     /// A code apart from its sign, written by itself.
     fn split(&mut self, code: Code) -> Signed {
         self.split_at(code, true)
@@ -120,16 +116,8 @@ impl Signs {
                 let (is_negative, x) = self.split(*x);
                 (is_negative, Code::Reciprocal(Box::new(x)))
             }
-            Code::Root(x, exponent) => (false, Code::Root(self.boxed(*x), exponent)),
-            Code::PerOnePlusCosine(x) => (false, Code::PerOnePlusCosine(self.boxed(*x))),
-            Code::Function(function, x) => (false, Code::Function(function, self.boxed(*x))),
-            Code::Call(callee, arguments) => {
-                let mut whole = |entries: Vec<Code>| entries.into_iter().map(|entry| self.whole(entry)).collect();
-                let arguments = arguments.into_iter().map(|(shape, entries)| (shape, whole(entries))).collect();
-                (false, Code::Call(callee, arguments))
-            }
             Code::Whole(whole) => self.matrix(*whole),
-            code => (false, code),
+            code => (false, code.of(&mut |part| self.whole(part))),
         }
     }
 
@@ -197,18 +185,17 @@ impl Signs {
                 (is_negative, Code::Whole(Box::new(Whole { operation, operands, shape, cost })))
             }
             operation => {
-                let is_linear = operation.is_linear();
-                let mut is_negative = false;
-                let mut part = |operand: Code| {
+                let (is_linear, mut is_negative) = (operation.is_linear(), false);
+                let code = Code::Whole(Box::new(Whole { operation, operands, shape, cost }));
+                let code = code.of(&mut |operand| {
                     if !is_linear {
                         return self.whole(operand);
                     }
                     let (other, operand) = self.split(operand);
                     is_negative ^= other;
                     operand
-                };
-                let operands = operands.into_iter().map(&mut part).collect();
-                (is_negative, Code::Whole(Box::new(Whole { operation, operands, shape, cost })))
+                });
+                (is_negative, code)
             }
         }
     }

@@ -5,8 +5,9 @@ use std::collections::BTreeSet;
 use clebsch_symbolic::{Role, Zero};
 
 use super::made::{Maker, of_matrices, plain, separate};
-use super::{Code, Hoisted, Hoisting, Kernel, MechanicsProgram, Step, fixed_point, matrices};
+use super::{Code, Hoisted, Hoisting, Kernel, MechanicsProgram, Step, matrices};
 use crate::derive::{Id, MechanicsFormulas, MomentumEquation, Solution, Structure, SystemFormulas};
+use crate::model::Solver;
 
 /// What is known of a momentum equation beside its kernels.
 pub struct Solve {
@@ -171,7 +172,7 @@ impl<'g> Maker<'_, 'g> {
         predict: Option<&Kernel>,
     ) -> (Kernel, Kernel, Option<Kernel>) {
         let system = formulas.newton_system(equation, self.scalars.keeps_matrices);
-        let predict = predict.filter(|_| fixed_point::serves(formulas, equation));
+        let predict = predict.filter(|_| serves(formulas, equation));
         if self.scalars.keeps_matrices {
             let linearize = of_matrices(&mut self.scalars, &system, Hoisting::Nothing);
             // a linear system costs more than many residuals
@@ -189,7 +190,7 @@ impl<'g> Maker<'_, 'g> {
             let residual = [formulas.residual_by_halves(equation)];
             let residual = separate(&mut self.scalars, &residual, Hoisting::Terms(&mut constants, &mut more));
             let unknowns = equation.components.len();
-            let is_chosen = fixed_point::is_chosen(formulas, (&residual, predict), &linearize, unknowns);
+            let is_chosen = is_chosen(formulas, (&residual, predict), &linearize, unknowns);
             is_chosen.then(|| {
                 (self.hoisted, terms) = (constants, more);
                 residual
@@ -233,4 +234,42 @@ impl MechanicsProgram<'_> {
         let entry = self.linearization(solve).outputs[1].1.get(i * solve.dimension + j);
         matches!(entry, Some(Code::Number(value)) if value.is_zero())
     }
+}
+
+// Some momentum equations are solved by x ← x − s·h·Σ⁻¹ρ(x), a step of Newton's method with the Jacobian at the identity. The iteration contracts like
+// h|ω|: for h|ω| from 0.001 to 0.05 it takes five to eight residuals where Newton's method takes two linearisations with their linear systems,
+// whose code is long.
+
+/// A linearisation with its linear system has to cost as many residuals, or Newton's method is taken.
+const RESIDUALS: usize = 3;
+
+/// A function of a matrix counts for as many operations.
+const MATRIX_FUNCTION: usize = 1000;
+
+/// Whether ρ alone may be tried: Newton's method is not asked for, and the predictor is s·h·Σ⁻¹ in the unknowns themselves.
+fn serves(formulas: &MechanicsFormulas<'_>, equation: &MomentumEquation<'_>) -> bool {
+    let is_asked = solver(formulas) != Some(Solver::Newton);
+    is_asked && equation.is_inertial && !equation.moves && equation.coupled.is_empty()
+}
+
+/// Whether it is tried: asked for, or by the number of operations.
+fn is_chosen(
+    formulas: &MechanicsFormulas<'_>,
+    (residual, predict): (&Kernel, &Kernel),
+    linearize: &Kernel,
+    unknowns: usize,
+) -> bool {
+    let iteration = operations(residual) + operations(predict) + 4 * unknowns;
+    let linearization = operations(linearize) + 2 * unknowns * unknowns * (unknowns + 3) / 3;
+    solver(formulas) == Some(Solver::FixedPoint) || linearization >= RESIDUALS * iteration
+}
+
+fn solver(formulas: &MechanicsFormulas<'_>) -> Option<Solver> {
+    formulas.model.dials.solver.as_ref().map(|solver| solver.value)
+}
+
+/// The operations of a kernel, with those of the functions of matrices that it calls.
+fn operations(kernel: &Kernel) -> usize {
+    let calls = kernel.locals.iter().filter(|code| matches!(code, Code::Call(..))).count();
+    kernel.cost().total() + MATRIX_FUNCTION * calls
 }

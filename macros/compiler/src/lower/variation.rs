@@ -1,8 +1,9 @@
-//! The kernels of variations: motions of configurations, and edges with their second derivatives.
+//! The kernels of what plans are made of: motions of configurations and edges with their second derivatives, and the choice of inputs with price
+//! and bounds.
 
-use super::made::{Maker, of_matrices};
+use super::made::{Maker, of_matrices, stack};
 use super::{Hoisting, matrices};
-use crate::derive::{Id, MechanicsFormulas};
+use crate::derive::{Choice, Id, MechanicsFormulas, StepOfChoice};
 
 impl<'g> Maker<'_, 'g> {
     /// The kernels of variations, where they are asked for.
@@ -26,6 +27,36 @@ impl<'g> Maker<'_, 'g> {
         match self.rows.value(Id::OrbitMetric).filter(|_| self.scalars.keeps_matrices) {
             Some(momenta) => self.add(Id::OrbitMetric, matrices::kernel(&matrices::below(momenta))),
             None => self.matrices(Id::OrbitMetric, &[self.system.orbit_metric()]),
+        }
+    }
+
+    /// The kernels of a choice: with the step that inputs make by themselves, or what they do to an edge as those of forces.
+    pub(super) fn choice(&mut self, choice: &Choice<'_, 'g>) {
+        let is_steered = matches!(choice.step, StepOfChoice::Steered(_));
+        let made = |maker: &mut Self, id: Id| maker.matrices(id, &choice.matrices(id));
+        if is_steered {
+            made(self, Id::StepExpanded);
+            self.rows([Id::Increment, Id::Advance]);
+            self.orbit_metric();
+        } else {
+            [Id::ByInput, Id::Bend, Id::Bracket].into_iter().for_each(|id| made(self, id));
+        }
+        let approach = stack(&mut self.scalars, &choice.steering.approach, Hoisting::Nothing);
+        self.add(Id::Approach, approach);
+        self.rows([Id::Price]);
+        if !is_steered {
+            made(self, Id::PriceExpanded);
+        }
+        made(self, Id::PriceOfTime);
+        self.rows([Id::Bounds]);
+        made(self, Id::BoundsExpanded);
+    }
+
+    /// The kernels of the price of the end, where there is one.
+    pub(super) fn price_of_end(&mut self) {
+        if let Some(endpoint) = &self.system.endpoint {
+            self.matrices(Id::PriceOfEndExpanded, &self.system.endpoint_expanded(endpoint));
+            self.rows([Id::PriceOfEnd]);
         }
     }
 }
