@@ -62,9 +62,9 @@ fn expanded<'a, 'g>(program: &'a Program<'g>) -> (SystemEmitter<'a, 'g>, TokenSt
             let items = emitter.items();
             (emitter.system, items)
         }
-        Program::Steered(program) => {
-            let table = (program.formulas.table(), &program.table);
-            let emitter = SystemEmitter::new(&program.formulas, table, (None, None), &[]);
+        Program::Steered(steered) => {
+            let table = (steered.formulas.table(), &steered.table);
+            let emitter = SystemEmitter::new(&steered.formulas, table, (None, None), &[]);
             let controlled = emitter.controlled();
             let documentation = "The derivation of this struct in words and formulas.";
             let derivation = emitter.constant("DERIVATION", documentation, &program.derivation());

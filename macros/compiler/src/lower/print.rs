@@ -5,7 +5,7 @@ use std::fmt;
 use clebsch_symbolic::{Analytic, Rational, integer};
 
 use super::{Callee, Code, Form, Input, Kernel, KernelTable, LARGEST_UNROLLED, MOST_UNKNOWNS, MatrixOperation};
-use super::{MechanicsProgram, Program, Solve, SteeredProgram, Whole};
+use super::{MechanicsProgram, Program, Solve, Whole};
 use crate::derive::{self, Id, Iteration, Lowered};
 use crate::model::CodeForm;
 
@@ -174,15 +174,8 @@ impl Program<'_> {
     pub fn derivation(&self) -> String {
         match self {
             Program::Mechanics(program) => program.derivation(),
-            Program::Steered(program) => program.derivation(),
+            Program::Steered(program) => derive::derivation_of_control(&program.formulas, &costs(&program.kernels())),
         }
-    }
-}
-
-impl SteeredProgram<'_> {
-    /// The text of `DERIVATION`.
-    pub fn derivation(&self) -> String {
-        derive::derivation_of_control(&self.formulas, &costs(&self.kernels()))
     }
 }
 

@@ -140,7 +140,7 @@ pub struct Scalars {
     pub keeps_matrices: bool,
     nodes: Interner<ScalarNode>,
     rates: Vec<Rate>,
-    calls: Vec<Call>,
+    calls: Interner<Call>,
     /// The grids of expressions whose scalars are here.
     pub(super) lowered: Grids,
 }
@@ -358,18 +358,14 @@ impl Scalars {
     /// The entries of what a call returns.
     pub fn call(&mut self, call: Call, leaf: usize, shape: Shape) -> Vec<Scalar> {
         let rate = self.rate_of(call.arguments.iter().flat_map(|argument| argument.entries.iter().copied()));
-        let known = self.calls.iter().position(|other| *other == call);
-        let index = known.unwrap_or_else(|| {
-            self.calls.push(call);
-            self.calls.len() - 1
-        });
+        let (index, _) = self.calls.intern(call);
         let entry = |(row, column)| ScalarNode::Output(CallId(index as u32), Output { leaf, row, column, shape });
         shape.positions().map(entry).map(|node| self.intern(node, rate)).collect()
     }
 
     /// The call behind an identity.
     pub fn call_of(&self, id: CallId) -> &Call {
-        &self.calls[id.0 as usize]
+        self.calls.value(id.0 as usize)
     }
 }
 

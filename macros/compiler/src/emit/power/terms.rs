@@ -3,13 +3,13 @@
 use std::collections::BTreeSet;
 
 use clebsch_symbolic::{Expr, Role, Shape};
-use proc_macro2::{Ident, Literal, TokenStream};
+use proc_macro2::{Ident, TokenStream};
 use quote::{format_ident, quote};
 
 use crate::derive::{Home, Id, SiteTerm, Stencil};
 use crate::emit::Emitter;
 use crate::emit::scope::Scope;
-use crate::lower::{Code, Kernel};
+use crate::lower::{Code, Kernel, sign};
 use crate::model::{Leaf, Linear, Power, SiteIndex};
 
 /// What the code of all terms is made of.
@@ -17,17 +17,6 @@ pub(super) struct Terms<'e, 'a, 'g> {
     emitter: &'e Emitter<'a, 'g>,
     power: &'e Power<'g>,
     scope: Scope<'e, 'g>,
-}
-
-/// How the term is found that has a site at a place.
-#[derive(Default)]
-struct Head {
-    /// The place, where it is one of the term's.
-    own: Option<usize>,
-    /// The index `i0` of the term, from that of the site.
-    index: TokenStream,
-    /// What leaves where there is no such term.
-    guard: Option<TokenStream>,
 }
 
 impl<'e, 'a, 'g> Terms<'e, 'a, 'g> {
@@ -72,17 +61,17 @@ impl<'e, 'a, 'g> Terms<'e, 'a, 'g> {
         let length = &self.power.length;
         let places = [self.power.places.as_slice(), &stencil.places].concat();
         let common = self.emitter.program.kernel(Id::SiteGradient);
-        let of_all = self.added(&stencil.gradient, &common.outputs, quote!(gradient), quote!(=)).map(|added| {
-            let index = quote!(let i0 = site as ::core::primitive::isize;);
-            self.at_site(&places, Head { index, ..Head::default() }, common, added)
-        });
+        let index = quote!(let i0 = site as ::core::primitive::isize;);
+        let of_all = self.added(&stencil.gradient, &common.outputs, quote!(gradient), quote!(=));
+        let of_all = of_all.map(|added| self.at_site((&places, None), &index, common, added));
         let others = stencil.others.iter().filter_map(|&(term, number)| {
             let link = &self.emitter.formulas.links[term];
             let (place, slopes) = &link.gradient[number];
             let kernel = self.emitter.program.kernel(Id::TermGradient(term, *place));
             let added = self.added(slopes, &kernel.outputs, quote!(gradient), quote!(+=))?;
             let home = link.homes(self.power)?.into_iter().nth(number)?;
-            Some(self.at_site(&places, self.head(*place, &home, &link.term.ranges), kernel, added))
+            let found = self.found(*place, &home, &link.term.ranges);
+            Some(self.at_site((&places, Some(*place)), &found, kernel, added))
         });
         quote! {
             /// The gradient of the potential at a site, from all terms that read it.
@@ -97,13 +86,12 @@ impl<'e, 'a, 'g> Terms<'e, 'a, 'g> {
         }
     }
 
-    /// Where the term is found that has a site at a place.
-    fn head(&self, own: usize, home: &Home<'g>, ranges: &[(Expr<'g>, Expr<'g>)]) -> Head {
+    /// The index `i0` of the term that has a site at a place, from that of the site; leaves where there is no such term.
+    fn found(&self, own: usize, home: &Home<'g>, ranges: &[(Expr<'g>, Expr<'g>)]) -> TokenStream {
         let length = &self.power.length;
         let (Some(index), [(from, to), ..]) = (home.index, ranges) else {
             let (name, place) = (site(own), self.index_of(&self.power.places, own));
-            let guard = quote!(#place if site != #name { break 'term; });
-            return Head { own: Some(own), index: TokenStream::new(), guard: Some(guard) };
+            return quote!(#place if site != #name { break 'term; });
         };
         let [from, to, moved] = [*from, *to, index].map(|expr| linear(expr, self.power));
         let moved = if home.wraps {
@@ -114,17 +102,22 @@ impl<'e, 'a, 'g> Terms<'e, 'a, 'g> {
             quote!(let i0 = #moved;)
         };
         let guard = (!home.is_everywhere).then(|| quote!(if !(#from..#to).contains(&i0) { break 'term; }));
-        Head { own: Some(own), index: quote!(let i0 = site as ::core::primitive::isize; #moved), guard }
+        quote!(let i0 = site as ::core::primitive::isize; #moved #guard)
     }
 
     /// A statement for one site, with the configurations that it reads.
-    fn at_site(&self, places: &[SiteIndex<'g>], head: Head, kernel: &Kernel, added: TokenStream) -> TokenStream {
-        let Head { own, index, guard } = head;
+    fn at_site(
+        &self,
+        (places, own): (&[SiteIndex<'g>], Option<usize>),
+        found: &TokenStream,
+        kernel: &Kernel,
+        added: TokenStream,
+    ) -> TokenStream {
         let inputs = kernel.inputs();
         let is_read = |place: &usize| inputs.iter().any(|input| matches!(input.role, Role::At(at, _) if at == *place));
         let sites: Vec<usize> = (0..places.len()).filter(is_read).collect();
         let added = self.reading((places, own), &sites, kernel, quote!(break 'term), added);
-        quote!('term: { #index #guard #added })
+        quote!('term: { #found #added })
     }
 
     /// Statements of a kernel behind those that read the configurations of sites, and that leave where there is no such site. A field of an
@@ -224,29 +217,17 @@ fn site(place: usize) -> Ident {
 fn linear(expr: Expr<'_>, power: &Power<'_>) -> TokenStream {
     // by construction: what is not linear is refused where it is declared
     let Some(Linear { constant, sites, indices }) = Linear::of(expr) else { return quote!(0) };
-    let length = &power.length;
-    let index = |(depth, weight): (usize, i64)| {
-        let name = format_ident!("i{depth}");
-        (weight, Some(quote!(#name)))
-    };
-    let mut terms: Vec<(i64, Option<TokenStream>)> = indices.into_iter().enumerate().map(index).collect();
-    terms.push((sites, Some(quote!((#length as ::core::primitive::isize)))));
-    terms.retain(|(weight, _)| *weight != 0);
+    let names = indices.into_iter().enumerate().map(|(depth, weight)| (weight, format!("i{depth}")));
+    let names = names.chain([(sites, format!("({} as ::core::primitive::isize)", power.length))]);
+    let mut terms: Vec<(i64, String)> = names.filter(|(weight, _)| *weight != 0).collect();
     if terms.is_empty() || constant != 0 {
-        terms.push((constant, None));
+        terms.push((constant, String::new()));
     }
-    terms.into_iter().fold(TokenStream::new(), |sum, (weight, name)| {
-        let number = Literal::u64_unsuffixed(weight.unsigned_abs());
-        let term = match name {
-            Some(name) if weight.unsigned_abs() == 1 => name,
-            Some(name) => quote!(#number * #name),
-            None => quote!(#number),
-        };
-        match (sum.is_empty(), weight < 0) {
-            (true, false) => term,
-            (true, true) => quote!(-#term),
-            (false, false) => quote!(#sum + #term),
-            (false, true) => quote!(#sum - #term),
-        }
-    })
+    let text = terms.into_iter().fold(String::new(), |text, (weight, name)| {
+        let (sign, size) = (sign(text.is_empty(), weight < 0), weight.unsigned_abs());
+        let product = if name.is_empty() { size.to_string() } else { format!("{size} * {name}") };
+        text + sign + if size == 1 && !name.is_empty() { &name } else { &product }
+    });
+    // by construction: names, numbers and operators are tokens
+    text.parse().unwrap_or_default()
 }
