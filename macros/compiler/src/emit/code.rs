@@ -1,7 +1,7 @@
 //! Tokens of straight-line code.
 
 use clebsch_symbolic::{Function, Rational, integer, work};
-use proc_macro2::{Delimiter, Ident, Literal, Punct, Spacing, Span, TokenStream, TokenTree};
+use proc_macro2::{Delimiter, Group, Ident, Literal, Punct, Spacing, Span, TokenStream, TokenTree};
 use quote::{TokenStreamExt, format_ident, quote};
 
 use super::scope::{Scope, size, spelled};
@@ -37,13 +37,13 @@ impl Scope<'_, '_> {
             }
             Code::Term(index) => {
                 word(tokens, "terms");
-                group(tokens, Delimiter::Bracket, TokenTree::from(size(*index)).into());
+                tokens.append(Group::new(Delimiter::Bracket, TokenTree::from(size(*index)).into()));
             }
             Code::Local(index) => word(tokens, &format!("t{index}")),
             Code::Sum(constant, terms) if tight && is_in_brackets(constant, terms) => {
                 let mut inner = TokenStream::new();
                 self.write_sum(&mut inner, constant, terms);
-                group(tokens, Delimiter::Parenthesis, inner);
+                tokens.append(Group::new(Delimiter::Parenthesis, inner));
             }
             Code::Sum(constant, terms) => self.write_sum(tokens, constant, terms),
             Code::Product(factors) => match Code::quotient(factors) {
@@ -166,10 +166,6 @@ pub(super) fn word(tokens: &mut TokenStream, name: &str) {
     tokens.append(Ident::new(name, Span::call_site()));
 }
 
-fn group(tokens: &mut TokenStream, delimiter: Delimiter, inner: TokenStream) {
-    tokens.append(proc_macro2::Group::new(delimiter, inner));
-}
-
 /// `[a, b, c]`.
 pub(super) fn list(parts: impl IntoIterator<Item = TokenStream>) -> TokenTree {
     let mut inner = TokenStream::new();
@@ -179,7 +175,7 @@ pub(super) fn list(parts: impl IntoIterator<Item = TokenStream>) -> TokenTree {
         }
         inner.extend(part);
     }
-    proc_macro2::Group::new(Delimiter::Bracket, inner).into()
+    Group::new(Delimiter::Bracket, inner).into()
 }
 
 /// A floating-point literal: the decimal fraction where it ends, a quotient where it does not.

@@ -93,7 +93,8 @@ impl Function {
         let of_kernel = |word: &str| match (number(word, "Value"), number(word, "Number")) {
             (Some(index), _) => Some(scope.output(kernel?, index)),
             (_, Some(index)) => Some(scope.scalar(kernel?, index)),
-            _ => (word == "Locals").then_some(scope.locals(kernel?)),
+            _ if word == "Locals" => Some(scope.locals(kernel?)),
+            _ => None,
         };
         let code = scope.parsed(self.code, &|word| words(word).or_else(|| of_kernel(word)));
         Some(Body { cost, ..Body::from(code) })
@@ -117,6 +118,11 @@ impl Function {
 pub(super) type Words<'w> = dyn Fn(&str) -> Option<TokenStream> + 'w;
 
 impl<'g> SystemEmitter<'_, 'g> {
+    /// The functions of a table as it says them.
+    pub(super) fn written(&self, table: &[Function], scope: &Scope<'_, '_>, words: &Words<'_>) -> TokenStream {
+        self.functions(table, (0, 0), words, |function, kernel| function.written(scope, kernel, words))
+    }
+
     /// The functions of a table that have a body, made from their kernels; those of a substep, or of an equation in it, have a place.
     pub(super) fn functions<'k>(
         &'k self,

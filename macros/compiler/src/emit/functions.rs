@@ -241,7 +241,7 @@ functions! {
         }
         /// ℓd with both Legendre transforms and their derivatives along the motions of both ends.
         fn edge(&self, c: &C, t: T, q: &Q, d: &F, next: &Q, u: &U) -> Edge { Id::Edge(0) } = {
-            Fixed
+            Locals
             let before_by_end = Matrix4;
             runtime::Edge {
                 lagrangian: Number0, before: Value1, after: Value2,
@@ -250,7 +250,7 @@ functions! {
         }
         /// F⁺ℓd with the derivatives of both momenta, along motions that leave F as it is and along those of q⁺ alone.
         fn carried(&self, c: &C, t: T, q: &Q, d: &F, next: &Q, u: &U) -> Carried { Id::Carried(0) } = {
-            Fixed
+            Locals
             runtime::Carried {
                 momentum: Value0,
                 adjoint: Matrix1, before: Matrix2, after: Matrix3, before_by_end: Matrix4, after_by_end: Matrix5,

@@ -78,9 +78,7 @@ impl Emitter<'_, '_> {
             return self.hamilton_equations();
         }
         if self.program.turns_in_plane() {
-            let scope = self.scope_of_step();
-            let turn = self
-                .functions(GREAT_CIRCLES, (0, 0), &no_words, |function, _| function.written(&scope, None, &no_words));
+            let turn = self.written(GREAT_CIRCLES, &self.scope_of_step(), &no_words);
             return self.implementation("GreatCircles", &[], turn);
         }
         if self.keeps_motions() { self.free_motion() } else { TokenStream::new() }
@@ -131,9 +129,7 @@ impl Emitter<'_, '_> {
     }
 
     pub(super) fn split_kicks(&self) -> TokenStream {
-        let scope = self.scope_of_step();
-        let functions = self
-            .functions(SPLIT_KICKS, (0, 0), &no_words, |function, kernel| function.written(&scope, kernel, &no_words));
+        let functions = self.written(SPLIT_KICKS, &self.scope_of_step(), &no_words);
         self.implementation("SplitKicks", &[], functions)
     }
 }

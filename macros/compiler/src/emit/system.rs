@@ -185,9 +185,7 @@ impl<'g> Emitter<'_, 'g> {
         let (lifetime, name) = (self.names.lifetime(), self.names.free("Velocity"));
         let dimension = size(self.dimension);
         let words = |word: &str| (word == "Algebra").then(|| matrix(self.dimension, 1));
-        let scope = self.scope(quote!(self.system), None);
-        let linearize =
-            self.functions(VELOCITY, (0, 0), &words, |function, kernel| function.written(&scope, kernel, &words));
+        let linearize = self.written(VELOCITY, &self.scope(quote!(self.system), None), &words);
         let target = self.borrowed(&name);
         let implementation = target.implementation(Some(quote!(runtime::VelocityEquation<T, #dimension>)), linearize);
         let Target { parameters, predicates, .. } = &target;

@@ -147,7 +147,6 @@ impl Emitter<'_, '_> {
 
     /// A function of `VariedSubstep`: vectors and matrices of an edge.
     fn edge<'k>(&'k self, function: &Function, kernel: Option<&'k Kernel>) -> Option<Body<'k>> {
-        let scope = self.scope_of_step();
         let Some(kernel) = kernel else {
             // there is always something that is called the slopes
             return (function.name == "slopes").then(|| Body::from(quote!()).titled(""));
@@ -155,10 +154,9 @@ impl Emitter<'_, '_> {
         let words = |word: &str| match number(word, "Matrix") {
             Some(6) if kernel.outputs.len() < 7 => Some(quote!(-before_by_end.transpose())),
             Some(index) => Some(self.matrix_of_edge(kernel, index)),
-            None => (word == "Fixed").then(|| self.locals_of_edge(kernel)),
+            None => (word == "Locals").then(|| self.locals_of_edge(kernel)),
         };
-        let body = function.written(&scope, Some(kernel), &words)?;
-        Some(Body { cost: Some(kernel), ..body })
+        function.written(&self.scope_of_step(), Some(kernel), &words)
     }
 
     /// A matrix of an edge.

@@ -181,17 +181,23 @@ impl Kernel {
         depends
     }
 
-    /// The same without terms that no output is made of; a term that is an output and stands nowhere else is written there.
-    pub(super) fn without_unused(self) -> Kernel {
+    /// How often each of its terms stands in what some outputs are made of.
+    fn uses(&self, outputs: &[(Shape, Vec<Code>)]) -> Vec<usize> {
         let mut uses = vec![0_usize; self.locals.len()];
-        let entries = || self.outputs.iter().flat_map(|(_, entries)| entries);
-        entries().flat_map(Code::locals).for_each(|index| uses[index] += 1);
+        outputs.iter().flat_map(|(_, entries)| entries).flat_map(Code::locals).for_each(|index| uses[index] += 1);
         for index in (0..self.locals.len()).rev() {
             if uses[index] > 0 {
                 self.locals[index].locals().for_each(|other| uses[other] += 1);
             }
         }
-        let outputs: Vec<usize> = entries().filter_map(Code::as_local).collect();
+        uses
+    }
+
+    /// The same without terms that no output is made of; a term that is an output and stands nowhere else is written there.
+    pub(super) fn without_unused(self) -> Kernel {
+        let uses = self.uses(&self.outputs);
+        let outputs = self.outputs.iter().flat_map(|(_, entries)| entries);
+        let outputs: Vec<usize> = outputs.filter_map(Code::as_local).collect();
         self.placed(|index| match uses[index] {
             0 => Place::Nowhere,
             1 if outputs.contains(&index) => Place::Inside,
@@ -201,9 +207,7 @@ impl Kernel {
 
     /// The same with each shared term that is used once in its place, where its type is known without a name.
     pub(super) fn nested(self) -> Kernel {
-        let mut uses = vec![0_usize; self.locals.len()];
-        let entries = self.outputs.iter().flat_map(|(_, entries)| entries);
-        self.locals.iter().chain(entries).flat_map(Code::locals).for_each(|index| uses[index] += 1);
+        let uses = self.uses(&self.outputs);
         // the type of what is returned is known
         let outputs = self.outputs.iter().filter(|(_, entries)| entries.len() == 1);
         let returned: Vec<usize> = outputs.flat_map(|(_, entries)| entries[0].as_local()).collect();
@@ -262,14 +266,7 @@ impl Kernel {
 
     /// Which of its terms an output is made of.
     pub fn needed_by(&self, output: usize) -> Vec<bool> {
-        let mut needed = vec![false; self.locals.len()];
-        let mut open: Vec<usize> = self.outputs[output].1.iter().flat_map(Code::locals).collect();
-        while let Some(index) = open.pop() {
-            if !std::mem::replace(&mut needed[index], true) {
-                open.extend(self.locals[index].locals());
-            }
-        }
-        needed
+        self.uses(&self.outputs[output..=output]).into_iter().map(|uses| uses > 0).collect()
     }
 }
 
