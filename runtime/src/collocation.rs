@@ -141,7 +141,6 @@ pub fn collocate<T: Scalar, const N: usize, const S: usize, const H: usize>(
 }
 
 // written with loops over arrays in place: calls that make arrays of arrays are not inlined, and stages then do not share vector registers
-#[allow(clippy::needless_range_loop, reason = "several arrays are read and written at each index")]
 impl<T: Scalar, const H: usize> Table<T, H> {
     /// The node of a stage, as a part of the step.
     #[inline]

@@ -395,9 +395,9 @@ impl<T: Real> FreeRotation<T> {
     /// Those with derivatives: by the values of the moments alone it is decided how far series reach.
     #[cold]
     fn of_tensor(
-        inertia: &SMatrix<T, 3, 3>,
+        tensor: &SMatrix<T, 3, 3>,
         h: T,
-        (moments, least): (SVector<f64, 3>, f64),
+        (moments, least): (Vector<f64>, f64),
         tolerance: f64,
     ) -> Option<Self> {
         let values = moments.map(|moment| T::from_f64(moment / least));
@@ -406,7 +406,7 @@ impl<T: Real> FreeRotation<T> {
         }
         let x = values.map(T::recip);
         let reach = series::reach(&x, &series::on_axes(&x), tolerance);
-        let symmetric = SMatrix::<T, 3, 3>::from_fn(|i, j| inertia[(i.max(j), i.min(j))]);
+        let symmetric = SMatrix::<T, 3, 3>::from_fn(|i, j| tensor[(i.max(j), i.min(j))]);
         let relative = symmetric * T::from_f64(least).recip();
         let minors = minors(&relative);
         // the symmetric functions of X are those of J over its determinant

@@ -111,6 +111,7 @@
 #![no_std]
 #![forbid(unsafe_code)]
 #![warn(missing_docs)]
+#![allow(clippy::needless_range_loop, reason = "indices show an algorithm and, below constant bounds, cost no checks")]
 
 #[cfg(feature = "alloc")]
 extern crate alloc;

@@ -36,7 +36,6 @@ macro_rules! unrolled {
 /// Solves A X = B in place of `b`: Gaussian elimination with partial pivoting, X of shape M×K. Returns the sign of det A. `b` is spoilt
 /// where a pivot is zero or not finite; `None` if in all lanes. Cost: M³/3 + M²/2 + M²K multiplications.
 #[inline]
-#[allow(clippy::needless_range_loop)] // Indices show the algorithm and, below constant bounds, cost no checks.
 pub(crate) fn eliminate<T: Scalar, const M: usize, const K: usize>(
     mut a: [[T; M]; M],
     b: &mut [[T; K]; M],
@@ -93,7 +92,6 @@ impl Orientation {
 
 /// Exchanges two rows in the lanes of `mask`.
 #[inline]
-#[allow(clippy::needless_range_loop)] // as above
 fn exchange<T: Scalar, const M: usize, const K: usize>(mask: T::Mask, rows: &mut [[T; K]; M], i: usize, k: usize) {
     for j in 0..K {
         let (x, y) = (rows[i][j], rows[k][j]);
@@ -180,7 +178,6 @@ pub(crate) fn eliminated<T: Scalar, const M: usize>(rows: [[T; M]; M], b: &SVect
 /// *Accuracy and Stability of Numerical Algorithms*, theorem 10.3): M³/6 + 3M²/2 multiplications to leading orders and M divisions, about
 /// half the work of [`solve_dense`] for large M, and no exchanges of rows. Where the pivots differ in sign, [`solve_dense`] takes over.
 #[inline]
-#[allow(clippy::needless_range_loop)] // Indices show the algorithm and, below constant bounds, cost no checks.
 pub fn solve_symmetric<T: Scalar, const M: usize>(a: &SMatrix<T, M, M>, b: &SVector<T, M>) -> Solution<T, M> {
     let mut l = rows(a);
     let mut x: [T; M] = from_fn(|i| b[i]);

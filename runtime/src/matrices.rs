@@ -56,7 +56,6 @@ pub fn determinant<T: Scalar, const N: usize>(a: &SMatrix<T, N, N>) -> T {
     T::from_lanes(|lane| determinant_of_one(rows(&a.lane(lane))))
 }
 
-#[allow(clippy::needless_range_loop)] // Indices show the algorithm and, below constant bounds, cost no checks.
 fn determinant_of_one<T: Real, const N: usize>(mut a: [[T; N]; N]) -> T {
     let mut determinant = T::one();
     for k in 0..N {
@@ -137,7 +136,6 @@ pub fn axial<T: Scalar>(a: &SMatrix<T, 3, 3>) -> SVector<T, 3> {
 
 /// Σ x_k E_k in the basis E_ji − E_ij of so(n), i < j in the order (12) (13) … (n−1 n): the rotation of axis i towards axis j.
 #[inline]
-#[allow(clippy::needless_range_loop)] // Indices show the symmetry and, below constant bounds, cost no checks.
 pub fn skew<T: Scalar, const M: usize, const N: usize>(x: &SVector<T, M>) -> SMatrix<T, N, N> {
     let mut z = [[T::zero(); N]; N];
     let mut coordinates = x.data.0.iter().flatten();
@@ -153,7 +151,6 @@ pub fn skew<T: Scalar, const M: usize, const N: usize>(x: &SVector<T, M>) -> SMa
 
 /// The components ⟨A, E_k⟩ = A_ji − A_ij in that basis.
 #[inline]
-#[allow(clippy::needless_range_loop)] // as above
 pub fn skew_components<T: Scalar, const N: usize, const M: usize>(a: &SMatrix<T, N, N>) -> SVector<T, M> {
     let mut components = [T::zero(); M];
     let mut next = components.iter_mut();

@@ -99,8 +99,7 @@ impl<T: Real, const N: usize> Schur<T, N> {
                         [[i, j, p.first], [j, i, q.first]].map(|[i, j, count]| dot(&t, i, &y, j, count));
                     entry(&right, i, j) + above - left
                 };
-                let (found, sign) =
-                    if p.first == q.first { alone(&self.t, *p, rest)? } else { pair(&self.t, *p, *q, rest)? };
+                let (found, sign) = if p.first == q.first { self.alone(*p, rest)? } else { self.pair(*p, *q, rest)? };
                 orientation = orientation * sign;
                 for (k, value) in found.into_iter().enumerate() {
                     let (i, j) = (p.first + k / 2, q.first + k % 2);
@@ -114,6 +113,43 @@ impl<T: Real, const N: usize> Schur<T, N> {
         let y = matrix(y);
         Some((skew_components(&(q * y * q.transpose())) * T::from_ratio(1, 2), orientation))
     }
+
+    /// Y_pp, row by row: skew, so that it is 0 but for the number y with (t₁₁ + t₂₂) y = `rest` of a block of two rows.
+    fn alone(&self, p: Block, rest: impl Fn(usize, usize) -> T) -> Option<([T; 4], Orientation)> {
+        let zero = T::zero();
+        if p.size < 2 {
+            return Some(([zero; 4], Orientation::POSITIVE));
+        }
+        let (i, j) = (p.first, p.first + 1);
+        let ([y], sign) = quotient(rest(i, j), entry(&self.t, i, i) + entry(&self.t, j, j))?;
+        Some(([zero, y, -y, zero], sign))
+    }
+
+    /// Y_pq, row by row, with T_ppᵀ Y_pq + Y_pq T_qq = `rest`.
+    fn pair(&self, p: Block, q: Block, rest: impl Fn(usize, usize) -> T) -> Option<([T; 4], Orientation)> {
+        let t = &self.t;
+        if p.size == 1 && q.size == 1 {
+            let ([y], sign) =
+                quotient(rest(p.first, q.first), entry(t, p.first, p.first) + entry(t, q.first, q.first))?;
+            return Some(([y, T::zero(), T::zero(), T::zero()], sign));
+        }
+        let holds = |row: usize| row / 2 < p.size && row % 2 < q.size;
+        let matrix: [[T; 4]; 4] = from_fn(|row| {
+            let (i, j) = (row / 2, row % 2);
+            from_fn(|column| {
+                let (k, l) = (column / 2, column % 2);
+                if !(holds(row) && holds(column)) {
+                    return if row == column { T::one() } else { T::zero() };
+                }
+                let above = if j == l { entry(t, p.first + k, p.first + i) } else { T::zero() };
+                let left = if i == k { entry(t, q.first + l, q.first + j) } else { T::zero() };
+                above + left
+            })
+        });
+        let mut y = from_fn(|row| [if holds(row) { rest(p.first + row / 2, q.first + row % 2) } else { T::zero() }]);
+        let orientation = eliminate(matrix, &mut y)?;
+        Some((y.map(|[y]| y), orientation))
+    }
 }
 
 /// Σ a_ik b_jk, k < `count`.
@@ -126,50 +162,6 @@ fn set<T: Real, const N: usize>(rows: &mut [[T; N]; N], i: usize, j: usize, valu
     if let Some(entry) = rows.get_mut(i).and_then(|row| row.get_mut(j)) {
         *entry = value;
     }
-}
-
-/// Y_pp, row by row: skew, so that it is 0 but for the number y with (t₁₁ + t₂₂) y = `rest` of a block of two rows.
-fn alone<T: Real, const N: usize>(
-    t: &[[T; N]; N],
-    p: Block,
-    rest: impl Fn(usize, usize) -> T,
-) -> Option<([T; 4], Orientation)> {
-    let zero = T::zero();
-    if p.size < 2 {
-        return Some(([zero; 4], Orientation::POSITIVE));
-    }
-    let (i, j) = (p.first, p.first + 1);
-    let ([y], sign) = quotient(rest(i, j), entry(t, i, i) + entry(t, j, j))?;
-    Some(([zero, y, -y, zero], sign))
-}
-
-/// Y_pq, row by row, with T_ppᵀ Y_pq + Y_pq T_qq = `rest`.
-fn pair<T: Real, const N: usize>(
-    t: &[[T; N]; N],
-    p: Block,
-    q: Block,
-    rest: impl Fn(usize, usize) -> T,
-) -> Option<([T; 4], Orientation)> {
-    if p.size == 1 && q.size == 1 {
-        let ([y], sign) = quotient(rest(p.first, q.first), entry(t, p.first, p.first) + entry(t, q.first, q.first))?;
-        return Some(([y, T::zero(), T::zero(), T::zero()], sign));
-    }
-    let holds = |row: usize| row / 2 < p.size && row % 2 < q.size;
-    let matrix: [[T; 4]; 4] = from_fn(|row| {
-        let (i, j) = (row / 2, row % 2);
-        from_fn(|column| {
-            let (k, l) = (column / 2, column % 2);
-            if !(holds(row) && holds(column)) {
-                return if row == column { T::one() } else { T::zero() };
-            }
-            let above = if j == l { entry(t, p.first + k, p.first + i) } else { T::zero() };
-            let left = if i == k { entry(t, q.first + l, q.first + j) } else { T::zero() };
-            above + left
-        })
-    });
-    let mut y = from_fn(|row| [if holds(row) { rest(p.first + row / 2, q.first + row % 2) } else { T::zero() }]);
-    let orientation = eliminate(matrix, &mut y)?;
-    Some((y.map(|[y]| y), orientation))
 }
 
 /// a/b and the sign of b; `None` where it is 0 or not finite.

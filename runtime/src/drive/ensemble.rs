@@ -145,7 +145,7 @@ impl<S: Clebsch, M: Method<S>> Ensemble<S, M> {
     /// So many steps of every body, a few after the other: those whose numbers are near are near in memory.
     pub fn advance(&mut self, steps: u64) {
         for (group, chunks) in self.chunks.chunks_mut(chunk::TOGETHER).enumerate() {
-            chunk::advance(chunks, from(&self.steppers, group * chunk::TOGETHER), self.steps, steps);
+            Chunk::advance(chunks, from(&self.steppers, group * chunk::TOGETHER), self.steps, steps);
         }
         self.steps = self.steps.saturating_add(steps);
     }
@@ -227,7 +227,7 @@ where
         const SHARE: usize = 4;
         let (first, steppers) = (self.steps, &self.steppers);
         self.chunks.par_chunks_mut(chunk::TOGETHER).enumerate().with_min_len(SHARE).for_each(|(group, chunks)| {
-            chunk::advance(chunks, from(steppers, group * chunk::TOGETHER), first, steps);
+            Chunk::advance(chunks, from(steppers, group * chunk::TOGETHER), first, steps);
         });
         self.steps = self.steps.saturating_add(steps);
     }

@@ -1,6 +1,7 @@
 //! One lane of an equation as an equation for single numbers: what Newton's method has left undecided is solved lane by lane.
 
-use super::{Equation, Jacobian, QUICK, at_identity, not_converged, path, size, with_derivatives};
+use super::path::Homotopy;
+use super::{Equation, Jacobian, QUICK, at_identity, not_converged, size, with_derivatives};
 use crate::orientation::Orientation;
 
 use crate::{Error, Mask, Scalar, Space};
@@ -28,7 +29,7 @@ pub(super) fn follow<T: Scalar, E: Equation<T, M, N>, const M: usize, const N: u
         let found = match E::limit() {
             // decided where the program is made: a limit that Newton's method may use up leaves no path to follow
             Some(limit) if limit <= QUICK => Err(unfinished(&equation, &own, &xi.lane(lane), made)),
-            limit => path::follow(&equation, &own, made, limit),
+            limit => Homotopy::follow(&equation, &own, made, limit),
         };
         match found {
             Ok(found) => {

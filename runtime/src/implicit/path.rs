@@ -11,56 +11,57 @@ use super::{Equation, Jacobian, allowed, is_much_smaller, size};
 use crate::space::larger;
 use crate::{Error, Real, Space};
 use nalgebra::SVector;
-use point::{Homotopy, PathPoint};
+pub(super) use point::Homotopy;
+use point::PathPoint;
 
 /// Bound on the linearisations in following one path; the step that reaches it is finished, which takes at most four more.
 pub const LINEARIZATIONS: u32 = 1024;
 
-/// The solution for s = 1 on the branch from the identity, in not more than `limit` iterations with those that were `made` before.
-#[cold]
-#[inline(never)]
-pub(super) fn follow<T: Real, const M: usize, const N: usize>(
-    equation: &impl Equation<T, M, N>,
-    target: &SVector<T, N>,
-    made: u32,
-    limit: Option<u32>,
-) -> Result<SVector<T, M>, Error> {
-    if !target.is_finite() {
-        return Err(Error::NotFinite { name: "the momentum" });
-    }
-    let most = allowed(LINEARIZATIONS, limit, made);
-    let (mut homotopy, mut here) = Homotopy::start(equation, target, made, most)?;
-    if homotopy.scale == T::zero() {
-        return Ok(here.xi);
-    }
-    let (half, eighth, two) = (T::from_ratio(1, 2), T::from_ratio(1, 8), T::from_f64(2.0));
-    let mut length = T::from_ratio(1, 4);
-    while homotopy.is_affordable() {
-        if let Some(xi) = homotopy.land(&here, length * two) {
-            return Ok(xi);
+impl<'a, T: Real, E: Equation<T, M, N>, const M: usize, const N: usize> Homotopy<'a, T, E, M, N> {
+    /// The solution for s = 1 on the branch from the identity, in not more than `limit` iterations with those that were `made` before.
+    #[cold]
+    #[inline(never)]
+    pub fn follow(
+        equation: &'a E,
+        target: &SVector<T, N>,
+        made: u32,
+        limit: Option<u32>,
+    ) -> Result<SVector<T, M>, Error> {
+        if !target.is_finite() {
+            return Err(Error::NotFinite { name: "the momentum" });
         }
-        let parameter = homotopy.fastest(&here);
-        match homotopy.step(&here, parameter, length) {
-            Some(next) if next.is_past || next.s >= T::one() => {
-                return bracket::decide(&mut homotopy, here, next, parameter);
+        let most = allowed(LINEARIZATIONS, limit, made);
+        let (mut homotopy, mut here) = Self::start(equation, target, made, most)?;
+        if homotopy.scale == T::zero() {
+            return Ok(here.xi);
+        }
+        let (half, eighth, two) = (T::from_ratio(1, 2), T::from_ratio(1, 8), T::from_f64(2.0));
+        let mut length = T::from_ratio(1, 4);
+        while homotopy.is_affordable() {
+            if let Some(xi) = homotopy.land(&here, length * two) {
+                return Ok(xi);
             }
-            Some(next) => {
-                here = next;
-                // Longer steps far out, for paths that leave the chart.
-                let longest = larger(half, homotopy.distance(&here.xi, here.s) * half);
-                length = if length * two < longest { length * two } else { longest };
+            let parameter = homotopy.fastest(&here);
+            match homotopy.step(&here, parameter, length) {
+                Some(next) if next.is_past || next.s >= T::one() => {
+                    return bracket::decide(&mut homotopy, here, next, parameter);
+                }
+                Some(next) => {
+                    here = next;
+                    // Longer steps far out, for paths that leave the chart.
+                    let longest = larger(half, homotopy.distance(&here.xi, here.s) * half);
+                    length = if length * two < longest { length * two } else { longest };
+                }
+                None => length *= eighth,
             }
-            None => length *= eighth,
+            // Steps that cannot be seen: the path ends here, in a point where several folds meet.
+            if length <= T::from_f64(8.0) * T::EPSILON * homotopy.distance(&here.xi, here.s) {
+                return Err(Error::unsolvable(here.s));
+            }
         }
-        // Steps that cannot be seen: the path ends here, in a point where several folds meet.
-        if length <= T::from_f64(8.0) * T::EPSILON * homotopy.distance(&here.xi, here.s) {
-            return Err(Error::unsolvable(here.s));
-        }
+        Err(homotopy.exhausted(&here))
     }
-    Err(homotopy.exhausted(&here))
-}
 
-impl<T: Real, E: Equation<T, M, N>, const M: usize, const N: usize> Homotopy<'_, T, E, M, N> {
     /// Newton's method for s = 1 from the tangent at `here`, if that is within `reach` and contracts cleanly on the branch.
     fn land(&mut self, here: &PathPoint<T, M>, reach: T) -> Option<SVector<T, M>> {
         let distance = T::one() - here.s;

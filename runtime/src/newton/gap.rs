@@ -23,7 +23,6 @@ pub(crate) fn arc_per_chord<T: Real>(along: T, across: T) -> Option<T> {
 
 /// A⁻¹b by L Δ Lᵀ; `None` where a pivot is below √ε of its diagonal.
 #[inline]
-#[allow(clippy::needless_range_loop)] // Indices show the algorithm and, below constant bounds, cost no checks.
 pub fn regular<T: Real, const M: usize>(a: &SMatrix<T, M, M>, b: &SVector<T, M>) -> Option<SVector<T, M>> {
     let mut l = rows(a);
     let largest = (0..M).fold(T::zero(), |max, i| larger(max, a[(i, i)]));

@@ -16,7 +16,6 @@ pub(crate) struct Ldl<T, const M: usize> {
 /// Pivots below so many units in the last place of their diagonal are not trusted.
 pub(crate) const UNITS: f64 = 16.0;
 
-#[allow(clippy::needless_range_loop)] // Indices show the algorithm and, below constant bounds, cost no checks.
 impl<T: Real, const M: usize> Ldl<T, M> {
     /// Where all of Δ has the sign of `sign`.
     #[inline]

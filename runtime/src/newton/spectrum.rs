@@ -26,19 +26,45 @@ impl<T: Real, const M: usize> Spectrum<T, M> {
     #[cold]
     pub fn of(a: &SMatrix<T, M, M>) -> Self {
         let mut a = SMatrix::<T, M, M>::from_fn(|i, j| if i >= j { a[(i, j)] } else { a[(j, i)] });
-        let mut vectors = SMatrix::from_fn(|i, j| if i == j { T::one() } else { T::zero() });
+        let vectors = SMatrix::from_fn(|i, j| if i == j { T::one() } else { T::zero() });
+        let mut spectrum = Self { values: SVector::zeros(), vectors };
         for _ in 0..SWEEPS {
             let mut rotated = false;
             for q in 1..M {
                 for p in 0..q {
-                    rotated |= annihilate(&mut a, &mut vectors, p, q);
+                    rotated |= spectrum.annihilate(&mut a, p, q);
                 }
             }
             if !rotated {
                 break;
             }
         }
-        Self { values: SVector::from_fn(|i, _| a[(i, i)]), vectors }
+        Self { values: a.diagonal(), ..spectrum }
+    }
+
+    /// The rotation of rows and columns p and q that makes a_pq vanish; `false` where it is nothing beside the diagonal.
+    fn annihilate(&mut self, a: &mut SMatrix<T, M, M>, p: usize, q: usize) -> bool {
+        let off = a[(p, q)];
+        let tiny = T::EPSILON * T::from_ratio(1, 4);
+        if off.abs() <= tiny * (a[(p, p)].abs() + a[(q, q)].abs()) {
+            return false;
+        }
+        let two = T::from_f64(2.0);
+        let ratio = (a[(q, q)] - a[(p, p)]) / (two * off);
+        let size = ratio.abs() + (T::one() + ratio * ratio).sqrt();
+        let tangent = if ratio < T::zero() { -size.recip() } else { size.recip() };
+        let cosine = (T::one() + tangent * tangent).sqrt().recip();
+        let sine = tangent * cosine;
+        let turned = |x: T, y: T| (cosine * x - sine * y, sine * x + cosine * y);
+        for k in 0..M {
+            (a[(k, p)], a[(k, q)]) = turned(a[(k, p)], a[(k, q)]);
+        }
+        for k in 0..M {
+            (a[(p, k)], a[(q, k)]) = turned(a[(p, k)], a[(q, k)]);
+            (self.vectors[(k, p)], self.vectors[(k, q)]) = turned(self.vectors[(k, p)], self.vectors[(k, q)]);
+        }
+        (a[(p, q)], a[(q, p)]) = (T::zero(), T::zero());
+        true
     }
 
     /// V f(Λ) Vᵀ
@@ -89,34 +115,4 @@ impl<T: Real, const M: usize> Equilibrated<T, M> {
         let least = part * self.spectrum.largest();
         self.spectrum.values.iter().filter(|&&value| value > least).count()
     }
-}
-
-/// The rotation of rows and columns p and q that makes a_pq vanish; `false` where it is nothing beside the diagonal.
-fn annihilate<T: Real, const M: usize>(
-    a: &mut SMatrix<T, M, M>,
-    vectors: &mut SMatrix<T, M, M>,
-    p: usize,
-    q: usize,
-) -> bool {
-    let off = a[(p, q)];
-    let tiny = T::EPSILON * T::from_ratio(1, 4);
-    if off.abs() <= tiny * (a[(p, p)].abs() + a[(q, q)].abs()) {
-        return false;
-    }
-    let two = T::from_f64(2.0);
-    let ratio = (a[(q, q)] - a[(p, p)]) / (two * off);
-    let size = ratio.abs() + (T::one() + ratio * ratio).sqrt();
-    let tangent = if ratio < T::zero() { -size.recip() } else { size.recip() };
-    let cosine = (T::one() + tangent * tangent).sqrt().recip();
-    let sine = tangent * cosine;
-    let turned = |x: T, y: T| (cosine * x - sine * y, sine * x + cosine * y);
-    for k in 0..M {
-        (a[(k, p)], a[(k, q)]) = turned(a[(k, p)], a[(k, q)]);
-    }
-    for k in 0..M {
-        (a[(p, k)], a[(q, k)]) = turned(a[(p, k)], a[(q, k)]);
-        (vectors[(k, p)], vectors[(k, q)]) = turned(vectors[(k, p)], vectors[(k, q)]);
-    }
-    (a[(p, q)], a[(q, p)]) = (T::zero(), T::zero());
-    true
 }

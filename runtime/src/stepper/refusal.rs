@@ -23,7 +23,7 @@ impl<S: Clebsch, M: Method<S>> Stepper<S, M> {
             return (*state, <S::Scalar as Scalar>::Mask::nowhere());
         };
         let stepped = next.finite();
-        if stepped.all() { (next, stepped) } else { (merged(&next, state, stepped), stepped) }
+        if stepped.all() { (next, stepped) } else { (Self::merged(&next, state, stepped), stepped) }
     }
 
     /// Why the step of a lane fails; `None` where it does not. The step is made once more, with the momenta of all other lanes NaN: what is
@@ -118,18 +118,14 @@ impl<S: Clebsch, M: Method<S>> Stepper<S, M> {
     pub(super) fn has_gradient(&self, t: S::Scalar, q: &S::Configuration, lane: usize) -> bool {
         M::Scheme::left(self.at(t), q, &S::Momentum::origin()).finite().lane(lane)
     }
-}
 
-/// `next` in the lanes of `stepped`, `before` in the others.
-#[cold]
-fn merged<S: Clebsch, M: Method<S>>(
-    next: &State<S, M>,
-    before: &State<S, M>,
-    stepped: <S::Scalar as Scalar>::Mask,
-) -> State<S, M> {
-    let mut merged = *next;
-    (0..S::Scalar::LANES).filter(|&lane| !stepped.lane(lane)).for_each(|lane| merged.take_lane(lane, before));
-    merged
+    /// `next` in the lanes of `stepped`, `before` in the others.
+    #[cold]
+    fn merged(next: &State<S, M>, before: &State<S, M>, stepped: <S::Scalar as Scalar>::Mask) -> State<S, M> {
+        let mut merged = *next;
+        (0..S::Scalar::LANES).filter(|&lane| !stepped.lane(lane)).for_each(|lane| merged.take_lane(lane, before));
+        merged
+    }
 }
 
 /// The longest step that `tried` solves, to [`WIDTH`], given a step `h` without a solution and the fraction of its momentum that has one.

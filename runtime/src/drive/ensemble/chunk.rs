@@ -99,22 +99,17 @@ impl<S: Clebsch, M: Method<S>> Chunk<State<S, M>> {
     pub fn failures(&self) -> impl Iterator<Item = Failure> + '_ {
         self.failed.iter().map(|failed| failed.failure)
     }
-}
 
-/// `steps` steps of a few chunks, which take turns, by the one stepper or by one each; `first` have been made.
-#[inline]
-pub fn advance<S: Clebsch, M: Method<S>>(
-    chunks: &mut [Chunk<State<S, M>>],
-    steppers: &[Stepper<S, M>],
-    first: u64,
-    steps: u64,
-) {
-    let numbers = first..first.saturating_add(steps);
-    match steppers {
-        [stepper] => numbers.for_each(|step| chunks.iter_mut().for_each(|chunk| chunk.step(stepper, step))),
-        each => {
-            let mut together = |step| chunks.iter_mut().zip(each).for_each(|(chunk, own)| chunk.step(own, step));
-            numbers.for_each(&mut together);
+    /// `steps` steps of a few chunks, which take turns, by the one stepper or by one each; `first` have been made.
+    #[inline]
+    pub fn advance(chunks: &mut [Self], steppers: &[Stepper<S, M>], first: u64, steps: u64) {
+        let numbers = first..first.saturating_add(steps);
+        match steppers {
+            [stepper] => numbers.for_each(|step| chunks.iter_mut().for_each(|chunk| chunk.step(stepper, step))),
+            each => {
+                let mut together = |step| chunks.iter_mut().zip(each).for_each(|(chunk, own)| chunk.step(own, step));
+                numbers.for_each(&mut together);
+            }
         }
     }
 }

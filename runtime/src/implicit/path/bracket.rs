@@ -33,7 +33,7 @@ pub(super) fn decide<T: Real, E: Equation<T, M, N>, const M: usize, const N: usi
         if let Some(xi) = homotopy.land(&before, width) {
             return Ok(xi);
         }
-        let length = if is_bisection { width * half } else { guess(&before, &after, parameter, width) };
+        let length = if is_bisection { width * half } else { before.guess(&after, parameter, width) };
         is_bisection = !is_bisection;
         let mut middle = homotopy.step(&before, parameter, length);
         if middle.is_none() {
@@ -49,17 +49,6 @@ pub(super) fn decide<T: Real, E: Equation<T, M, N>, const M: usize, const N: usi
     Err(homotopy.exhausted(&before))
 }
 
-/// Where to look next: where the tangent reaches s = 1, else where the slope of s vanishes if it is linear between the ends.
-fn guess<T: Real, const M: usize>(before: &PathPoint<T, M>, after: &PathPoint<T, M>, parameter: usize, width: T) -> T {
-    let length = if after.s >= T::one() {
-        (T::one() - before.s) / before.slope_s
-    } else {
-        let (first, last) = (before.slope_s / before.slope(parameter), after.slope_s / after.slope(parameter));
-        width * first / (first - last)
-    };
-    if length > T::zero() && length < width { length } else { width * T::from_ratio(1, 2) }
-}
-
 impl<T: Real, const M: usize> PathPoint<T, M> {
     /// The value of an unknown.
     fn value(&self, parameter: usize) -> T {
@@ -69,5 +58,16 @@ impl<T: Real, const M: usize> PathPoint<T, M> {
     /// Its change along the tangent.
     fn slope(&self, parameter: usize) -> T {
         self.slope_xi.as_slice().get(parameter).copied().unwrap_or(self.slope_s)
+    }
+
+    /// Where to look next: where the tangent reaches s = 1, else where the slope of s vanishes if it is linear between the ends.
+    fn guess(&self, after: &Self, parameter: usize, width: T) -> T {
+        let length = if after.s >= T::one() {
+            (T::one() - self.s) / self.slope_s
+        } else {
+            let (first, last) = (self.slope_s / self.slope(parameter), after.slope_s / after.slope(parameter));
+            width * first / (first - last)
+        };
+        if length > T::zero() && length < width { length } else { width * T::from_ratio(1, 2) }
     }
 }

@@ -8,7 +8,7 @@ use nalgebra::SVector;
 
 /// A point (ξ, s) of the path with its unit tangent, in the direction away from the identity.
 #[derive(Clone, Copy)]
-pub(super) struct PathPoint<T: Real, const M: usize> {
+pub(crate) struct PathPoint<T: Real, const M: usize> {
     pub xi: SVector<T, M>,
     pub s: T,
     pub slope_xi: SVector<T, M>,
@@ -18,7 +18,7 @@ pub(super) struct PathPoint<T: Real, const M: usize> {
 }
 
 /// The equation ρ(ξ; sμ) = 0 in the M + 1 unknowns (ξ, s).
-pub(super) struct Homotopy<'a, T: Real, E: Equation<T, M, N>, const M: usize, const N: usize> {
+pub(crate) struct Homotopy<'a, T: Real, E: Equation<T, M, N>, const M: usize, const N: usize> {
     pub equation: &'a E,
     /// Terms for the target 0.
     still: E::Terms,
