@@ -182,7 +182,8 @@ impl<T: Real> FreeRotation4<T> {
             }
             parts *= 2;
         }
-        Ok(Constants::by_series(T::from_f64(f64::from(fewest))))
+        let parts = T::from_f64(f64::from(fewest));
+        Ok(Constants { parts, by_series: T::one(), step: parts.recip(), ..Constants::read(&Space::<T>::origin()) })
     }
 
     /// F − I and the momentum after a part of a motion, by one series, or by some of half the time, of a quarter, …: each as long as it may be.

@@ -9,9 +9,18 @@ use core::ops::{Add, AddAssign, BitAnd, BitOr, BitXor, Div, DivAssign, Mul, MulA
 use num_traits::{One, Zero};
 use wide::{f32x8, f64x4, f64x8};
 
-/// Binary operators of the vector that a type wraps, and those that assign.
+/// Operators of the vector that a type wraps: one of a single number, binary ones, and those that assign.
 macro_rules! operators {
-    ($type:ident; $($trait:ident $method:ident $($assign:ident $assign_method:ident)?),*) => {$(
+    ($type:ident; $unary:ident $unary_method:ident, $($trait:ident $method:ident $($assign:ident $assign_method:ident)?),*) => {
+        impl $unary for $type {
+            type Output = Self;
+
+            #[inline]
+            fn $unary_method(self) -> Self {
+                Self($unary::$unary_method(self.0))
+            }
+        }
+        $(
         impl $trait for $type {
             type Output = Self;
 
@@ -27,7 +36,8 @@ macro_rules! operators {
                 self.0 = $trait::$method(self.0, other.0);
             }
         })?
-    )*};
+        )*
+    };
 }
 
 /// Functions of a number, lane by lane.
@@ -98,17 +108,8 @@ macro_rules! lanes {
             }
         }
 
-        operators!($lanes; Add add AddAssign add_assign, Sub sub SubAssign sub_assign,
+        operators!($lanes; Neg neg, Add add AddAssign add_assign, Sub sub SubAssign sub_assign,
                    Mul mul MulAssign mul_assign, Div div DivAssign div_assign);
-
-        impl Neg for $lanes {
-            type Output = Self;
-
-            #[inline]
-            fn neg(self) -> Self {
-                Self(-self.0)
-            }
-        }
 
         impl Zero for $lanes {
             #[inline]
@@ -132,16 +133,7 @@ macro_rules! lanes {
         #[derive(Clone, Copy, Debug)]
         pub struct $mask($vector);
 
-        operators!($mask; BitAnd bitand, BitOr bitor, BitXor bitxor);
-
-        impl Not for $mask {
-            type Output = Self;
-
-            #[inline]
-            fn not(self) -> Self {
-                Self(!self.0)
-            }
-        }
+        operators!($mask; Not not, BitAnd bitand, BitOr bitor, BitXor bitxor);
 
         impl Mask for $mask {
             #[inline]

@@ -2,9 +2,7 @@
 
 use crate::{Scalar, Space};
 
-/// a + b as the rounded sum and what rounding took from it, whichever is the larger.
-///
-/// Source: Knuth, *The Art of Computer Programming* 2, §4.2.2, theorem B (the error of a sum, due to Møller).
+/// a + b as the rounded sum and what rounding took from it, whichever is the larger: the source is that of [`Clock`](crate::Clock).
 #[inline(always)]
 pub(crate) fn exact_sum<T: Scalar>(a: T, b: T) -> (T, T) {
     let sum = a + b;

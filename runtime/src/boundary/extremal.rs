@@ -32,9 +32,7 @@ impl<S: Variational<M, Scalar: Real>, const M: usize> Node<S, M> {
     pub(super) fn correction(&self, motion: &SVector<S::Scalar, M>) -> SVector<S::Scalar, M> {
         -self.feedback.shift - self.feedback.gain * motion
     }
-}
 
-impl<S: Clebsch, const M: usize> Node<S, M> {
     getters! {
         /// The configuration q_k where the edge starts.
         ref configuration: S::Configuration;
@@ -55,7 +53,7 @@ impl<S: Clebsch, const M: usize> Node<S, M> {
     }
 }
 
-copied!(Node<S, M> where [S: Clebsch, const M: usize]: configuration, increment, momentum, gain);
+copied!(Node<S, M> where [S: Variational<M, Scalar: Real>, const M: usize]: configuration, increment, momentum, gain);
 
 /// A critical path between fixed endpoints, solved to round-off by [`Boundary::solve`](crate::Boundary::solve): its nodes are the path itself.
 pub struct Extremal<'a, S: Variational<M, Scalar: Real>, const M: usize, B: Differentiated<S, M> = Declared> {

@@ -6,6 +6,8 @@ use crate::power::{Point, Power, SiteMomentum};
 use crate::scheme::{At, Scheme};
 use crate::{Clebsch, Clock, Conserves, Error, Scalar, Space, Stepper, Time};
 use core::fmt::{self, Display, Formatter};
+use core::iter::once;
+use core::mem::swap;
 use num_traits::Zero;
 
 /// Where [`Sites`] keep what they need: for each site a configuration q and a momentum N, and room for the next state.
@@ -17,9 +19,9 @@ pub struct SiteStorage<Points, Momenta> {
     pub configuration: Points,
     /// The momenta to start from.
     pub momentum: Momenta,
-    /// Room for the next configurations and for the gradient of the potential; what is in it does not matter.
+    /// Room for the next configurations and for the gradient of the potential, in this order; what is in it does not matter.
     pub more_points: [Points; 2],
-    /// Room for the next momenta and for the kicks of two states; what is in it does not matter.
+    /// Room for the next momenta and for the kicks of this state and the next, in this order; what is in it does not matter.
     pub more_momenta: [Momenta; 3],
 }
 
@@ -66,10 +68,7 @@ pub struct Sites<P: Clebsch, Points, Momenta, const N: usize> {
     stepper: Stepper<P>,
     time: P::Time,
     steps: u64,
-    /// q, q of the next state, ∂V/∂q
-    points: [Points; 3],
-    /// N, N of the next state, kick, kick of the next state
-    momenta: [Momenta; 4],
+    storage: SiteStorage<Points, Momenta>,
 }
 
 /// A slice as the array of N entries that it is.
@@ -101,13 +100,12 @@ impl<P: Clebsch> Stepper<P> {
         Points: AsRef<[Point<P, N>]> + AsMut<[Point<P, N>]>,
         Momenta: AsRef<[SiteMomentum<P, N>]> + AsMut<[SiteMomentum<P, N>]>,
     {
-        let SiteStorage { configuration, momentum, more_points: [p1, p2], more_momenta: [m1, m2, m3] } = storage;
-        let (points, momenta) = ([configuration, p1, p2], [momentum, m1, m2, m3]);
-        let lengths = points.iter().map(|one| one.as_ref().len()).chain(momenta.iter().map(|one| one.as_ref().len()));
-        if let Some(found) = { lengths }.find(|&found| found != N) {
+        let points = once(&storage.configuration).chain(&storage.more_points).map(|one| one.as_ref().len());
+        let momenta = once(&storage.momentum).chain(&storage.more_momenta).map(|one| one.as_ref().len());
+        if let Some(found) = points.chain(momenta).find(|&found| found != N) {
             return Err(wrong_length::<N>(found));
         }
-        let mut sites = Sites { stepper: self, time: Time::at(Zero::zero()), steps: 0, points, momenta };
+        let mut sites = Sites { stepper: self, time: Time::at(Zero::zero()), steps: 0, storage };
         sites.check()?;
         sites.kick()?;
         Ok(sites)
@@ -132,9 +130,8 @@ where
 
     /// The kick at the configuration, for the steps that start there.
     fn kick(&mut self) -> Result<(), SiteError> {
-        let [q, _, gradient] = &mut self.points;
-        // what is in the room for the next momenta does not matter
-        let [_, next, kick, _] = &mut self.momenta;
+        let SiteStorage { configuration: q, more_points: [_, gradient], more_momenta: [next, kick, _], .. } =
+            &mut self.storage;
         let weight = self.stepper.step_size() * Scalar::from_f64(if P::ORDER == 1 { 0.0 } else { -0.5 });
         let (gradient, kick, next) =
             (array_mut(gradient.as_mut())?, array_mut(kick.as_mut())?, array_mut(next.as_mut())?);
@@ -149,8 +146,8 @@ where
     pub fn step(&mut self) -> Result<(), SiteError> {
         let At { system, constants, t, .. } = self.stepper.at(self.time.now());
         let h = self.stepper.step_size();
-        let [q, next, gradient] = &mut self.points;
-        let [mu, moved, kick, next_kick] = &mut self.momenta;
+        let SiteStorage { configuration: q, momentum: mu, more_points, more_momenta } = &mut self.storage;
+        let ([next, gradient], [moved, kick, next_kick]) = (more_points, more_momenta);
         let (q, mu) = (array(q.as_ref())?, array(mu.as_ref())?);
         let (next, moved) = (array_mut(next.as_mut())?, array_mut(moved.as_mut())?);
         let (gradient, next_kick) = (array_mut(gradient.as_mut())?, array_mut(next_kick.as_mut())?);
@@ -169,9 +166,11 @@ where
         {
             return Err(error);
         }
-        self.points.swap(0, 1);
-        self.momenta.swap(0, 1);
-        self.momenta.swap(2, 3);
+        let SiteStorage { configuration, momentum, more_points: [next, _], more_momenta: [moved, kick, next_kick] } =
+            &mut self.storage;
+        swap(configuration, next);
+        swap(momentum, moved);
+        swap(kick, next_kick);
         (self.time, self.steps) = (time, self.steps.saturating_add(1));
         Ok(())
     }
@@ -186,12 +185,12 @@ where
 
     /// The configurations q of all sites.
     pub fn configuration(&self) -> &[Point<P, N>] {
-        self.points[0].as_ref()
+        self.storage.configuration.as_ref()
     }
 
     /// The momenta N of all sites.
     pub fn momentum(&self) -> &[SiteMomentum<P, N>] {
-        self.momenta[0].as_ref()
+        self.storage.momentum.as_ref()
     }
 
     getters! {
@@ -203,8 +202,7 @@ where
 
     /// The storage, with the present state in front.
     pub fn into_storage(self) -> SiteStorage<Points, Momenta> {
-        let ([configuration, p1, p2], [momentum, m1, m2, m3]) = (self.points, self.momenta);
-        SiteStorage { configuration, momentum, more_points: [p1, p2], more_momenta: [m1, m2, m3] }
+        self.storage
     }
 
     /// The kinetic energy of all sites plus the potential.

@@ -29,11 +29,6 @@ pub(super) struct Constants<T> {
 }
 
 impl<T: Scalar> Constants<T> {
-    /// Those of a motion whose parts are Taylor series.
-    pub fn by_series(parts: T) -> Self {
-        Self { parts, by_series: T::one(), step: parts.recip(), ..Self::read(&Space::<T>::origin()) }
-    }
-
     #[inline]
     pub fn read(&(parts, by_series, step, moments, origin, slopes, casimirs, turn): &Numbers<T>) -> Self {
         Self { parts, by_series, step, moments, origin, slopes, casimirs, turn }
