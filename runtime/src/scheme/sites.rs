@@ -24,13 +24,21 @@ pub trait SiteKicks<S: Power<N>, const N: usize> {
     const START: f64;
     /// That of the kick at the end.
     const END: f64;
-    /// What one step leaves to the next.
-    type Left: LeftKick<Mu<S>> + Space<S::Scalar>;
+    /// What one step leaves to the next: a kick, or nothing.
+    type Left: Space<S::Scalar>;
+
+    /// What is left of this kick.
+    fn left(kick: impl FnOnce() -> Mu<S>) -> Self::Left;
+    /// The kick, if it is left.
+    fn kick(left: &Self::Left) -> Option<&Mu<S>>;
+    /// Where to put the next one: `room` where it is not left.
+    fn place<'a>(left: &'a mut Self::Left, room: &'a mut Mu<S>) -> &'a mut Mu<S>;
 }
 
-/// One type for each: the weights at the start and at the end, and what one step leaves to the next.
+/// One type for each: both weights, what one step leaves to the next, and the three functions of that.
 macro_rules! kicks {
-    ($($doc:literal $name:ident: $start:literal, $end:literal, $left:ty;)*) => { $(
+    ($($doc:literal $name:ident: $start:literal, $end:literal, $left:ty,
+       |$kick:pat_param| $made:expr, |$one:pat_param| $given:expr, |$next:pat_param, $room:pat_param| $place:expr;)*) => { $(
         #[doc = $doc]
         pub struct $name;
 
@@ -38,56 +46,30 @@ macro_rules! kicks {
             const START: f64 = $start;
             const END: f64 = $end;
             type Left = $left;
+
+            #[inline(always)]
+            fn left($kick: impl FnOnce() -> Mu<S>) -> $left {
+                $made
+            }
+
+            #[inline(always)]
+            fn kick($one: &$left) -> Option<&Mu<S>> {
+                $given
+            }
+
+            #[inline(always)]
+            fn place<'a>($next: &'a mut $left, $room: &'a mut Mu<S>) -> &'a mut Mu<S> {
+                $place
+            }
         }
     )* };
 }
 
 kicks! {
-    "Half a kick before the moves, and half of one after them." BothKicks: -0.5, -0.5, S::Momentum;
-    "A kick after the moves." EndKick: 0.0, -1.0, ();
-    "No kick." NoKick: 0.0, 0.0, ();
-}
-
-/// The kick that one step leaves to the next, or nothing.
-pub trait LeftKick<V> {
-    /// Of this kick.
-    fn of(kick: impl FnOnce() -> V) -> Self;
-    /// The kick, if it is left.
-    fn kick(&self) -> Option<&V>;
-    /// Where to put the next one: `room` where it is not left.
-    fn place<'a>(&'a mut self, room: &'a mut V) -> &'a mut V;
-}
-
-impl<M, const N: usize> LeftKick<[M; N]> for [M; N] {
-    #[inline(always)]
-    fn of(kick: impl FnOnce() -> [M; N]) -> Self {
-        kick()
-    }
-
-    #[inline(always)]
-    fn kick(&self) -> Option<&[M; N]> {
-        Some(self)
-    }
-
-    #[inline(always)]
-    fn place<'a>(&'a mut self, _: &'a mut [M; N]) -> &'a mut [M; N] {
-        self
-    }
-}
-
-impl<M, const N: usize> LeftKick<[M; N]> for () {
-    #[inline(always)]
-    fn of(_: impl FnOnce() -> [M; N]) {}
-
-    #[inline(always)]
-    fn kick(&self) -> Option<&[M; N]> {
-        None
-    }
-
-    #[inline(always)]
-    fn place<'a>(&'a mut self, room: &'a mut [M; N]) -> &'a mut [M; N] {
-        room
-    }
+    "Half a kick before the moves, and half of one after them." BothKicks: -0.5, -0.5, S::Momentum,
+        |kick| kick(), |left| Some(left), |left, _| left;
+    "A kick after the moves." EndKick: 0.0, -1.0, (), |_| (), |()| None, |(), room| room;
+    "No kick." NoKick: 0.0, 0.0, (), |_| (), |()| None, |(), room| room;
 }
 
 impl<S: Power<N>, K: SiteKicks<S, N>, const N: usize> Scheme<S> for SitesInTurn<K, N> {
@@ -97,7 +79,7 @@ impl<S: Power<N>, K: SiteKicks<S, N>, const N: usize> Scheme<S> for SitesInTurn<
 
     #[inline]
     fn left(at: At<'_, S>, q: &Q<S>, _: &Mu<S>) -> K::Left {
-        K::Left::of(|| at.system.power_kick(at.t, q, at.constants.part(K::START)))
+        K::left(|| at.system.power_kick(at.t, q, at.constants.part(K::START)))
     }
 
     #[inline]
@@ -112,11 +94,11 @@ impl<S: Power<N>, K: SiteKicks<S, N>, const N: usize> Scheme<S> for SitesInTurn<
         (): &(),
         (next, moved, next_left): (&mut Q<S>, &mut Mu<S>, &mut K::Left),
     ) -> Result<(), Error> {
-        system.drift_into(constants, t, q, mu, left.kick(), next, moved).map_err(|(_, error)| error)?;
+        system.drift_into(constants, t, q, mu, K::kick(left), next, moved).map_err(|(_, error)| error)?;
         if K::END != 0.0 {
             let mut gradient = [Space::origin(); N];
             let mut room = [Space::origin(); N];
-            let kick = next_left.place(&mut room);
+            let kick = K::place(next_left, &mut room);
             system.kick_into(t + constants.h, next, constants.part(K::END), &mut gradient, kick, moved);
         }
         Ok(())
@@ -136,12 +118,12 @@ impl<S: Power<N>, K: SiteKicks<S, N>, const N: usize> Scheme<S> for SitesInTurn<
         let mut clock = Clock::at(t);
         for _ in 0..steps {
             for i in 0..N {
-                let n = left.kick().map_or(mu[i], |kick| plus(&mu[i], &kick[i]));
+                let n = K::kick(&left).map_or(mu[i], |kick| plus(&mu[i], &kick[i]));
                 (q[i], mu[i]) = system.moved(constants, clock.now(), i, &q[i], &n)?;
             }
             clock = clock.after_step(constants.h);
             if K::END != 0.0 {
-                let kick = left.place(&mut room);
+                let kick = K::place(&mut left, &mut room);
                 system.kick_into(clock.now(), &q, constants.part(K::END), &mut gradient, kick, &mut mu);
             }
         }

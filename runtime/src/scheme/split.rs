@@ -42,36 +42,33 @@ pub trait Kicks<const K: usize> {
     const KICKS: [Kick; K];
 }
 
-/// Order 4, four kicks.
-pub struct GradientFour;
+/// Splittings, each with its kicks.
+macro_rules! splittings {
+    ($($doc:literal $name:ident: $count:literal = $kicks:expr;)*) => { $(
+        #[doc = $doc]
+        pub struct $name;
 
-impl Kicks<4> for GradientFour {
-    const KICKS: [Kick; 4] = [
+        impl Kicks<$count> for $name {
+            const KICKS: [Kick; $count] = $kicks;
+        }
+    )* };
+}
+
+splittings! {
+    "Order 4, four kicks." GradientFour: 4 = [
         kick(0.069_431_844_202_973_71, 0.173_927_422_568_726_92, 0.000_238_038_871_179_946_26),
         kick(0.260_577_634_004_598_16, 0.326_072_577_431_273_05, 0.001_460_348_652_924_354_3),
         kick(0.339_981_043_584_856_26, 0.326_072_577_431_273_05, 0.001_460_348_652_924_354_3),
         kick(0.260_577_634_004_598_16, 0.173_927_422_568_726_92, 0.000_238_038_871_179_946_26),
     ];
-}
-
-/// Order 6, five kicks; the second and the fourth lie outside the step and are weak.
-pub struct GradientSix;
-
-impl Kicks<5> for GradientSix {
-    const KICKS: [Kick; 5] = [
+    "Order 6, five kicks; the second and the fourth lie outside the step and are weak." GradientSix: 5 = [
         kick(0.132_793_133_546_899_34, 0.293_280_560_323_112_45, 0.002_167_707_618_081_581),
         kick(-0.290_604_120_144_448_3, 0.004_900_351_437_300_99, -0.000_033_260_037_789_472_71),
         kick(0.657_810_986_597_549, 0.403_638_176_479_173_16, 0.001_637_619_689_152_927),
         kick(0.657_810_986_597_549, 0.004_900_351_437_300_99, -0.000_033_260_037_789_472_71),
         kick(-0.290_604_120_144_448_3, 0.293_280_560_323_112_45, 0.002_167_707_618_081_581),
     ];
-}
-
-/// Order 4 without force gradients, six kicks.
-pub struct PlainFour;
-
-impl Kicks<6> for PlainFour {
-    const KICKS: [Kick; 6] = [
+    "Order 4 without force gradients, six kicks." PlainFour: 6 = [
         kick(0.079_203_696_431_195_7, 0.209_515_106_613_362, 0.0),
         kick(0.353_172_906_049_774, -0.143_851_773_179_818, 0.0),
         kick(-0.042_065_080_357_719_5, 0.434_336_666_566_456, 0.0),
@@ -79,13 +76,7 @@ impl Kicks<6> for PlainFour {
         kick(-0.042_065_080_357_719_5, -0.143_851_773_179_818, 0.0),
         kick(0.353_172_906_049_774, 0.209_515_106_613_362, 0.0),
     ];
-}
-
-/// Order 6 without force gradients, ten kicks.
-pub struct PlainSix;
-
-impl Kicks<10> for PlainSix {
-    const KICKS: [Kick; 10] = [
+    "Order 6 without force gradients, ten kicks." PlainSix: 10 = [
         kick(0.050_262_764_400_392_2, 0.148_816_447_901_042, 0.0),
         kick(0.413_514_300_428_344, -0.132_385_865_767_784, 0.0),
         kick(0.045_079_889_794_397_7, 0.067_307_604_692_185, 0.0),
