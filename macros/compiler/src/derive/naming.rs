@@ -1,6 +1,6 @@
 //! Directions of Lie algebras in words.
 
-use clebsch_symbolic::{Group, Rational, Zero, integer};
+use clebsch_symbolic::{Group, Rational, Shape, Zero, integer};
 
 use crate::model::System;
 
@@ -62,40 +62,27 @@ pub(super) fn combination(model: &System<'_>, group: Group, weights: &[Rational]
     let entries = entries(model, group, weights);
     match entries.as_slice() {
         [(i, j, one), (k, l, other)] if (i, j) == (l, k) && *one == -other.clone() => {
-            match group.element_shape().rows {
-                3 => {
-                    // e1^ and e3^ have −1 above the diagonal, e2^ has +1
-                    let positive = (*one < integer(0)) == (j - i == 1);
-                    format!("about {}e{}", if positive { "" } else { "−" }, 3 - i - j + 1)
-                }
-                _ => format!("in the plane of e{} and e{}", i.min(j) + 1, i.max(j) + 1),
+            if group.element_shape().rows != 3 {
+                return format!("in the plane of e{} and e{}", i.min(j) + 1, i.max(j) + 1);
             }
+            // e1^ and e3^ have −1 above the diagonal, e2^ has +1
+            let is_positive = one.is_negative() == (j - i == 1);
+            format!("about {}e{}", if is_positive { "" } else { "−" }, 3 - i - j + 1)
         }
-        _ => format!(
-            "along {}",
-            signed(entries.iter().map(|(i, j, value)| (value.clone(), format!("E{}{}", i + 1, j + 1))))
-        ),
+        _ => {
+            let entries = entries.iter().map(|(i, j, value)| (value.clone(), format!("E{}{}", i + 1, j + 1)));
+            format!("along {}", signed(entries))
+        }
     }
 }
 
 /// The entries that are not zero of Σ w_i E_i.
 fn entries(model: &System<'_>, group: Group, weights: &[Rational]) -> Vec<(usize, usize, Rational)> {
-    let mut entries: Vec<(usize, usize, Rational)> = Vec::new();
-    for block in model.graph.blocks(group).iter() {
-        for (index, element) in model.graph.basis(block.algebra).elements.iter().enumerate() {
-            let weight = &weights[block.offset + index];
-            for (i, j, value) in element.iter().filter(|_| !weight.is_zero()) {
-                let (row, column) = (i + block.row, j + block.column);
-                match entries.iter_mut().find(|(k, l, _)| (*k, *l) == (row, column)) {
-                    Some((_, _, sum)) => *sum += weight * value,
-                    None => entries.push((row, column, weight * value)),
-                }
-            }
-        }
-    }
-    entries.retain(|(_, _, value)| !value.is_zero());
-    entries.sort_by_key(|(i, j, _)| (*i, *j));
-    entries
+    let weights = model.graph.literal(Shape::vector(weights.len()), weights.to_vec());
+    let element = group.wedge(weights);
+    let entry = |(i, j): (usize, usize)| Some((i, j, element.entry(i, j).as_number()?));
+    let entries = element.shape().positions().filter_map(entry);
+    entries.filter(|(_, _, value)| !value.is_zero()).collect()
 }
 
 fn signed(parts: impl Iterator<Item = (Rational, String)>) -> String {

@@ -2,7 +2,7 @@
 
 use clebsch_symbolic::{Expr, Group, Shape, identity, integer, reduce};
 
-use super::symbols::{at_zero, logarithm};
+use super::symbols::{at_zero, logarithm, of_columns};
 use crate::diagnostic::Diagnostics;
 use crate::model::features::{self, Feature, Found};
 use crate::model::{Discretization, Factor, System};
@@ -41,12 +41,10 @@ pub(super) fn moser_veselov<'g>(
     let (h, graph) = (model.step_size, model.graph);
     let mut cost = h * energy.substitute(&at_zero(velocities.iter().copied()));
     for (factor, velocity) in model.factors.iter().zip(velocities) {
-        let Some(inertia) = inertia(energy, velocities, *velocity) else {
-            return Err(refused(model, Feature::CoupledVelocities, velocity));
-        };
-        let Some(mass) = mass_matrix(factor.group, inertia) else {
-            return Err(refused(model, Feature::NoMassMatrix, factor.group.name(graph)));
-        };
+        let inertia = inertia(energy, velocities, *velocity)
+            .ok_or_else(|| refused(model, Feature::CoupledVelocities, velocity))?;
+        let mass = mass_matrix(factor.group, inertia)
+            .ok_or_else(|| refused(model, Feature::NoMassMatrix, factor.group.name(graph)))?;
         let identity = factor.group.identity(graph);
         let f = factor.symbol;
         cost = cost
@@ -81,29 +79,25 @@ pub(super) fn mass_matrix<'g>(group: Group, inertia: Expr<'g>) -> Option<Expr<'g
     let n = group.element_shape().rows;
     let basis = graph.matrices(group);
     // Σ_ij = tr(E_i 𝕄 E_jᵀ): linear in the entries of 𝕄, solved by least squares over the rationals
-    let units: Vec<Expr<'g>> = (0..n)
-        .flat_map(|i| (i..n).map(move |j| (i, j)))
-        .map(|(i, j)| {
-            let square = Shape::square(n);
-            if i == j { graph.unit(square, i, i) } else { graph.unit(square, i, j) + graph.unit(square, j, i) }
-        })
-        .collect();
+    let square = Shape::square(n);
+    let unit = |(i, j): (usize, usize)| {
+        if i == j { graph.unit(square, i, i) } else { graph.unit(square, i, j) + graph.unit(square, j, i) }
+    };
+    let units = square.positions().filter(|(i, j)| i <= j).map(unit);
     let image = |unit: &Expr<'g>| -> Vec<Expr<'g>> {
         basis.iter().flat_map(|a| basis.iter().map(|b| (*a * *unit).dot(*b).expand())).collect()
     };
-    let (units, images) = independent(units.into_iter().map(|unit| (unit, image(&unit))).collect());
-    let shape = Shape::new(images[0].len(), units.len());
-    let map = graph.stack(shape, shape.positions().map(|(row, column)| images[column][row]).collect());
+    let (units, images) = independent(units.map(|unit| (unit, image(&unit))).collect());
+    let map = of_columns(graph, &images);
     let normal = map.transpose() * map;
-    let entries = inertia.shape().positions().map(|(i, j)| inertia.entry(i, j)).collect();
-    let given = graph.stack(Shape::vector(shape.rows), entries);
+    let given = graph.stack(Shape::vector(map.shape().rows), inertia.entries());
     let solution = normal.inverse() * (map.transpose() * given);
     let fits = !normal.has_inverse() && !solution.has_inverse();
     if !fits || !identity::equal(&[map * solution], &[given]) {
         return None;
     }
-    let matrix = units.iter().enumerate().map(|(k, unit)| solution.entry(k, 0).expand() * *unit);
-    matrix.reduce(|sum, term| sum + term)
+    let terms = units.iter().enumerate().map(|(k, unit)| solution.entry(k, 0).expand() * *unit);
+    Some(graph.total(square, terms))
 }
 
 /// The matrices whose images are independent: on SE(2) and SO(2) several 𝕄 have the same Σ, and one of them will do.

@@ -13,7 +13,7 @@ type Field = Matrix<Residue>;
 pub(crate) fn element(graph: &Graph, group: Group, random: &mut impl FnMut() -> Residue) -> Option<Field> {
     match group.chart(graph) {
         Chart::Affine => Some(identity_plus(&algebra_element(graph, group, random), one())),
-        Chart::Cayley => Some(cayley(graph, group, random)),
+        Chart::Cayley => Some(cayley_map(&algebra_element(graph, group, random))),
         _ => product_of_exponentials(graph, group, random),
     }
 }
@@ -33,9 +33,8 @@ fn identity_plus(z: &Field, s: Residue) -> Field {
 }
 
 /// (I − Z)⁻¹(I + Z).
-fn cayley(graph: &Graph, group: Group, random: &mut impl FnMut() -> Residue) -> Field {
-    let z = algebra_element(graph, group, random);
-    identity_plus(&z, negative(one())).inverse().0.multiply(&identity_plus(&z, one()))
+fn cayley_map(z: &Field) -> Field {
+    identity_plus(z, negative(one())).inverse().0.multiply(&identity_plus(z, one()))
 }
 
 /// Whether dF F⁻¹ stays in the algebra along the Cayley map: (I − Z)⁻¹ E_i (I + Z)⁻¹ in the span of the basis, for a random Z.
@@ -62,38 +61,22 @@ fn dense(shape: Shape, element: &Sparse) -> Field {
     matrix
 }
 
-/// Π exp(t_i E_i), each factor by a formula that is rational in a parameter: E nilpotent, E³ = ∓c²E, or E diagonal with integers.
+/// Π exp(t_i E_i), each factor by a formula that is rational in a parameter: E³ = λE, E nilpotent, or E diagonal with integers.
 fn product_of_exponentials(graph: &Graph, group: Group, random: &mut impl FnMut() -> Residue) -> Option<Field> {
     let shape = group.element_shape();
-    let identity = Matrix::scaled_identity(shape.rows, one());
-    graph.elements(group).iter().try_fold(identity, |product, element| {
-        let factor = exponential(&dense(shape, element), element, random())?;
-        Some(product.multiply(&factor))
-    })
+    let mut product = Matrix::scaled_identity(shape.rows, one());
+    for element in graph.elements(group) {
+        product = product.multiply(&exponential(&dense(shape, &element), &element, random())?);
+    }
+    Some(product)
 }
 
 fn exponential(e: &Field, element: &Sparse, t: Residue) -> Option<Field> {
-    let square = e.multiply(e);
-    let cube = square.multiply(e);
-    for c in 1..=4_i64 {
-        let quarter = Residue::from_integer(c * c);
-        let with = |sine: Residue, versine: Residue| {
-            let mut sum = identity_plus(e, sine.multiply(Residue::from_rational(&rational(1, c))));
-            sum.add_scaled(&square, versine.multiply(quarter.reciprocal()));
-            sum
-        };
-        if cube == e.scale(negative(quarter)) {
-            // sin = 2t/(1 + t²), 1 − cos = 2t²/(1 + t²)
-            let denominator = one::<Residue>().add(t.multiply(t)).reciprocal();
-            let double = t.add(t).multiply(denominator);
-            return Some(with(double, double.multiply(t)));
-        }
-        if cube == e.scale(quarter) {
-            // sinh = (s − 1/s)/2, cosh − 1 = (s + 1/s)/2 − 1
-            let half = Residue::from_rational(&rational(1, 2));
-            let (plus, minus) = (t.add(t.reciprocal()), t.add(negative(t.reciprocal())));
-            return Some(with(half.multiply(minus), half.multiply(plus).add(negative(one()))));
-        }
+    let cube = e.multiply(e).multiply(e);
+    let first = e.entries.iter().position(|entry| *entry != zero())?;
+    if cube.scale(e.entries[first]) == e.scale(cube.entries[first]) {
+        // the powers of E are I, E and E²: Cayley's map of tE is the exponential of a multiple of E
+        return Some(cayley_map(&e.scale(t)));
     }
     nilpotent(e, t).or_else(|| diagonal(element, e.shape.rows, t))
 }

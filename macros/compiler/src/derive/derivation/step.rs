@@ -36,24 +36,34 @@ pub(super) fn scheme(formulas: &MechanicsFormulas<'_>, lowered: &Lowered) -> Str
     if formulas.is_compensated() {
         text += COMPENSATED;
     }
-    text + &spaces(formulas) + &tolerance(formulas) + &iterations(formulas)
+    text += &spaces(formulas);
+    text += &tolerance(formulas);
+    if let Some(most) = model.dials.limit() {
+        text += &format!(
+            "At most {most} iterations for each momentum equation, as asked for; a step that needs more is an error.\n"
+        );
+    }
+    text
 }
 
 /// How the momentum equations of a step are solved; both halves of a composed step tell the same, once.
 fn equations(formulas: &MechanicsFormulas<'_>, lowered: &Lowered) -> String {
     let mut told: Vec<String> = Vec::new();
+    let mut tell = |line: String| {
+        if !told.contains(&line) {
+            told.push(line);
+        }
+    };
     for (substep, iterations) in formulas.substeps.iter().zip(&lowered.iterations).take(formulas.stepped) {
         for (equation, iteration) in substep.equations.iter().zip(iterations) {
-            let part = part(formulas, equation);
-            let how = how(formulas, equation, iteration);
-            told.push(format!("The momentum equation for {part} {how}.\n"));
+            let (part, how) = (part(formulas, equation), how(formulas, equation, iteration));
+            tell(format!("The momentum equation for {part} {how}.\n"));
         }
         if formulas.keeps_momentum(substep) && !formulas.turns_whole() {
-            told.push("Both trivialisations of ∂K agree, so the momentum does not change in the drift.\n".to_string());
+            tell("Both trivialisations of ∂K agree, so the momentum does not change in the drift.\n".to_string());
         }
     }
-    let first = told.iter().enumerate().filter(|(position, line)| !told[..*position].contains(line));
-    first.map(|(_, line)| line.as_str()).collect()
+    told.concat()
 }
 
 /// The order of a step of the discrete Lagrangian, and why.
@@ -98,24 +108,20 @@ fn stagger(formulas: &MechanicsFormulas<'_>) -> &'static str {
 /// What keeps configurations on their spaces.
 fn spaces(formulas: &MechanicsFormulas<'_>) -> String {
     let is = |which: fn(&LeafSpace) -> bool| formulas.model.configurations.iter().any(|leaf| which(&leaf.space));
-    let rotations = is(|space| matches!(space, LeafSpace::Group(group) if group.is_orthogonal()));
-    let lengths = is(|space| matches!(space, LeafSpace::Unit | LeafSpace::Group(Group::UnitQuaternions)));
-    let (what, how) = match (rotations, lengths) {
-        (false, false) => return String::new(),
-        (true, false) => ("orthogonal matrices", "by R(3I − RᵀR)/2 once |R(1, …, 1)|² is off N by 8Nε"),
-        (false, true) => ("what has length one", "by q(3 − |q|²)/2 once |q|² is off by 8ε"),
-        (true, true) => (
-            "orthogonal matrices and what has length one",
-            "by R(3I − RᵀR)/2 once |R(1, …, 1)|² is off N by 8Nε, by q(3 − |q|²)/2 once |q|² is off by 8ε",
-        ),
-    };
+    let (mut what, mut how) = (Vec::new(), Vec::new());
+    if is(|space| matches!(space, LeafSpace::Group(group) if group.is_orthogonal())) {
+        what.push("orthogonal matrices");
+        how.push("by R(3I − RᵀR)/2 once |R(1, …, 1)|² is off N by 8Nε");
+    }
+    if is(|space| matches!(space, LeafSpace::Unit | LeafSpace::Group(Group::UnitQuaternions))) {
+        what.push("what has length one");
+        how.push("by q(3 − |q|²)/2 once |q|² is off by 8ε");
+    }
+    if what.is_empty() {
+        return String::new();
+    }
+    let (what, how) = (what.join(" and "), how.join(", "));
     format!("Rounding is taken off {what}, {how}: they stay there for any number of steps of (q, N).\n")
-}
-
-/// How much work a step may be.
-fn iterations(formulas: &MechanicsFormulas<'_>) -> String {
-    let Some(most) = formulas.model.dials.limit() else { return String::new() };
-    format!("At most {most} iterations for each momentum equation, as asked for; a step that needs more is an error.\n")
 }
 
 /// What an iteration that ends early leaves as it is, and what it does not.
@@ -150,15 +156,15 @@ fn collocated(formulas: &MechanicsFormulas<'_>, collocation: &Collocation<'_>) -
         text += "The action moves the origin: J is affine in q.\n";
     }
     let most = formulas.model.dials.limit().unwrap_or(64);
-    text += match &formulas.model.dials.tolerance {
-        None => format!("Slopes are found by sweeps over all stages, {most} at most, until only rounding changes.\n"),
+    let until = match &formulas.model.dials.tolerance {
+        None => "only rounding changes".to_string(),
         Some(tolerance) => format!(
-            "Slopes are found by sweeps over all stages, {most} at most, until the step changes by less than {:e} of q and p, as asked for: that much is missing to a symplectic step, and \
-             energy, momenta and the orbit drift with it.\n",
+            "the step changes by less than {:e} of q and p, as asked for: that much is missing to a symplectic step, and \
+             energy, momenta and the orbit drift with it",
             tolerance.value
         ),
-    }
-    .as_str();
+    };
+    text += &format!("Slopes are found by sweeps over all stages, {most} at most, until {until}.\n");
     if formulas.is_compensated() {
         text += COMPENSATED;
     }
