@@ -13,7 +13,6 @@
 //! x^ y = x × y. Left actions have Φ_gh = Φ_g Φ_h, right actions Φ_gh = Φ_h Φ_g. T*L_F pairs with F·η, T*R_F with η·F.
 
 mod algebra;
-mod bases;
 mod blocks;
 mod construct;
 mod evaluate;
@@ -22,7 +21,6 @@ mod gradient;
 mod graph;
 mod group;
 pub mod identity;
-mod linear;
 mod memory;
 mod node;
 mod powers;

@@ -19,6 +19,11 @@ impl<'g> SystemFormulas<'g> {
         self.generator.iter().map(|motion| motion.substitute(&replaced)).collect()
     }
 
+    /// A function of the time, of a time that is later.
+    pub(super) fn later(&self, part: Expr<'g>, by: Expr<'g>) -> Expr<'g> {
+        part.substitute(&[(self.model.time, self.model.time + by)])
+    }
+
     /// How q moves with ξ.
     pub(super) fn leaves_by_generator(&self) -> Vec<(Expr<'g>, Expr<'g>)> {
         self.model.configurations.iter().map(|leaf| leaf.symbol).zip(self.generator.iter().copied()).collect()

@@ -1,7 +1,37 @@
 //! The catalogue of formulas and kernels: each has an id, by which prints, documentation and the later stages find it.
 
-use super::Reference::{self, ClebschOptimalControl, DiscreteMechanics, LieGroupMethods, MechanicsAndSymmetry};
+use std::fmt;
+
 use Heat::{Cold, Hot};
+use Reference::{ClebschOptimalControl, DiscreteMechanics, LieGroupMethods, MechanicsAndSymmetry};
+
+/// A published source.
+#[derive(Copy, Clone, PartialEq, Eq, Debug)]
+pub enum Reference {
+    /// The two theorems that every step is an instance of.
+    ClebschOptimalControl,
+    /// Discrete Legendre transforms and discrete Noether theorem.
+    DiscreteMechanics,
+    /// Hessians, momentum maps, coadjoint actions and their conventions.
+    MechanicsAndSymmetry,
+    /// The Cayley map as a chart, with the derivative used here.
+    LieGroupMethods,
+}
+
+impl fmt::Display for Reference {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Reference::ClebschOptimalControl => "N. Nordkvist, P. E. Crouch, A. M. Bloch, Discrete Clebsch Optimal Control, theorems 1 and 2",
+            Reference::DiscreteMechanics => {
+                "J. E. Marsden, M. West, Discrete mechanics and variational integrators, Acta Numerica 10 (2001) 357-514"
+            }
+            Reference::MechanicsAndSymmetry => "J. E. Marsden, T. S. Ratiu, Introduction to Mechanics and Symmetry, 2nd edition, Springer 1999",
+            Reference::LieGroupMethods => {
+                "A. Iserles, H. Z. Munthe-Kaas, S. P. Norsett, A. Zanna, Lie-group methods, Acta Numerica 9 (2000) 215-365"
+            }
+        })
+    }
+}
 
 /// How often a formula is computed, which decides how its code is written.
 #[derive(Copy, Clone, PartialEq, Eq, Debug)]

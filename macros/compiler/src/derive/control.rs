@@ -7,7 +7,7 @@
 use clebsch_symbolic::{Block, Chart, Expr, Property, Role, Shape};
 
 use super::SystemFormulas;
-use super::prices::{Direction, Endpoint, Jet, Steering};
+use super::choice::{Direction, Endpoint, Jet, Steering};
 use crate::model::{Discretization, Factor, Motion, Side, Steered, System};
 
 /// The step F(t, h, q, u), as a function of F too where it stands for its value.

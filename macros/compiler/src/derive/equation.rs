@@ -112,23 +112,11 @@ impl<'g> MomentumEquation<'g> {
         let moves = system.is_moving(residual);
         let slope = residual.differential(&directions);
         let kept = factors.iter().any(|&k| is_kept(symbols.charts[k], moves));
-        let directional = if kept { slope } else { slope.expand() };
-        MomentumEquation { moves, ..MomentumEquation::of(components, factors, residual, directional, cleared) }
-    }
-
-    /// An equation of which nothing more is known.
-    pub(super) fn of(
-        components: Vec<usize>,
-        factors: Vec<usize>,
-        residual: Expr<'g>,
-        directional: Expr<'g>,
-        cleared: bool,
-    ) -> MomentumEquation<'g> {
         MomentumEquation {
             components,
             factors,
             residual,
-            directional,
+            directional: if kept { slope } else { slope.expand() },
             cleared,
             solution: Solution::Newton,
             formula: None,
@@ -137,7 +125,7 @@ impl<'g> MomentumEquation<'g> {
             structure: Structure::Dense,
             coupled: Vec::new(),
             is_inertial: true,
-            moves: false,
+            moves,
         }
     }
 

@@ -79,22 +79,17 @@ pub(super) fn equation<'g>(sources: &Sources<'_, 'g>, i: usize) -> MomentumEquat
     let n = block.dimension();
     let letter = |name: &str, shape: Shape, property: Property| graph.symbol(name, shape, Role::Letter, property);
     let m = letter("m", Shape::vector(n), Property::General);
-    let (residual, directional) = if turns_whole(sources.model) {
+    let residual = if turns_whole(sources.model) {
         let mass = letter("J̃", Shape::square(4), Property::Symmetric);
         let turned = letter("F̃", Shape::square(4), Property::Orthogonal);
         let skew = turned * mass - mass * turned.transpose();
-        let group = sources.model.factors[block.factor].group;
-        (group.projected_coordinates(skew) - m, graph.zero(Shape::vector(n)))
+        sources.model.factors[block.factor].group.projected_coordinates(skew) - m
     } else {
         let d = letter("d", Shape::square(3), Property::Symmetric);
-        let hat = Group::SpecialOrthogonal(3).wedge(m);
-        (d * block.coordinates - hat * block.coordinates - m, d * block.direction - hat * block.direction)
+        d * block.coordinates - Group::SpecialOrthogonal(3).wedge(m) * block.coordinates - m
     };
-    let (components, factors) = (block.components().collect(), vec![block.factor]);
-    MomentumEquation {
-        solution: Solution::FreeRotation,
-        ..MomentumEquation::of(components, factors, residual, directional, true)
-    }
+    let equation = MomentumEquation::new(sources, block.components().collect(), residual, true);
+    MomentumEquation { solution: Solution::FreeRotation, ..equation }
 }
 
 /// Σ⁻¹μ, by divisions where Σ is diagonal, else by `inverse`, its inverse.

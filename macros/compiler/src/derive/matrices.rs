@@ -2,7 +2,7 @@
 
 use clebsch_symbolic::{Expr, Shape};
 
-use super::increments::{inserted, inverse_by};
+use super::moves::{inserted, inverse_by};
 use super::{EdgeDerivatives, Id, MechanicsFormulas, SystemFormulas};
 use crate::model::LeafSpace;
 

@@ -7,7 +7,7 @@ mod steps;
 
 use clebsch_symbolic::{Expr, Property};
 
-use super::increments::inverse_by;
+use super::moves::inverse_by;
 use super::{Formula, FormulaTable, Id, MechanicsFormulas, SteeredFormulas, SystemFormulas};
 use crate::model::{LeafSpace, Motion};
 

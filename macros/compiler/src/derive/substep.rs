@@ -53,16 +53,15 @@ impl<'g> Substep<'g> {
         let (before, after) = trivialisation::of_all(model, lagrangian.kinetic);
         let coupling = lagrangian.couples.then(|| sources.coupling(lagrangian.kinetic));
         // the part of the force that depends on the velocity joins the equation, at the time at which the whole step starts
-        let moving = force.as_ref().and_then(|force| force.start_moving.as_ref()).map(|moving| -> Vec<Expr<'g>> {
-            moving.iter().map(|part| -part.substitute(&[(model.time, model.time + begins)])).collect()
-        });
+        let moving = force
+            .as_ref()
+            .and_then(|force| force.start_moving.as_ref())
+            .map(|moving| -> Vec<Expr<'g>> { moving.iter().map(|part| -sources.later(*part, begins)).collect() });
         sources.forced = moving.is_some();
         let coupling = total(coupling, moving);
         let rest = at_rest(model, &before, coupling.as_deref());
         // impulses are functions of the time of the configuration, K of the time at which the whole step starts
-        let earlier = |rest: &[Expr<'g>]| -> Vec<Expr<'g>> {
-            rest.iter().map(|part| part.substitute(&[(model.time, model.time - begins)])).collect()
-        };
+        let earlier = |rest: &Vec<Expr<'g>>| rest.iter().map(|part| sources.later(*part, -begins)).collect();
         let changes = rest.iter().flatten().any(|part| part.depends_on(model.time));
         let other = lagrangian.couples || changes;
         let ends = begins + model.step_size / sources.divisor;
@@ -78,7 +77,7 @@ impl<'g> Substep<'g> {
                 // what comes back after the move is added for the solve alone, and stays out of the sums
                 sources.impulse(lagrangian.start)
             } else {
-                total(sources.impulse(lagrangian.start), rest.as_ref().map(|rest| earlier(rest)))
+                total(sources.impulse(lagrangian.start), rest.as_ref().map(earlier))
             },
             end: sources.impulse(lagrangian.end),
             equations: equations::equations(&sources, &before, coupling.as_deref()),
@@ -144,19 +143,19 @@ pub(super) fn legendre<'g>(
 pub(super) fn adopt_sine<'g>(symbols: &mut Symbols<'g>, substeps: &mut [Substep<'g>]) {
     let count = substeps.len();
     for block in symbols.blocks.clone() {
-        let mut own: Vec<&mut MomentumEquation<'g>> = substeps
-            .iter_mut()
-            .filter_map(|substep| {
-                substep.equations.iter_mut().find(|equation| equation.components.iter().copied().eq(block.components()))
-            })
-            .filter(|equation| equation.sine.is_some())
-            .collect();
+        let mut own = Vec::new();
+        for equation in substeps.iter_mut().flat_map(|substep| &mut substep.equations) {
+            if let Some(form) = equation.sine
+                && equation.components.iter().copied().eq(block.components())
+            {
+                own.push((equation, form));
+            }
+        }
         if own.len() < count {
             continue;
         }
         symbols.charts[block.factor] = Chart::Sine;
-        for equation in &mut own {
-            let Some(form) = equation.sine else { continue };
+        for (equation, form) in own {
             (equation.residual, equation.directional) = (form.residual, form.directional);
             equation.formula = Some(form.solution);
             equation.sine_squared = Some(block.coordinates.norm_squared());

@@ -10,7 +10,7 @@
 
 use clebsch_symbolic::{Expr, Property, Role, WordTerm, identity};
 
-use super::increments::inverse_by;
+use super::moves::inverse_by;
 use super::{MechanicsFormulas, Substep};
 use crate::diagnostic::Diagnostics;
 use crate::model::Factor;

@@ -5,7 +5,7 @@ use std::rc::Rc;
 
 use clebsch_symbolic::Expr;
 
-use super::prices::{Endpoint, Steering};
+use super::choice::{Endpoint, Steering};
 use super::symbols::identities;
 use super::{ChartBlock, FormulaTable, Symbols};
 use crate::model::{Discretization, System};

@@ -3,7 +3,7 @@
 
 use clebsch_symbolic::{Expr, Property};
 
-use super::prices::Direction;
+use super::choice::Direction;
 use super::{Bend, DiscreteLagrangian, EdgeForce, SystemFormulas, cayley, control, trivialisation};
 use crate::diagnostic::Diagnostics;
 use crate::model::features::{self, Feature, Found};
@@ -100,7 +100,7 @@ impl<'g> Source<'_, 'g> {
         let rational = cayley::replacements(model);
         let lagrangian = &DiscreteLagrangian { kinetic: lagrangian.kinetic.substitute(&rational), ..*lagrangian };
         let (before, after) = trivialisation::of_all(model, lagrangian.kinetic);
-        let (start, end) = (self.later(lagrangian.start, begins), self.later(lagrangian.end, ends));
+        let (start, end) = (system.later(lagrangian.start, begins), system.later(lagrangian.end, ends));
         let end_at_image = self.at_image(end);
         let stack = |parts: &[Expr<'g>]| model.graph.below(parts);
         let mut first = stack(&trivialisation::components(model, &before));
@@ -116,9 +116,9 @@ impl<'g> Source<'_, 'g> {
         }
         if let Some(force) = force {
             if let Some(start) = force.whole_start() {
-                first = first - self.later(stack(&start), begins).substitute(&rational);
+                first = first - system.later(stack(&start), begins).substitute(&rational);
             }
-            last = last + self.at_image(self.later(stack(&force.end), ends)).substitute(&rational);
+            last = last + self.at_image(system.later(stack(&force.end), ends)).substitute(&rational);
         }
         let (at_start, at_end) = (self.at_start(), self.at_end());
         let momenta = [lagrangian.kinetic + start + end_at_image, first, last];
@@ -142,10 +142,6 @@ impl<'g> Source<'_, 'g> {
                 control::bend(system, (first, last), ends.concat())
             }),
         }
-    }
-
-    fn later(&self, part: Expr<'g>, by: Expr<'g>) -> Expr<'g> {
-        part.substitute(&[(self.system.model.time, self.system.model.time + by)])
     }
 
     /// A function of q at q⁺.

@@ -3,7 +3,7 @@
 use clebsch_symbolic::{Chart, Expr};
 
 use super::Names;
-use crate::derive::increments::from_increment;
+use crate::derive::moves::from_increment;
 use crate::derive::symbols::of_columns;
 use crate::derive::{Formula, Id, MatrixForm, MechanicsFormulas, SystemFormulas};
 use crate::model::Side;
