@@ -9,7 +9,7 @@ use std::rc::Rc;
 use num_traits::{One, Zero};
 
 use crate::node::{ExprNode, Id};
-use crate::{Graph, Property, Rational, Shape, Symbol, integer};
+use crate::{Graph, Property, Rational, Role, Shape, Symbol, integer};
 
 /// A matrix-valued expression; scalars are 1×1. Copying is free, equality is structural.
 ///
@@ -46,6 +46,11 @@ impl<'g> Expr<'g> {
             ExprNode::Symbol(symbol) => Some((**symbol).clone()),
             _ => None,
         }
+    }
+
+    /// What a symbol stands for; `None` for other expressions.
+    pub fn role(self) -> Option<Role> {
+        self.as_symbol().map(|symbol| symbol.role)
     }
 
     /// What is promised about a symbol; nothing about other expressions.

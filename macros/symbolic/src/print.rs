@@ -170,20 +170,12 @@ impl Printer<'_> {
         let constant = |term: &&Term| term.word.is_empty() && term.scalars.is_empty();
         let mut ordered: Vec<&Term> = terms.iter().collect();
         ordered.sort_by_key(|term| (term.coefficient.is_negative(), constant(term)));
-        let mut text = String::new();
-        for (position, term) in ordered.iter().enumerate() {
-            let negative = term.coefficient.is_negative();
-            text += match (position, negative) {
-                (0, false) => "",
-                (0, true) => "−",
-                (_, false) => " + ",
-                (_, true) => " − ",
-            };
-            text += &self.term(term, shape);
-        }
+        let signed = ordered.into_iter().map(|term| (term.coefficient.is_negative(), self.term(term, shape)));
+        // names may hold signs too
+        let text = joined(signed, '−').replace('−', self.notation.either("−", "-"));
         let binding =
             if terms.len() > 1 || terms[0].coefficient.is_negative() { Binding::Sum } else { Binding::Product };
-        (text.replace('−', self.notation.either("−", "-")), binding)
+        (text, binding)
     }
 
     /// The absolute value of a term: numerator over denominator.
@@ -243,6 +235,16 @@ impl Printer<'_> {
     fn rational(&self, value: &Rational) -> String {
         value.to_string().replace('-', self.notation.either("−", "-"))
     }
+}
+
+/// Terms, the negative ones by their sizes, as a sum: `a + b − c`.
+pub fn joined(terms: impl Iterator<Item = (bool, String)>, minus: char) -> String {
+    terms.fold(String::new(), |sum, (is_negative, term)| match (sum.is_empty(), is_negative) {
+        (true, false) => term,
+        (true, true) => format!("{minus}{term}"),
+        (false, false) => format!("{sum} + {term}"),
+        (false, true) => format!("{sum} {minus} {term}"),
+    })
 }
 
 /// A name in LaTeX: Greek letters by their names, subscript digits as subscripts, words upright.

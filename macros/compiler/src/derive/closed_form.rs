@@ -24,7 +24,7 @@ pub(super) fn is_solved_by_predictor<'g>(sources: &Sources<'_, 'g>, blocks: &[us
 /// has sin θ = |a| and tan(θ/2) = |x|.
 pub(super) fn closed_form<'g>(
     sources: &Sources<'_, 'g>,
-    before: &[Covector<'g>],
+    before: &Covector<'g>,
     equation: &MomentumEquation<'g>,
     i: usize,
 ) -> Option<MomentumEquation<'g>> {
@@ -45,7 +45,7 @@ pub(super) fn closed_form<'g>(
         (Group::UnitQuaternions, Chart::Cayley) => 2 * (f.entry(3, 0) * f.block(0, 0, Shape::vector(3))),
         _ => return None,
     };
-    let components = before[block.factor].components(factor.group).block(start, 0, mu.shape());
+    let components = before.components(factor.group).block(start, 0, mu.shape());
     let others = (0..sources.symbols.blocks.len()).filter(|&j| j != i);
     let alone = others.fold(residual, |residual, j| sources.without_momentum_of_block(residual, j));
     if !identity::equal(&[components, residual], &[kappa * sine / step, alone]) {

@@ -92,15 +92,12 @@ fn velocities<'g>(sources: &Sources<'_, 'g>, momentum: &[Expr<'g>], slope: Expr<
 /// orthogonal and of the same length.
 fn lift<'g>(sources: &Sources<'_, 'g>) -> Result<Vec<Expr<'g>>, Diagnostics> {
     let (graph, momentum_map) = (sources.model.graph, &sources.momentum_map);
-    let along = |velocities: &[Expr<'g>]| -> Vec<(Expr<'g>, Expr<'g>)> {
-        sources.symbols.covectors.iter().copied().zip(sources.motion_by(velocities)).collect()
-    };
-    let zeros: Vec<_> = sources.symbols.algebra.iter().map(|xi| graph.zero(xi.shape())).collect();
+    let returned = |velocities: &[Expr<'g>]| sources.momenta_of(sources.motion_by(velocities));
     let scale = |k: usize| {
-        let mut alone = zeros.clone();
-        SCALES.into_iter().map(|(n, d)| graph.rational(n, d)).find(|scale| {
-            alone[k] = *scale * momentum_map[k];
-            identity::equal(&[momentum_map[k].substitute(&along(&alone))], &[momentum_map[k]])
+        let mut scales = SCALES.into_iter().map(|(n, d)| graph.rational(n, d));
+        scales.find(|scale| {
+            let alone = sources.in_factor(k, *scale * momentum_map[k]);
+            identity::equal(&[returned(&alone)[k]], &[momentum_map[k]])
         })
     };
     let scales: Option<Vec<_>> = (0..momentum_map.len()).map(scale).collect();
@@ -108,8 +105,8 @@ fn lift<'g>(sources: &Sources<'_, 'g>) -> Result<Vec<Expr<'g>>, Diagnostics> {
         let scaled = |parts: &[Expr<'g>]| -> Vec<Expr<'g>> {
             scales.iter().zip(parts).map(|(scale, part)| *scale * *part).collect()
         };
-        let returned = sources.momenta_of(sources.motion_by(&scaled(momentum_map)));
-        identity::equal(&returned, momentum_map).then(|| sources.motion_by(&scaled(&sources.symbols.momenta)))
+        identity::equal(&returned(&scaled(momentum_map)), momentum_map)
+            .then(|| sources.motion_by(&scaled(&sources.symbols.momenta)))
     });
     lifted.ok_or_else(|| {
         let groups: Vec<String> = sources.model.factors.iter().map(|factor| factor.group.name(graph)).collect();

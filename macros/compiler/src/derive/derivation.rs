@@ -4,8 +4,10 @@ mod conserved;
 mod equations;
 mod step;
 
+use clebsch_symbolic::joined;
+
 use super::symbols::subscript;
-use super::{MechanicsFormulas, SteeredFormulas, Structure, naming};
+use super::{MechanicsFormulas, SteeredFormulas, Structure};
 use crate::model::{Discretization, Factor, Motion, System};
 
 /// What lowering found, which the derivation tells.
@@ -177,7 +179,7 @@ fn energy(formulas: &MechanicsFormulas<'_>, lowered: &Lowered) -> String {
         None => "of a signature that depends on the parameters".to_string(),
     };
     let Some(terms) = &lowered.energy else { return format!("Kinetic energy is {signature}.\n") };
-    let terms = naming::joined(terms.iter().map(term), '-');
+    let terms = joined(terms.iter().map(term), '-');
     let to_second_order = if formulas.energy.general.is_some() { " to second order" } else { "" };
     let linear = if formulas.energy.gyroscopic.is_zero() { "" } else { ", and a part that is linear in the velocity" };
     format!("Kinetic energy in these coordinates{to_second_order}: {terms}{linear}. It is {signature}.\n")

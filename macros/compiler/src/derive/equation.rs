@@ -4,6 +4,7 @@ use std::ops::Deref;
 
 use clebsch_symbolic::{Chart, Expr, identity};
 
+use super::trivialisation::Covector;
 use super::{ChartBlock, Symbols, SystemFormulas};
 use crate::model::Mechanics;
 
@@ -84,8 +85,18 @@ pub(super) struct Sources<'a, 'g> {
     pub(super) inertia: Expr<'g>,
     /// The number of substeps in a step, by which h is divided.
     pub(super) divisor: i64,
+}
+
+/// The momentum r(F) = T* ∂_F K − J(q, ∂_q K) of a substep, which its equations solve for F.
+pub(super) struct Momentum<'g> {
+    /// T* ∂_F K for each factor.
+    pub(super) before: Vec<Covector<'g>>,
+    /// The components that a coupled cost, −J(q, ∂_q K), and forces add for each factor.
+    pub(super) coupling: Option<Vec<Expr<'g>>>,
+    /// −r(q, I) for each factor; `None` if it vanishes.
+    pub(super) rest: Option<Vec<Expr<'g>>>,
     /// Whether a force that depends on the velocity joins the equations: then Σ alone gives no coordinate.
-    pub(super) forced: bool,
+    pub(super) is_forced: bool,
 }
 
 impl<'g> Deref for Sources<'_, 'g> {

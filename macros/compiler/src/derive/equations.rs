@@ -4,20 +4,11 @@ use clebsch_symbolic::{Chart, Expr, Shape, identity};
 
 use super::clearing;
 use super::closed_form::{closed_form, is_solved_by_predictor};
-use super::equation::{MomentumEquation, Solution, Sources, is_diagonal, is_kept};
-use super::symbols::identities;
-use super::trivialisation::Covector;
+use super::equation::{Momentum, MomentumEquation, Solution, Sources, is_diagonal, is_kept};
 use super::{ChartBlock, exact, structure};
-use crate::model::System;
 
 /// The momentum equations of a substep.
-///
-/// `before` holds T* ∂_F K; `coupling` the components of −J(q, ∂_q K) that a coupled cost adds.
-pub(super) fn equations<'g>(
-    sources: &Sources<'_, 'g>,
-    before: &[Covector<'g>],
-    coupling: Option<&[Expr<'g>]>,
-) -> Vec<MomentumEquation<'g>> {
+pub(super) fn equations<'g>(sources: &Sources<'_, 'g>, momentum: &Momentum<'g>) -> Vec<MomentumEquation<'g>> {
     let (model, symbols) = (sources.model, &sources.symbols);
     let is_free_rotation = |block: &ChartBlock<'g>| exact::is_free_rotation(model, block.factor);
     let mut residuals: Vec<Residual<'g>> = Vec::new();
@@ -25,14 +16,14 @@ pub(super) fn equations<'g>(
         let (residual, cleared) = if exact::is_free_rotation(model, k) {
             (model.graph.zero(symbols.momenta[k].shape()), true)
         } else {
-            residual(sources, before, coupling, k)
+            residual(sources, momentum, k)
         };
         residuals.extend(symbols.blocks.iter().filter(|block| block.factor == k).map(|block| {
             let start = block.offset - model.offset(k);
             Residual { rows: residual.block(start, 0, block.coordinates.shape()), cleared }
         }));
     }
-    if !sources.forced {
+    if !momentum.is_forced {
         substitute_explicit(sources, &mut residuals);
     }
     for (residual, block) in residuals.iter_mut().zip(&symbols.blocks).filter(|(_, block)| !is_free_rotation(block)) {
@@ -43,7 +34,7 @@ pub(super) fn equations<'g>(
     let depends = |i: usize, j: usize| residuals[i].rows.depends_on(symbols.blocks[j].coordinates);
     structure::connected(residuals.len(), |i, j| depends(i, j) || depends(j, i))
         .into_iter()
-        .map(|group| equation(sources, before, &residuals, group))
+        .map(|group| equation(sources, momentum, &residuals, group))
         .flat_map(|equation| structure::specialised(sources, equation))
         .collect()
 }
@@ -99,13 +90,9 @@ fn explicit<'g>(sources: &Sources<'_, 'g>, residuals: &[Residual<'g>], i: usize)
 /// ρ_k(x): the components of T* ∂_F K − J(q, ∂_q K), less their value at F = I, less μ.
 ///
 /// They are freed of denominators by A (…) C where that is possible. The second value says whether they were.
-fn residual<'g>(
-    sources: &Sources<'_, 'g>,
-    before: &[Covector<'g>],
-    coupling: Option<&[Expr<'g>]>,
-    k: usize,
-) -> (Expr<'g>, bool) {
+fn residual<'g>(sources: &Sources<'_, 'g>, momentum: &Momentum<'g>, k: usize) -> (Expr<'g>, bool) {
     let (model, symbols) = (sources.model, &sources.symbols);
+    let Momentum { before, coupling, rest, .. } = momentum;
     let group = model.factors[k].group;
     // F = I + D in a chart with roots: what cancels in F − I does so before D(x) is put in
     let is_late = |j: &usize| is_kept(symbols.charts[*j], coupling.is_some());
@@ -116,7 +103,7 @@ fn residual<'g>(
     let mut elements: Vec<_> = (0..model.factors.len()).map(|j| (model.factors[j].symbol, element(j))).collect();
     elements.extend((0..model.factors.len()).map(|j| (symbols.logarithms[j], symbols.stacked_coordinates(j))));
     let array = before[k].array.substitute(&elements).expand();
-    let mu = symbols.momenta[k] + at_identity(model, before, coupling, k);
+    let mu = rest.as_ref().map_or(symbols.momenta[k], |rest| symbols.momenta[k] - rest[k]);
     let mut plain = group.components(array).expand() - mu;
     if symbols.charts[k] == Chart::Product {
         plain = plain.blockwise().expand();
@@ -147,22 +134,9 @@ fn residual<'g>(
     }
 }
 
-/// r(q, I), the momentum of the motion that rests.
-pub(super) fn at_identity<'g>(
-    model: &System<'g>,
-    before: &[Covector<'g>],
-    coupling: Option<&[Expr<'g>]>,
-    k: usize,
-) -> Expr<'g> {
-    let kinetic = before[k].components(model.factors[k].group);
-    let whole = coupling.map_or(kinetic, |coupling| kinetic + coupling[k]);
-    let value = whole.substitute(&identities(model)).expand();
-    if identity::vanishes(value) { value.graph().zero(value.shape()) } else { value }
-}
-
 fn equation<'g>(
     sources: &Sources<'_, 'g>,
-    before: &[Covector<'g>],
+    momentum: &Momentum<'g>,
     residuals: &[Residual<'g>],
     blocks: Vec<usize>,
 ) -> MomentumEquation<'g> {
@@ -179,8 +153,8 @@ fn equation<'g>(
     let mut equation = MomentumEquation::new(sources, components, residual, cleared);
     if let [only] = blocks[..]
         && !equation.moves
-        && !sources.forced
-        && let Some(closed_form) = closed_form(sources, before, &equation, only)
+        && !momentum.is_forced
+        && let Some(closed_form) = closed_form(sources, &momentum.before[symbols.blocks[only].factor], &equation, only)
     {
         return closed_form;
     }

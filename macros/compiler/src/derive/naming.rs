@@ -1,6 +1,6 @@
 //! Directions of Lie algebras in words.
 
-use clebsch_symbolic::{Group, Rational, Shape, Zero, integer};
+use clebsch_symbolic::{Group, Rational, Zero, integer, joined};
 
 use crate::model::System;
 
@@ -78,11 +78,13 @@ pub(super) fn combination(model: &System<'_>, group: Group, weights: &[Rational]
 
 /// The entries that are not zero of Σ w_i E_i.
 fn entries(model: &System<'_>, group: Group, weights: &[Rational]) -> Vec<(usize, usize, Rational)> {
-    let weights = model.graph.literal(Shape::vector(weights.len()), weights.to_vec());
-    let element = group.wedge(weights);
-    let entry = |(i, j): (usize, usize)| Some((i, j, element.entry(i, j).as_number()?));
-    let entries = element.shape().positions().filter_map(entry);
-    entries.filter(|(_, _, value)| !value.is_zero()).collect()
+    let shape = group.element_shape();
+    let mut sum = vec![Rational::zero(); shape.len()];
+    for (element, weight) in model.graph.elements(group).iter().zip(weights) {
+        element.iter().for_each(|(i, j, value)| sum[i * shape.columns + j] += weight * value);
+    }
+    let entries = shape.positions().zip(sum).filter(|(_, value)| !value.is_zero());
+    entries.map(|((i, j), value)| (i, j, value)).collect()
 }
 
 fn signed(parts: impl Iterator<Item = (Rational, String)>) -> String {
@@ -91,14 +93,4 @@ fn signed(parts: impl Iterator<Item = (Rational, String)>) -> String {
         (weight.is_negative(), if magnitude == integer(1) { name } else { format!("{magnitude} {name}") })
     };
     joined(parts.map(term), '−')
-}
-
-/// Terms, the negative ones by their sizes, as a sum: `a + b − c`.
-pub(super) fn joined(terms: impl Iterator<Item = (bool, String)>, minus: char) -> String {
-    terms.fold(String::new(), |sum, (is_negative, term)| match (sum.is_empty(), is_negative) {
-        (true, false) => term,
-        (true, true) => format!("{minus}{term}"),
-        (false, false) => format!("{sum} + {term}"),
-        (false, true) => format!("{sum} {minus} {term}"),
-    })
 }

@@ -33,7 +33,7 @@ impl<'g> SiteTerm<'g> {
         match (self.term.ranges.as_slice(), Linear::of(index)?.indices.as_slice()) {
             ([], _) => Some(Home { index: None, wraps, is_everywhere: false }),
             ([range], [1]) => {
-                let site = index.symbols().into_iter().find(|symbol| role(*symbol) == Some(Role::Site(0)))?;
+                let site = index.symbols().into_iter().find(|symbol| symbol.role() == Some(Role::Site(0)))?;
                 let own = (2 * site - index).expand();
                 let whole = (site.graph().integer(0), power.sites);
                 Some(Home { index: Some(own), wraps, is_everywhere: *range == whole && (wraps || own == site) })
@@ -83,9 +83,9 @@ pub fn stencil<'g>(model: &Mechanics<'g>, links: &[SiteTerm<'g>]) -> Option<Sten
 impl<'g> Stencil<'g> {
     /// The symbol of a configuration at a place of a term, as that of a site relative to the one whose gradient this is.
     fn moved(&mut self, model: &Mechanics<'g>, symbol: Expr<'g>, (own, wraps): (Expr<'g>, bool)) -> Option<Expr<'g>> {
-        let (power, Some(Role::At(place, leaf))) = (model.power.as_ref()?, role(symbol)) else { return None };
+        let (power, Some(Role::At(place, leaf))) = (model.power.as_ref()?, symbol.role()) else { return None };
         let there = &power.places[place];
-        let site = own.symbols().into_iter().find(|symbol| role(*symbol) == Some(Role::Site(0)))?;
+        let site = own.symbols().into_iter().find(|symbol| symbol.role() == Some(Role::Site(0)))?;
         let index = there.index.substitute(&[(site, own)]).expand();
         let place = SiteIndex { index, wraps: (wraps || there.wraps) && index != site };
         let known = self.places.iter().position(|known| *known == place);
@@ -99,15 +99,11 @@ impl<'g> Stencil<'g> {
     }
 }
 
-fn role(symbol: Expr<'_>) -> Option<Role> {
-    symbol.as_symbol().map(|data| data.role)
-}
-
 /// Whether a symbol is another one for each index of a term: the index itself, or what a field has there.
 fn is_of_term<'g>(power: &Power<'g>, symbol: Expr<'g>) -> bool {
     let mut entries =
         power.parameters.iter().filter(|parameter| parameter.per_site).flat_map(|parameter| &parameter.leaves);
-    matches!(role(symbol), Some(Role::Site(_))) || entries.any(|leaf| leaf.symbol == symbol)
+    matches!(symbol.role(), Some(Role::Site(_))) || entries.any(|leaf| leaf.symbol == symbol)
 }
 
 /// The terms of a power, with their gradients; nothing else has any.
@@ -131,7 +127,7 @@ pub(super) fn links<'g>(model: &Mechanics<'g>) -> Vec<SiteTerm<'g>> {
 /// The symbol of a leaf of the configuration at a place, if it is among some.
 fn symbol_at<'g>(symbols: &[Expr<'g>], place: usize, leaf: usize) -> Option<Expr<'g>> {
     let role = Role::At(place, leaf);
-    symbols.iter().copied().find(|symbol| symbol.as_symbol().is_some_and(|data| data.role == role))
+    symbols.iter().copied().find(|symbol| symbol.role() == Some(role))
 }
 
 /// The change of each term where all of its sites move alike: by `motion`, given for the site itself.

@@ -2,13 +2,14 @@
 
 use clebsch_symbolic::{Chart, Expr, identity};
 
-use super::equation::{MomentumEquation, Solution, Sources};
+use super::equation::{Momentum, MomentumEquation, Solution, Sources};
 use super::force::total;
+use super::symbols::identities;
 use super::trivialisation::{self, Covector};
 use super::{DiscreteLagrangian, EdgeDerivatives, EdgeForce, Symbols, SystemFormulas, equations, exact, variation};
 use crate::diagnostic::{Diagnostics, bail};
 use crate::model::features::{self, Feature, Found};
-use crate::model::{ChartChoice, Discretization, Mechanics, System};
+use crate::model::{ChartChoice, Discretization, Factor, Mechanics, System};
 
 /// One discrete Lagrangian with what a step of it needs.
 pub struct Substep<'g> {
@@ -43,7 +44,7 @@ pub struct Substep<'g> {
 impl<'g> Substep<'g> {
     /// The substep of a discrete Lagrangian that starts `begins` after the whole step.
     pub(super) fn new(
-        mut sources: Sources<'_, 'g>,
+        sources: Sources<'_, 'g>,
         variations: &variation::Source<'_, 'g>,
         lagrangian: DiscreteLagrangian<'g>,
         begins: Expr<'g>,
@@ -57,16 +58,18 @@ impl<'g> Substep<'g> {
             .as_ref()
             .and_then(|force| force.start_moving.as_ref())
             .map(|moving| -> Vec<Expr<'g>> { moving.iter().map(|part| -sources.later(*part, begins)).collect() });
-        sources.forced = moving.is_some();
+        let is_forced = moving.is_some();
         let coupling = total(coupling, moving);
         let rest = at_rest(model, &before, coupling.as_deref());
+        let unchanged: Vec<bool> = (0..model.factors.len()).map(|k| agree(model, (&before, &after), k)).collect();
+        let momentum = Momentum { before, coupling, rest: rest.clone(), is_forced };
         // impulses are functions of the time of the configuration, K of the time at which the whole step starts
         let earlier = |rest: &Vec<Expr<'g>>| rest.iter().map(|part| sources.later(*part, -begins)).collect();
         let changes = rest.iter().flatten().any(|part| part.depends_on(model.time));
         let other = lagrangian.couples || changes;
         let ends = begins + model.step_size / sources.divisor;
         Substep {
-            unchanged: (0..model.factors.len()).map(|k| !other && agree(model, (&before, &after), k)).collect(),
+            unchanged: unchanged.into_iter().map(|unchanged| !other && unchanged).collect(),
             variation: model
                 .has_variations()
                 .then(|| variations.variation(&lagrangian, (begins, ends), force.as_ref())),
@@ -80,7 +83,7 @@ impl<'g> Substep<'g> {
                 total(sources.impulse(lagrangian.start), rest.as_ref().map(earlier))
             },
             end: sources.impulse(lagrangian.end),
-            equations: equations::equations(&sources, &before, coupling.as_deref()),
+            equations: equations::equations(&sources, &momentum),
             other: other.then(|| trivialisation::components(model, &after)),
             rest,
             force,
@@ -110,7 +113,14 @@ pub(super) fn check_unmoved<'g>(model: &System<'g>, lagrangian: &DiscreteLagrang
 
 /// −r(q, I), of a cost that couples or of a Lagrangian with a term that is linear in the velocity; `None` if it vanishes.
 fn at_rest<'g>(model: &System<'g>, before: &[Covector<'g>], coupling: Option<&[Expr<'g>]>) -> Option<Vec<Expr<'g>>> {
-    let rest: Vec<_> = (0..model.factors.len()).map(|k| -equations::at_identity(model, before, coupling, k)).collect();
+    let at_identity = identities(model);
+    let of_factor = |(k, factor): (usize, &Factor<'g>)| {
+        let kinetic = before[k].components(factor.group);
+        let whole = coupling.map_or(kinetic, |coupling| kinetic + coupling[k]);
+        let value = whole.substitute(&at_identity).expand();
+        if identity::vanishes(value) { value.graph().zero(value.shape()) } else { -value }
+    };
+    let rest: Vec<_> = model.factors.iter().enumerate().map(of_factor).collect();
     rest.iter().any(|part| !identity::vanishes(*part)).then_some(rest)
 }
 

@@ -83,11 +83,11 @@ pub(super) fn mass_matrix<'g>(group: Group, inertia: Expr<'g>) -> Option<Expr<'g
     let unit = |(i, j): (usize, usize)| {
         if i == j { graph.unit(square, i, i) } else { graph.unit(square, i, j) + graph.unit(square, j, i) }
     };
-    let units = square.positions().filter(|(i, j)| i <= j).map(unit);
+    let units: Vec<Expr<'g>> = square.positions().filter(|(i, j)| i <= j).map(unit).collect();
     let image = |unit: &Expr<'g>| -> Vec<Expr<'g>> {
         basis.iter().flat_map(|a| basis.iter().map(|b| (*a * *unit).dot(*b).expand())).collect()
     };
-    let (units, images) = independent(units.map(|unit| (unit, image(&unit))).collect());
+    let (units, images) = independent(units.into_iter().map(|unit| (unit, image(&unit))).collect());
     let map = of_columns(graph, &images);
     let normal = map.transpose() * map;
     let given = graph.stack(Shape::vector(map.shape().rows), inertia.entries());

@@ -335,7 +335,7 @@ impl Matrices {
                 let turned = self.operation(MatrixOperation::SkewTimes, operands, shape);
                 return self.total(shape, vec![(sign, turned)]);
             }
-            if letter.as_symbol().is_some_and(|symbol| symbol.role == Role::InertiaInverse) {
+            if letter.role() == Some(Role::InertiaInverse) {
                 let vector = self.product(right);
                 return self.operation(MatrixOperation::InertiaTimes, vec![vector], shape);
             }

@@ -121,7 +121,7 @@ pub(super) fn is_inside<'g>(index: Expr<'g>, sites: Expr<'g>, ranges: &[Range<'g
 fn least<'g>(mut expr: Expr<'g>, ranges: &[Range<'g>]) -> Option<Linear> {
     let graph = expr.graph();
     for (depth, (from, to)) in ranges.iter().enumerate().rev() {
-        let is_index = |symbol: &Expr<'g>| symbol.as_symbol().is_some_and(|data| data.role == Role::Site(depth));
+        let is_index = |symbol: &Expr<'g>| symbol.role() == Some(Role::Site(depth));
         let Some(symbol) = expr.symbols().into_iter().find(is_index) else { continue };
         let slope = expr.gradient(symbol).as_number()?;
         let end = if slope < Rational::zero() { *to - graph.integer(1) } else { *from };

@@ -161,7 +161,7 @@ impl Graph {
     }
 
     /// The basis of a group's Lie algebra, as matrices of the shape of its elements.
-    pub(crate) fn elements(&self, group: Group) -> Vec<Sparse> {
+    pub fn elements(&self, group: Group) -> Vec<Sparse> {
         let placed = |block: &Block| -> Vec<Sparse> {
             let moved = |(i, j, value): &(usize, usize, _)| (i + block.row, j + block.column, Clone::clone(value));
             let basis = self.basis(block.algebra);

@@ -185,7 +185,7 @@ fn transported<'g>(group: Group, q: Expr<'g>, w: Expr<'g>, side: Side) -> Expr<'
 
 impl<'g> SystemFormulas<'g> {
     /// The velocity that is `xi` in factor k and zero in the others.
-    pub(super) fn in_factor(&self, k: usize, xi: Expr<'g>) -> Vec<Expr<'g>> {
+    pub(in crate::derive) fn in_factor(&self, k: usize, xi: Expr<'g>) -> Vec<Expr<'g>> {
         alone(&self.symbols.algebra, k, xi)
     }
 

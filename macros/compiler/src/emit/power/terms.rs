@@ -172,7 +172,7 @@ impl<'e, 'a, 'g> Terms<'e, 'a, 'g> {
     fn places_of_fields(&self, kernel: &Kernel) -> Vec<usize> {
         let inputs = kernel.inputs();
         let is_read = |leaf: &Leaf<'g>| {
-            let role = leaf.symbol.as_symbol().map(|data| data.role);
+            let role = leaf.symbol.role();
             inputs.iter().any(|input| Some(input.role) == role)
         };
         let of_sites = self.power.parameters.iter().filter(|parameter| parameter.per_site);
