@@ -145,8 +145,7 @@ impl Diagnostics {
         Diagnostics::default()
     }
 
-    /// Adds an error.
-    pub fn push(&self, diagnostic: impl Into<Diagnostic>) {
+    pub(crate) fn push(&self, diagnostic: impl Into<Diagnostic>) {
         self.found.borrow_mut().push(diagnostic.into());
     }
 
@@ -161,8 +160,7 @@ impl Diagnostics {
         result.map_err(|errors| self.extend(errors.into())).ok()
     }
 
-    /// Adds errors.
-    pub fn extend(&self, errors: impl IntoIterator<Item = Diagnostic>) {
+    pub(crate) fn extend(&self, errors: impl IntoIterator<Item = Diagnostic>) {
         errors.into_iter().for_each(|error| self.push(error));
     }
 
@@ -171,8 +169,7 @@ impl Diagnostics {
         self.len() == 0
     }
 
-    /// The number of errors.
-    pub fn len(&self) -> usize {
+    pub(crate) fn len(&self) -> usize {
         self.found.borrow().len()
     }
 

@@ -33,14 +33,11 @@ use crate::parse::Declaration;
 /// Beside errors stands an implementation with the declared types, as far as they can be read, so that nothing else is reported. There
 /// are no panics: one of ours is an error that asks for a report.
 pub fn expand(item: TokenStream) -> TokenStream {
-    match budget::without_panic(&item, || integrator(item.clone())).flatten() {
-        Ok(tokens) => tokens,
-        Err(errors) => {
-            let (errors, stub) = (errors.to_compile_errors(), budget::without_panic(&item, || stub(item.clone())));
-            let stub = stub.ok().flatten();
-            quote::quote!(#errors #stub)
-        }
-    }
+    budget::without_panic(&item, || integrator(item.clone())).flatten().unwrap_or_else(|errors| {
+        let errors = errors.to_compile_errors();
+        let stub = budget::without_panic(&item, || stub(item.clone())).ok().flatten();
+        quote::quote!(#errors #stub)
+    })
 }
 
 /// All five stages.

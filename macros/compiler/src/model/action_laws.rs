@@ -17,15 +17,8 @@ pub(super) struct Action<'a, 'g> {
     pub value: &'a [Expr<'g>],
 }
 
-/// How a factor acts.
-#[derive(Copy, Clone)]
-pub(super) struct Law {
-    pub side: Side,
-    pub moves: bool,
-}
-
-/// Checks all laws and returns how each factor acts.
-pub(super) fn check(action: &Action, diagnostics: &Diagnostics) -> Option<Vec<Law>> {
+/// Checks all laws and returns how each factor acts: from which side, and whether it moves anything.
+pub(super) fn check(action: &Action, diagnostics: &Diagnostics) -> Option<Vec<(Side, bool)>> {
     let before = diagnostics.len();
     action.stays_in_space(diagnostics);
     if diagnostics.len() > before {
@@ -40,7 +33,7 @@ pub(super) fn check(action: &Action, diagnostics: &Diagnostics) -> Option<Vec<La
     // a factor on which both laws hold takes the side of the others, else left; so does one that moves nothing, which has none
     let is_of = |side| sides.iter().any(|(found, _)| *found == Some(side));
     let open = if is_of(Side::Right) && !is_of(Side::Left) { Side::Right } else { Side::Left };
-    let laws = sides.iter().map(|&(side, moves)| Law { side: side.unwrap_or(open), moves });
+    let laws = sides.iter().map(|&(side, moves)| (side.unwrap_or(open), moves));
     (diagnostics.len() == before).then(|| laws.collect())
 }
 

@@ -207,5 +207,5 @@ fn because<'g>(elaborator: &mut Elaborator<'_, '_, 'g>, tail: &Syntax, value: &V
 }
 
 pub(super) fn written(closure: &Closure) -> Written {
-    Written { place: Location::of(&closure.body), text: spell(&closure.body), arguments: closure.spell_head() }
+    Written { place: Location::of(&closure.body), text: spell(&closure.body) }
 }

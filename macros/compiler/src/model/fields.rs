@@ -70,9 +70,8 @@ pub(super) fn read<'g>(
             known.insert(name, None);
             continue;
         };
-        let entry = sites_of(&field.ty, &declaration.generics)
-            .filter(|(length, _)| Some(*length) == sites)
-            .map(|(_, entry)| entry);
+        let of_sites = sites_of(&field.ty, &declaration.generics).filter(|(length, _)| Some(*length) == sites);
+        let entry = of_sites.map(|(_, entry)| entry);
         let ty = field_type(entry.unwrap_or(&field.ty), &declaration.generics);
         let ty = diagnostics.take(ty.map_err(|error| error.unwrap_or_else(|| explain(field))));
         if let Some(written) = ty.as_ref().and_then(|ty| ty.scalar) {
@@ -116,8 +115,7 @@ fn field_type<'t>(ty: &'t Type, generics: &Generics) -> Result<FieldType<'t>, Op
             let (shape, scalar) = if is_scalar {
                 (Shape::scalar(), Some(ty))
             } else {
-                let found = vectors(ty, generics).ok_or(None)?.map_err(Some)?;
-                (found.shape, found.scalar)
+                vectors(ty, generics).ok_or(None)?.map_err(Some)?
             };
             Ok(FieldType { structure: Layout::Leaf(0), shape, is_scalar, scalar })
         }

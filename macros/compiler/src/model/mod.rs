@@ -45,7 +45,7 @@ use std::rc::Rc;
 
 use clebsch_symbolic::{Expr, Graph};
 
-use self::action_laws::{Action, Law};
+use self::action_laws::Action;
 use self::closures::{Closures, optional};
 use self::elaborate::Context;
 use self::forces::Forces;
@@ -98,14 +98,13 @@ pub fn model<'g>(graph: &'g Graph, declaration: &Declaration) -> Result<Model<'g
         return Err(Diagnostics::new());
     };
     for (factor, law) in factors.iter_mut().zip(formulas.laws) {
-        (factor.side, factor.moves) = (law.side, law.moves);
+        (factor.side, factor.moves) = law;
     }
     let dials = &declaration.dials;
     let mut system = System {
         graph,
         item: Item {
             ident: declaration.ident.clone(),
-            vis: declaration.vis.clone(),
             generics: declaration.generics.clone(),
             scalar: fields.scalar,
             krate: dials.krate.clone().unwrap_or_else(|| syn::parse_quote!(::clebsch)),
@@ -163,7 +162,7 @@ enum Mover<'g> {
 /// What the closures give.
 struct ClosureValues<'g> {
     action: Vec<Expr<'g>>,
-    laws: Vec<Law>,
+    laws: Vec<(Side, bool)>,
     mover: Mover<'g>,
     potential: Option<Expr<'g>>,
     /// The potential of a power.

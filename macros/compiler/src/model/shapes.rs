@@ -82,12 +82,6 @@ pub(super) fn type_parameter<'p>(ty: &Type, generics: &'p Generics) -> Option<&'
 /// The largest n for which `VectorN` and `MatrixN` have names.
 const NAMED: usize = 6;
 
-pub(super) struct Vectors<'t> {
-    pub shape: Shape,
-    /// The scalar, if it is written.
-    pub scalar: Option<&'t Type>,
-}
-
 /// A type without parentheses around it.
 pub(super) fn plain(ty: &Type) -> &Type {
     match ty {
@@ -132,6 +126,9 @@ pub(super) fn named_shape(name: &str) -> Option<Shape> {
     }
 }
 
+/// A shape, and the scalar if it is written.
+type Vectors<'t> = (Shape, Option<&'t Type>);
+
 /// Reads a vector or matrix type; `None` if it is something else.
 pub(super) fn vectors<'t>(ty: &'t Type, generics: &Generics) -> Option<Result<Vectors<'t>, Diagnostic>> {
     let segment = last_segment(ty)?;
@@ -156,7 +153,7 @@ pub(super) fn vectors<'t>(ty: &'t Type, generics: &Generics) -> Option<Result<Ve
             None if count == 1 => Shape::vector(size(0)?),
             None => Shape::new(size(0)?, size(1)?),
         };
-        Ok(Vectors { shape, scalar })
+        Ok((shape, scalar))
     };
     Some(read())
 }

@@ -9,7 +9,7 @@ use super::space::Space;
 use super::value::Value;
 use super::{Configuration, Item, Leaf, Order, Parameter, Power, ScalarType, System};
 use crate::diagnostic::Diagnostics;
-use crate::parse::{Closure, Declaration, Potential};
+use crate::parse::{Declaration, Potential};
 
 /// What closures need to know of a power, and what they find.
 pub(super) struct Sites<'g> {
@@ -24,16 +24,9 @@ pub(super) struct Sites<'g> {
     /// The places that have been met.
     pub places: Vec<SiteIndex<'g>>,
     /// The fields with one entry for each site that terms have read: the field, the place, and its leaves.
-    pub entries: Vec<Entry<'g>>,
+    pub entries: Vec<(usize, usize, Vec<Expr<'g>>)>,
     /// The number of the next leaf of a field.
     pub next_leaf: usize,
-}
-
-/// What a field has for the site at a place.
-pub(super) struct Entry<'g> {
-    pub field: usize,
-    pub place: usize,
-    pub leaves: Vec<Expr<'g>>,
 }
 
 impl<'g> Sites<'g> {
@@ -62,8 +55,8 @@ impl<'g> Sites<'g> {
 
     /// What a field has at a place, with new symbols like those of the site itself where it is met first.
     pub fn entry(&mut self, field: usize, place: usize, parameter: &Parameter<'g>) -> Vec<Expr<'g>> {
-        if let Some(known) = self.entries.iter().find(|entry| (entry.field, entry.place) == (field, place)) {
-            return known.leaves.clone();
+        if let Some((.., leaves)) = self.entries.iter().find(|(of, at, _)| (*of, *at) == (field, place)) {
+            return leaves.clone();
         }
         let text = self.places[place].text();
         let first = self.next_leaf;
@@ -73,7 +66,7 @@ impl<'g> Sites<'g> {
             like(leaf.symbol, &name, Role::Parameter(first + number))
         };
         let leaves: Vec<Expr<'g>> = parameter.leaves.iter().enumerate().map(leaf).collect();
-        self.entries.push(Entry { field, place, leaves: leaves.clone() });
+        self.entries.push((field, place, leaves.clone()));
         leaves
     }
 }
@@ -111,7 +104,6 @@ pub(super) fn of_one_site<'g>(terms: &[Term<'g>], sites: Expr<'g>, graph: &'g Gr
 /// Reports what a power cannot have yet.
 pub(super) fn check(declaration: &Declaration, diagnostics: &Diagnostics) {
     let dials = &declaration.dials;
-    let key = |closure: &Option<Closure>| closure.as_ref().map(|closure| Found::at(closure.key.span()));
     let emitted = |asked: bool| asked.then(|| Found::at(declaration.ident.span()));
     let order = |fits: fn(Order) -> bool| {
         let order = dials.order.as_ref().filter(|order| fits(order.value))?;
@@ -121,24 +113,17 @@ pub(super) fn check(declaration: &Declaration, diagnostics: &Diagnostics) {
         Feature::OpaquePotential => {
             declaration.potential.as_ref().and_then(Potential::opaque).map(|opaque| Found::at(opaque.place))
         }
-        Feature::Force => key(&declaration.force),
-        Feature::ForceOn => key(&declaration.force_on),
-        Feature::Endpoint => key(&declaration.endpoint),
-        Feature::Symmetry => declaration.symmetries.first().map(|closure| Found::at(closure.key.span())),
-        Feature::Controls | Feature::Dynamics => {
-            let key = &declaration.kinetic.closure().key;
-            feature.is_key(&key.to_string()).then(|| Found::at(key.span()))
-        }
-        Feature::Effort if !declaration.kinetic.is_steered() => {
-            declaration.control.as_ref().map(|control| Found::at(control.price.key.span()))
-        }
         Feature::Composition => order(|order| order.stages().is_some()),
         Feature::Sixteenth => order(|order| order == Order::Sixteenth),
         Feature::Method => declaration.methods.first().map(|method| Found::at(method.name.span())),
         Feature::Tangent => emitted(dials.emit.tangent),
         Feature::Boundary => emitted(dials.emit.boundary),
         Feature::Momentum => emitted(dials.emit.momentum),
-        dial => dials.given().find(|(name, _)| dial.is_key(name)).map(|(_, value)| Found::at(value.span)),
+        key => {
+            let closure = declaration.closures().find(|closure| key.is_key(&closure.key.to_string()));
+            let dial = || dials.given().find(|(name, _)| key.is_key(name)).map(|(_, value)| value.span);
+            closure.map(|closure| closure.key.span()).or_else(dial).map(Found::at)
+        }
     };
     diagnostics.extend(features::refusals_of((Feature::Power, Found::somewhere()), found));
 }
@@ -155,14 +140,14 @@ pub(super) fn power_of<'g>(
         |field: &&Parameter<'g>| reads(energy, field) || system.action.iter().any(|image| reads(*image, field));
     let by_terms = |field: &&Parameter<'g>| !field.per_site && terms.iter().any(|term| reads(term.value, field));
     let mut parameters: Vec<Parameter<'g>> = system.parameters.iter().filter(by_terms).cloned().collect();
-    for entry in &sites.entries {
-        let field = &system.parameters[entry.field];
+    for (field, place, leaves) in &sites.entries {
+        let field = &system.parameters[*field];
         let leaf = |(leaf, symbol): (&Leaf<'g>, &Expr<'g>)| Leaf {
             symbol: *symbol,
-            accessor: leaf.accessor.at_site(entry.place),
+            accessor: leaf.accessor.at_site(*place),
             ..leaf.clone()
         };
-        let leaves = field.leaves.iter().zip(&entry.leaves).map(leaf).collect();
+        let leaves = field.leaves.iter().zip(leaves).map(leaf).collect();
         parameters.push(Parameter { leaves, ..field.clone() });
     }
     let mut of_site: Vec<Parameter<'g>> = system.parameters.iter().filter(by_site).cloned().collect();
@@ -175,7 +160,6 @@ pub(super) fn power_of<'g>(
     let is_uniform = of_site.iter().all(|parameter| !parameter.per_site);
     let site = Item {
         ident: quote::format_ident!("{}Site", system.item.ident),
-        vis: syn::Visibility::Public(Default::default()),
         // the scalar alone
         generics: match &system.item.scalar {
             ScalarType::Parameter(ident) => syn::parse_quote!(<#ident>),

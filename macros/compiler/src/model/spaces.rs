@@ -5,7 +5,7 @@ use syn::{GenericArgument, Type};
 
 use super::groups::{GroupNames, group, known_group, suggestion};
 use super::quaternion;
-use super::shapes::{IN_LOOPS, LEAVES, Vectors, arguments, hint, last_name, last_segment, length, plain, vectors};
+use super::shapes::{IN_LOOPS, LEAVES, arguments, hint, last_name, last_segment, length, plain, vectors};
 use super::{Layout, LeafSpace};
 use crate::diagnostic::{Diagnostic, error, refuse};
 use crate::parse::spell_type;
@@ -93,25 +93,21 @@ fn read_space<'t>(ty: &'t Type, names: GroupNames) -> Result<SpaceType<'t>, Diag
         let (shape, is_quaternion) = (group.element_shape(), group == Group::UnitQuaternions);
         return Ok(SpaceType { space: space_of(group), shape, is_quaternion, scalar: None });
     }
-    let of_vectors = |space, Vectors { shape, scalar }| SpaceType { space, shape, is_quaternion: false, scalar };
+    let of_vectors = |space, (shape, scalar)| SpaceType { space, shape, is_quaternion: false, scalar };
     if let Some(found) = vectors(ty, names.generics) {
         return Ok(of_vectors(LeafSpace::Vectors, found?));
     }
+    let shape = Shape::vector(quaternion::COORDINATES);
+    let of_quaternions = |scalar| SpaceType { space: LeafSpace::Vectors, shape, is_quaternion: true, scalar };
     let name = last_name(ty);
     match (name.as_str(), last_segment(ty).map(arguments).unwrap_or_default().as_slice()) {
         ("Unit", [GenericArgument::Type(inner)]) => match vectors(inner, names.generics).transpose()? {
-            Some(found) if found.shape.is_column() && found.shape.rows > 1 => Ok(of_vectors(LeafSpace::Unit, found)),
+            Some(found) if found.0.is_column() && found.0.rows > 1 => Ok(of_vectors(LeafSpace::Unit, found)),
             _ => Err(no_unit(ty)),
         },
         ("Unit" | "UnitQuaternion", _) => Err(no_unit(ty)),
-        ("Quaternion", scalar @ ([] | [GenericArgument::Type(_)])) => {
-            let scalar = match scalar {
-                [GenericArgument::Type(scalar)] => Some(scalar),
-                _ => None,
-            };
-            let shape = Shape::vector(quaternion::COORDINATES);
-            Ok(SpaceType { space: LeafSpace::Vectors, shape, is_quaternion: true, scalar })
-        }
+        ("Quaternion", []) => Ok(of_quaternions(None)),
+        ("Quaternion", [GenericArgument::Type(scalar)]) => Ok(of_quaternions(Some(scalar))),
         _ => Err(unknown_space(ty, &name, names)),
     }
 }

@@ -123,8 +123,8 @@ impl<'g> ActedSystem<'_, '_, 'g> {
         let factors = [offered.clone()];
         let (graph, diagnostics) = (self.context.graph, self.context.diagnostics);
         let action = Action { graph, closure, factors: &factors, configurations: &leaves, value: &value };
-        let law = *action_laws::check(&action, diagnostics)?.first()?;
-        if !law.moves {
+        let (side, moves) = *action_laws::check(&action, diagnostics)?.first()?;
+        if !moves {
             refuse!(diagnostics, &closure.body, "the symmetry by `{}` moves nothing", offered.name; help "leave it out");
         }
         // (Φ_F q)′ and Φ_{F′}(q′)
@@ -142,7 +142,7 @@ impl<'g> ActedSystem<'_, '_, 'g> {
                 note "a step by `{f}` and then `{s}` moves {q} to {one}, `{s}` first and then the moved step to {other}";
                 help "{}", self.example(offered, leaf));
         }
-        Some(law.side)
+        Some(side)
     }
 
     /// Symmetries that agree with the usual actions, for the factor that moves a leaf.

@@ -148,8 +148,6 @@ impl<'g> Deref for Steered<'g> {
 pub struct Item {
     /// Its name.
     pub ident: syn::Ident,
-    /// Its visibility.
-    pub vis: syn::Visibility,
     /// Its generics.
     pub generics: syn::Generics,
     /// The scalar of its fields.
@@ -385,8 +383,6 @@ pub struct Written {
     pub place: crate::diagnostic::Location,
     /// Its text.
     pub text: String,
-    /// The closure's arguments, `|h, F|`.
-    pub arguments: String,
 }
 
 /// What makes a power of the model of a site.

@@ -14,12 +14,10 @@ use crate::diagnostic::{Diagnostics, Location, refuse};
 pub struct Closure {
     /// The key that it is the value of.
     pub key: Ident,
-    /// Its arguments.
-    pub arguments: Vec<Argument>,
+    pub(crate) arguments: Vec<Argument>,
     /// What is between the bars, bars included.
     pub head: Location,
-    /// Its value.
-    pub body: Expr,
+    pub(crate) body: Expr,
 }
 
 /// An argument of a closure.
@@ -66,20 +64,13 @@ impl Closure {
         is_readable.then(|| Closure { key: key.clone(), arguments, head, body: *closure.body })
     }
 
-    /// The arguments with their bars, `|h, F|`.
-    pub fn spell_head(&self) -> String {
-        format!("|{}|", joined(self.arguments.iter().map(Argument::spell)))
-    }
-
-    /// The whole closure.
-    pub fn spell(&self) -> String {
-        format!("{} {}", self.spell_head(), spell(&self.body))
+    pub(crate) fn spell(&self) -> String {
+        format!("|{}| {}", joined(self.arguments.iter().map(Argument::spell)), spell(&self.body))
     }
 }
 
 impl Argument {
-    /// The text of the argument.
-    pub fn spell(&self) -> String {
+    pub(crate) fn spell(&self) -> String {
         let ty = self.ty.as_ref().map(|ty| format!(": {}", spell_type(ty))).unwrap_or_default();
         self.pattern.spell() + &ty
     }
@@ -115,8 +106,7 @@ impl Pattern {
         }
     }
 
-    /// Where it is.
-    pub fn place(&self) -> Location {
+    pub(crate) fn place(&self) -> Location {
         match self {
             Pattern::Name(ident) => ident.span().into(),
             Pattern::Tuple(_, place) => *place,
@@ -134,8 +124,7 @@ impl Pattern {
         }
     }
 
-    /// The text of the pattern.
-    pub fn spell(&self) -> String {
+    pub(crate) fn spell(&self) -> String {
         match self {
             Pattern::Name(ident) => ident.to_string(),
             Pattern::Tuple(parts, _) => format!("({})", joined(parts.iter().map(Pattern::spell))),

@@ -17,8 +17,8 @@ pub(super) fn check(keys: &Keys) {
     };
     // what is wrong with the system is said once
     if refuse(keys, |_| false) {
-        for method in &keys.methods {
-            refuse(&method.keys, is_declared_alone);
+        for (_, of_method) in &keys.methods {
+            refuse(of_method, is_declared_alone);
         }
     }
 }

@@ -3,7 +3,7 @@
 use std::fmt;
 
 use proc_macro2::Ident;
-use syn::{DeriveInput, Generics, Visibility};
+use syn::{DeriveInput, Generics};
 
 use super::dials::Dials;
 use super::keys::Keys;
@@ -16,14 +16,9 @@ use crate::diagnostic::{Diagnostic, Diagnostics, error};
 /// What the user declared: the struct, the closures and the dials, as written.
 #[derive(Clone)]
 pub struct Declaration {
-    /// The name of the struct.
-    pub ident: Ident,
-    /// Its visibility.
-    pub vis: Visibility,
-    /// Its generics.
-    pub generics: Generics,
-    /// Its fields.
-    pub fields: Vec<Field>,
+    pub(crate) ident: Ident,
+    pub(crate) generics: Generics,
+    pub(crate) fields: Vec<Field>,
     /// The groups of the user's own, in the order in which they were declared.
     pub groups: Vec<DeclaredGroup>,
     /// The action of the group on the configurations.
@@ -58,16 +53,14 @@ pub enum Potential {
 }
 
 impl Potential {
-    /// The formula, if there is one.
-    pub fn closure(&self) -> Option<&Closure> {
+    pub(crate) fn closure(&self) -> Option<&Closure> {
         match self {
             Potential::Closure(closure) => Some(closure),
             Potential::Opaque(_) => None,
         }
     }
 
-    /// The methods, if it is made of two.
-    pub fn opaque(&self) -> Option<&Opaque> {
+    pub(crate) fn opaque(&self) -> Option<&Opaque> {
         match self {
             Potential::Closure(_) => None,
             Potential::Opaque(opaque) => Some(opaque),
@@ -112,8 +105,7 @@ impl Kinetic {
         matches!(self, Kinetic::Controls(_) | Kinetic::Dynamics(_))
     }
 
-    /// The closure.
-    pub fn closure(&self) -> &Closure {
+    pub(crate) fn closure(&self) -> &Closure {
         match self {
             Kinetic::Cost(closure)
             | Kinetic::Lagrangian(closure)
@@ -146,7 +138,6 @@ pub(super) fn assemble(input: &DeriveInput, mut keys: Keys, fields: Vec<Field>) 
     };
     Ok(Declaration {
         ident: input.ident.clone(),
-        vis: input.vis.clone(),
         generics: input.generics.clone(),
         fields,
         groups,

@@ -10,33 +10,21 @@ use super::spelling::joined;
 use super::values::Reader;
 use crate::diagnostic::{Diagnostic, error};
 
-/// The keys that are no closures; each has a default.
+/// The keys that are no closures, by name; each has a default.
 #[derive(Clone, Default)]
 pub struct Dials {
-    /// `order = 2`.
-    pub order: Option<Located<Order>>,
-    /// `discretization = cayley`.
-    pub discretization: Option<Located<Discretization>>,
-    /// `chart = exponential`.
-    pub chart: Option<Located<ChartChoice>>,
-    /// `solver = newton`.
-    pub solver: Option<Located<Solver>>,
-    /// `tolerance = 1e-8`.
-    pub tolerance: Option<Located<f64>>,
-    /// `iterations = 4`.
-    pub iterations: Option<Located<u32>>,
-    /// `summation = compensated`.
-    pub summation: Option<Located<Summation>>,
-    /// `code = matrices`.
-    pub code: Option<Located<CodeForm>>,
-    /// `isotropy = fixed`.
-    pub isotropy: Option<Located<Isotropy>>,
-    /// `emit = [generated]`.
-    pub emit: Emit,
-    /// `scalar = f32`, for systems without fields.
-    pub scalar: Option<Ident>,
-    /// `crate = path`.
-    pub krate: Option<syn::Path>,
+    pub(crate) order: Option<Located<Order>>,
+    pub(crate) discretization: Option<Located<Discretization>>,
+    pub(crate) chart: Option<Located<ChartChoice>>,
+    pub(crate) solver: Option<Located<Solver>>,
+    pub(crate) tolerance: Option<Located<f64>>,
+    pub(crate) iterations: Option<Located<u32>>,
+    pub(crate) summation: Option<Located<Summation>>,
+    pub(crate) code: Option<Located<CodeForm>>,
+    pub(crate) isotropy: Option<Located<Isotropy>>,
+    pub(crate) emit: Emit,
+    pub(crate) scalar: Option<Ident>,
+    pub(crate) krate: Option<syn::Path>,
 }
 
 impl Dials {

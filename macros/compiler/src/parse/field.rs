@@ -13,8 +13,7 @@ use crate::diagnostic::{Diagnostic, Diagnostics, Location, error, nearest, repor
 pub struct Field {
     /// Its name or number.
     pub member: Member,
-    /// Its type as written.
-    pub ty: Type,
+    pub(crate) ty: Type,
     /// What is promised about its values, and where.
     pub promise: Option<(Promise, Span)>,
 }

@@ -12,10 +12,8 @@ use crate::diagnostic::{Diagnostic, Location, bail};
 /// A group of the user's own.
 #[derive(Clone)]
 pub struct DeclaredGroup {
-    /// Its name.
-    pub name: Ident,
-    /// What it is.
-    pub definition: Definition,
+    pub(crate) name: Ident,
+    pub(crate) definition: Definition,
 }
 
 /// What a declared group is.

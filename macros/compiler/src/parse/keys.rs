@@ -8,7 +8,6 @@ use std::collections::BTreeMap;
 use proc_macro2::{Ident, Span};
 
 use super::dials::Dials;
-use super::methods::MethodKeys;
 use super::values::Reader;
 use super::{Closure, DeclaredGroup, Potential};
 use crate::diagnostic::{Diagnostic, Diagnostics};
@@ -148,7 +147,8 @@ pub(super) struct Keys<'d> {
     pub potential: Option<Potential>,
     pub symmetries: Vec<Closure>,
     pub groups: Vec<DeclaredGroup>,
-    pub methods: Vec<MethodKeys<'d>>,
+    /// Each method with its keys, and where each of these was given.
+    pub methods: Vec<(Ident, Keys<'d>)>,
     pub dials: Dials,
     given: Vec<(String, Span)>,
 }

@@ -20,19 +20,13 @@ pub struct DeclaredMethod {
     pub dials: Dials,
 }
 
-/// A method with its keys, and where each was given.
-pub(super) struct MethodKeys<'d> {
-    pub name: Ident,
-    pub keys: Keys<'d>,
-}
-
 /// Reads what follows on the word `method`.
 pub(super) fn read(word: &Ident, stream: ParseStream, keys: &mut Keys) -> Result<(), Diagnostic> {
     let Ok(name) = stream.call(Ident::parse_any) else {
         bail!(word, "a method has a name, that of a unit struct";
             help "write `struct Fine;` beside the system, and `method Fine = (order = 6)`");
     };
-    if keys.methods.iter().any(|method| method.name.unraw() == name.unraw()) {
+    if keys.methods.iter().any(|(other, _)| other.unraw() == name.unraw()) {
         bail!(&name, "the method `{name}` is declared twice";
             help "remove one of the two, or write another unit struct for it");
     }
@@ -47,7 +41,7 @@ pub(super) fn read(word: &Ident, stream: ParseStream, keys: &mut Keys) -> Result
     }
     let mut own = Keys::new(keys.diagnostics);
     attribute::read_items(&content, &mut own, read_dial);
-    keys.methods.push(MethodKeys { name, keys: own });
+    keys.methods.push((name, own));
     Ok(())
 }
 
@@ -77,12 +71,12 @@ fn dials() -> impl Iterator<Item = &'static str> {
 }
 
 /// The methods of a struct, none of which may be the struct itself.
-pub(super) fn checked(system: &Ident, keys: Vec<MethodKeys>, diagnostics: &Diagnostics) -> Vec<DeclaredMethod> {
-    for method in keys.iter().filter(|method| method.name.unraw() == system.unraw()) {
-        report!(diagnostics, method.name.span(), "the method `{system}` is the system itself";
+pub(super) fn checked(system: &Ident, keys: Vec<(Ident, Keys)>, diagnostics: &Diagnostics) -> Vec<DeclaredMethod> {
+    for (name, _) in keys.iter().filter(|(name, _)| name.unraw() == system.unraw()) {
+        report!(diagnostics, name.span(), "the method `{system}` is the system itself";
             help "write a unit struct beside it, as in `struct Fine;` and `method Fine = (…)`");
     }
-    keys.into_iter().map(|method| DeclaredMethod { name: method.name, dials: method.keys.dials }).collect()
+    keys.into_iter().map(|(name, keys)| DeclaredMethod { name, dials: keys.dials }).collect()
 }
 
 impl Declaration {

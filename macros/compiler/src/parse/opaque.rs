@@ -17,13 +17,11 @@ pub struct Opaque {
     pub gradient: Path,
     /// Whether both take the time as their first argument: `opaque(t, Self::value, Self::gradient)`.
     pub takes_time: bool,
-    /// Where it stands.
-    pub place: Location,
+    pub(crate) place: Location,
 }
 
 impl Opaque {
-    /// The text of the value.
-    pub fn spell(&self) -> String {
+    pub(crate) fn spell(&self) -> String {
         let time = if self.takes_time { "t, " } else { "" };
         format!("opaque({time}{}, {})", tokens(&self.value), tokens(&self.gradient))
     }

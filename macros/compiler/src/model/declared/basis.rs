@@ -22,16 +22,13 @@ pub(super) fn read(graph: &Graph, name: &str, elements: &[Syntax], place: Locati
     let shape = common_shape(name, &matrices, elements)?;
     check_size(name, shape.rows, place.start())?;
     independent(name, &matrices, elements)?;
-    let basis: Vec<Sparse> = matrices.iter().map(|matrix| sparse(shape, &matrix.entries)).collect();
+    let basis: Vec<Sparse> = matrices.iter().map(|(_, entries)| sparse(shape, entries)).collect();
     closed(graph, name, shape, &basis, place)?;
     Ok(Group::declare(graph, name, shape, basis, None))
 }
 
-/// A matrix of numbers, row by row.
-struct Matrix {
-    shape: Shape,
-    entries: Vec<Rational>,
-}
+/// The shape of a matrix of numbers, and its entries row by row.
+type Matrix = (Shape, Vec<Rational>);
 
 fn literal(graph: &Graph, name: &str, k: usize, element: &Syntax) -> Result<Matrix, Diagnostics> {
     let key = format!("basis of `{name}`");
@@ -43,22 +40,22 @@ fn literal(graph: &Graph, name: &str, k: usize, element: &Syntax) -> Result<Matr
         bail!(element, "`E{}` of `{name}` is {}, not a matrix", k + 1, value.describe(); help "write `{example}`");
     };
     // without symbols none is asked for: any will do
-    let values = at_identity(expr, graph.identity(1)).filter(|_| expr.symbols().is_empty());
+    let values = if expr.symbols().is_empty() { at_identity(expr, graph.identity(1)) } else { None };
     let entries = values.ok_or_else(|| {
         error!(element, "the entries of `{}` are not rational", shortened(element);
             note "whether brackets stay in the span is decided exactly, over the rational numbers")
     })?;
-    Ok(Matrix { shape: expr.shape(), entries })
+    Ok((expr.shape(), entries))
 }
 
 fn common_shape(name: &str, matrices: &[Matrix], elements: &[Syntax]) -> Result<Shape, Diagnostics> {
-    let first = matrices[0].shape;
+    let first = matrices[0].0;
     if !first.is_square() {
         bail!(&elements[0], "`E1` of `{name}` is {first}, but a Lie algebra is made of square matrices";
             note "its elements are multiplied, E1*E2 - E2*E1");
     }
-    if let Some(k) = matrices.iter().position(|matrix| matrix.shape != first) {
-        bail!(&elements[k], "`E1` of `{name}` is {first} and `E{}` is {}", k + 1, matrices[k].shape;
+    if let Some(k) = matrices.iter().position(|(shape, _)| *shape != first) {
+        bail!(&elements[k], "`E1` of `{name}` is {first} and `E{}` is {}", k + 1, matrices[k].0;
             note "the matrices of a basis have one shape");
     }
     Ok(first)
@@ -66,9 +63,9 @@ fn common_shape(name: &str, matrices: &[Matrix], elements: &[Syntax]) -> Result<
 
 fn independent(name: &str, matrices: &[Matrix], elements: &[Syntax]) -> Result<(), Diagnostics> {
     // the columns are the matrices; one without a pivot is a combination of those before, with the entries above as coefficients
-    let length = matrices[0].entries.len();
+    let length = matrices[0].1.len();
     let mut rows: Vec<Vec<Rational>> =
-        (0..length).map(|entry| matrices.iter().map(|matrix| matrix.entries[entry].clone()).collect()).collect();
+        (0..length).map(|entry| matrices.iter().map(|(_, entries)| entries[entry].clone()).collect()).collect();
     let pivots = reduce(&mut rows);
     let Some(k) = (0..matrices.len()).find(|k| !pivots.contains(k)) else { return Ok(()) };
     let terms = pivots.iter().zip(&rows).filter(|(pivot, _)| **pivot < k).map(|(pivot, row)| (*pivot, row[k].clone()));

@@ -38,9 +38,9 @@ fn size(name: &str, closure: &Closure) -> Result<usize, Diagnostics> {
             help "write `|F: Matrix3| F.transpose() * F == I`");
     };
     match vectors(ty, &syn::Generics::default()).transpose()? {
-        Some(found) if found.shape.is_square() => {
-            check_size(name, found.shape.rows, Location::of(ty).start())?;
-            Ok(found.shape.rows)
+        Some((shape, _)) if shape.is_square() => {
+            check_size(name, shape.rows, Location::of(ty).start())?;
+            Ok(shape.rows)
         }
         _ => {
             bail!(ty, "`{}` is no space of square matrices", spell_type(ty); help "write `Matrix3` or `SMatrix<8, 8>`")

@@ -8,9 +8,20 @@ use super::{Elaborator, Value};
 use crate::diagnostic::{Diagnostic, Location, error};
 use crate::parse::{parenthesized, spell};
 
+/// What an operator does, for messages.
+pub(super) fn verb(operator: &BinOp) -> &'static str {
+    match operator {
+        BinOp::Add(_) => "added",
+        BinOp::Sub(_) => "subtracted",
+        BinOp::Mul(_) => "multiplied",
+        BinOp::Div(_) => "divided",
+        _ => "divided with remainder",
+    }
+}
+
 /// A sum of matrices of different shapes.
-pub(super) fn unequal_shapes(link: &ExprBinary, left: Expr, right: Expr, verb: &str) -> Diagnostic {
-    let (a, b) = (spell(&link.left), spell(&link.right));
+pub(super) fn unequal_shapes(link: &ExprBinary, left: Expr, right: Expr) -> Diagnostic {
+    let (a, b, verb) = (spell(&link.left), spell(&link.right), verb(&link.op));
     let (l, r) = (left.shape(), right.shape());
     let (left, right) = (Value::Matrix(left).describe(), Value::Matrix(right).describe());
     let error = error!(link, "`{a}` is {left} and `{b}` is {right}: they cannot be {verb}");

@@ -88,7 +88,7 @@ impl<'g> Elaborator<'_, '_, 'g> {
         }
         if let Some(group) = self.group_of(a).filter(|_| is_inverse) {
             let inverse = self.grow(call, &[a, a], Growth::Product, || group.inverse(a))?;
-            self.note_inverse(a, inverse);
+            self.members.insert(inverse, group);
             return Some(Value::Matrix(inverse));
         }
         self.build(call, &[a, a], Growth::Product, || make(a))

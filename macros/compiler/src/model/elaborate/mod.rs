@@ -115,13 +115,6 @@ impl<'e, 'c, 'g> Elaborator<'e, 'c, 'g> {
         }
     }
 
-    /// The inverse of an element of a group is one.
-    fn note_inverse(&mut self, element: Expr<'g>, inverse: Expr<'g>) {
-        if let Some(group) = self.group_of(element) {
-            self.members.insert(inverse, group);
-        }
-    }
-
     fn graph(&self) -> &'g Graph {
         self.context.graph
     }

@@ -3,41 +3,14 @@
 use clebsch_symbolic::{Expr, Group, Rational, integer};
 use syn::{BinOp, Expr as Syntax, ExprBinary, ExprUnary, UnOp};
 
-use super::errors::{no_product, point_moved, unequal_shapes};
+use super::errors::{no_product, point_moved, unequal_shapes, verb};
 use super::{Elaborator, Growth, Value};
 use crate::diagnostic::{Diagnostic, error, refuse};
 use crate::parse::{parenthesized, spell, spell_tokens};
 
-#[derive(Copy, Clone, PartialEq, Eq)]
-pub(super) enum Operator {
-    Add,
-    Subtract,
-    Multiply,
-    Divide,
-    Remainder,
-}
-
-impl Operator {
-    fn of(operator: &BinOp) -> Option<Operator> {
-        Some(match operator {
-            BinOp::Add(_) => Operator::Add,
-            BinOp::Sub(_) => Operator::Subtract,
-            BinOp::Mul(_) => Operator::Multiply,
-            BinOp::Div(_) => Operator::Divide,
-            BinOp::Rem(_) => Operator::Remainder,
-            _ => return None,
-        })
-    }
-
-    /// What it does, for messages.
-    pub(super) fn verb(self) -> &'static str {
-        ["added", "subtracted", "multiplied", "divided", "divided with remainder"][self as usize]
-    }
-
-    /// A sum or a difference.
-    pub(super) fn combine<'g>(self, a: Expr<'g>, b: Expr<'g>) -> Expr<'g> {
-        if self == Operator::Subtract { a - b } else { a + b }
-    }
+/// A sum or a difference.
+pub(super) fn combined<'g>(link: &ExprBinary, a: Expr<'g>, b: Expr<'g>) -> Expr<'g> {
+    if matches!(link.op, BinOp::Sub(_)) { a - b } else { a + b }
 }
 
 impl<'g> Elaborator<'_, '_, 'g> {
@@ -51,9 +24,11 @@ impl<'g> Elaborator<'_, '_, 'g> {
         let mut value = self.elaborate(first);
         for link in chain.into_iter().rev() {
             let right = self.elaborate(&link.right);
-            value = match Operator::of(&link.op) {
-                Some(operator) => value.zip(right).and_then(|(left, right)| self.apply(operator, link, left, right)),
-                None => self.refused_operator(&link.op),
+            value = match &link.op {
+                BinOp::Add(_) | BinOp::Sub(_) | BinOp::Mul(_) | BinOp::Div(_) | BinOp::Rem(_) => {
+                    value.zip(right).and_then(|(left, right)| self.apply(link, left, right))
+                }
+                other => self.refused_operator(other),
             };
         }
         value
@@ -71,26 +46,25 @@ impl<'g> Elaborator<'_, '_, 'g> {
         })
     }
 
-    fn apply(&mut self, operator: Operator, link: &ExprBinary, left: Value<'g>, right: Value<'g>) -> Option<Value<'g>> {
-        match (operator, left, right) {
-            (Operator::Remainder, Value::Matrix(left), Value::Matrix(right)) if self.is_number_of_sites(right) => {
+    fn apply(&mut self, link: &ExprBinary, left: Value<'g>, right: Value<'g>) -> Option<Value<'g>> {
+        match (&link.op, left, right) {
+            (BinOp::Rem(_), Value::Matrix(left), Value::Matrix(right)) if self.is_number_of_sites(right) => {
                 Some(Value::Wrapped(left))
             }
-            (_, left @ Value::Sum(_), right) | (_, left, right @ Value::Sum(_)) => {
-                self.sums(operator, link, left, right)
+            (_, left @ Value::Sum(_), right) | (_, left, right @ Value::Sum(_)) => self.sums(link, left, right),
+            (_, left, _) if !left.is_operand() => self.no_matrix(link, &link.left, &left),
+            (_, _, right) if !right.is_operand() => self.no_matrix(link, &link.right, &right),
+            (BinOp::Mul(_), Value::Identity(scale), other) | (BinOp::Mul(_), other, Value::Identity(scale)) => {
+                self.scaled(link, scale, other)
             }
-            (_, left, _) if !left.is_operand() => self.no_matrix(operator, &link.left, &left),
-            (_, _, right) if !right.is_operand() => self.no_matrix(operator, &link.right, &right),
-            (Operator::Multiply, Value::Identity(scale), other)
-            | (Operator::Multiply, other, Value::Identity(scale)) => self.scaled(link, scale, other),
             (_, left @ Value::Quaternion(_), right) | (_, left, right @ Value::Quaternion(_)) => {
-                self.quaternions(operator, link, left, right)
+                self.quaternions(link, left, right)
             }
-            (Operator::Add | Operator::Subtract, left, right) => self.sum(operator, link, left, right),
             // by construction: identities, quaternions, tuples and arrays have been dealt with
-            (Operator::Multiply, left, right) => self.product(link, left.matrix()?, right.matrix()?),
-            (Operator::Divide, left, right) => self.quotient(link, left, right),
-            (Operator::Remainder, left, right) => self.remainder(link, left, right),
+            (BinOp::Mul(_), left, right) => self.product(link, left.matrix()?, right.matrix()?),
+            (BinOp::Div(_), left, right) => self.quotient(link, left, right),
+            (BinOp::Rem(_), left, right) => self.remainder(link, left, right),
+            (_, left, right) => self.sum(link, left, right),
         }
     }
 
@@ -106,16 +80,16 @@ impl<'g> Elaborator<'_, '_, 'g> {
         self.grow(at, &[scale, expr], Growth::Sum, || scale * expr).map(make)
     }
 
-    fn no_matrix(&mut self, operator: Operator, syntax: &Syntax, value: &Value<'g>) -> Option<Value<'g>> {
+    fn no_matrix(&mut self, link: &ExprBinary, syntax: &Syntax, value: &Value<'g>) -> Option<Value<'g>> {
         let text = spell(syntax);
-        refuse!(self, syntax, "`{text}` is {} and cannot be {}", value.describe(), operator.verb();
+        refuse!(self, syntax, "`{text}` is {} and cannot be {}", value.describe(), verb(&link.op);
             help "take its parts, as in `{text}{}`", super::first_part(value))
     }
 
-    fn sum(&mut self, operator: Operator, at: &ExprBinary, left: Value<'g>, right: Value<'g>) -> Option<Value<'g>> {
+    fn sum(&mut self, at: &ExprBinary, left: Value<'g>, right: Value<'g>) -> Option<Value<'g>> {
         let (left, right) = match (left, right) {
             (Value::Identity(a), Value::Identity(b)) => {
-                return self.grow(at, &[a, b], Growth::Sum, || operator.combine(a, b)).map(Value::Identity);
+                return self.grow(at, &[a, b], Growth::Sum, || combined(at, a, b)).map(Value::Identity);
             }
             (Value::Identity(scale), Value::Matrix(matrix)) => (self.fitted(&at.right, scale, matrix)?, matrix),
             (Value::Matrix(matrix), Value::Identity(scale)) => (matrix, self.fitted(&at.left, scale, matrix)?),
@@ -123,9 +97,9 @@ impl<'g> Elaborator<'_, '_, 'g> {
             (left, right) => (left.matrix()?, right.matrix()?),
         };
         if left.shape() != right.shape() {
-            return self.refuse(unequal_shapes(at, left, right, operator.verb()));
+            return self.refuse(unequal_shapes(at, left, right));
         }
-        self.build(at, &[left, right], Growth::Sum, || operator.combine(left, right))
+        self.build(at, &[left, right], Growth::Sum, || combined(at, left, right))
     }
 
     /// The identity that fits a matrix, times a scalar.

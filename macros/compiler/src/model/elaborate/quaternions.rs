@@ -1,10 +1,11 @@
 //! Quaternions in formulas: `Quaternion::new(w, i, j, k)`, `Q * v`, `Q * Q`, `Q.imag()`, `.w`.
 
 use clebsch_symbolic::{Expr, Shape};
-use syn::{ExprBinary, ExprCall, ExprField, ExprMethodCall, Ident};
+use syn::{BinOp, ExprBinary, ExprCall, ExprField, ExprMethodCall, Ident};
 
 use super::super::quaternion as algebra;
-use super::operators::{Operator, division_by_zero};
+use super::errors::verb;
+use super::operators::{combined, division_by_zero};
 use super::{Elaborator, Growth, Value};
 use crate::diagnostic::{Diagnostic, error, meant, refuse};
 use crate::parse::{listed, parenthesized, spell};
@@ -38,46 +39,40 @@ pub(super) fn is_of_quaternions(name: &str) -> bool {
 
 impl<'g> Elaborator<'_, '_, 'g> {
     /// An operator of which at least one side is a quaternion.
-    pub(super) fn quaternions(
-        &mut self,
-        operator: Operator,
-        link: &ExprBinary,
-        left: Value<'g>,
-        right: Value<'g>,
-    ) -> Option<Value<'g>> {
-        use Operator::{Add, Divide, Multiply, Subtract};
+    pub(super) fn quaternions(&mut self, link: &ExprBinary, left: Value<'g>, right: Value<'g>) -> Option<Value<'g>> {
+        use BinOp::{Add, Div, Mul, Sub};
         let graph = self.graph();
         let coordinates = |value: &Value<'g>| match value {
             Value::Quaternion(q) => Some(*q),
             Value::Identity(s) => Some(algebra::real(graph, *s)),
             _ => None,
         };
-        if let (Add | Subtract, Some((a, b))) = (operator, coordinates(&left).zip(coordinates(&right))) {
-            return self.grow(link, &[a, b], Growth::Sum, || operator.combine(a, b)).map(Value::Quaternion);
+        if let (Add(_) | Sub(_), Some((a, b))) = (&link.op, coordinates(&left).zip(coordinates(&right))) {
+            return self.grow(link, &[a, b], Growth::Sum, || combined(link, a, b)).map(Value::Quaternion);
         }
-        match (operator, left, right) {
-            (Multiply, Value::Quaternion(a), Value::Quaternion(b)) => {
+        match (&link.op, left, right) {
+            (Mul(_), Value::Quaternion(a), Value::Quaternion(b)) => {
                 let product = self.grow(link, &[a, b], Growth::Pairs, || algebra::product(a, b))?;
                 self.note_product(a, b, product);
                 Some(Value::Quaternion(product))
             }
-            (Multiply, Value::Quaternion(a), Value::Matrix(s)) | (Multiply, Value::Matrix(s), Value::Quaternion(a))
+            (Mul(_), Value::Quaternion(a), Value::Matrix(s)) | (Mul(_), Value::Matrix(s), Value::Quaternion(a))
                 if s.shape().is_scalar() =>
             {
                 self.grow(link, &[a, s], Growth::Sum, || s * a).map(Value::Quaternion)
             }
-            (Multiply, Value::Quaternion(a), Value::Matrix(v)) if v.shape() == Shape::vector(3) => {
+            (Mul(_), Value::Quaternion(a), Value::Matrix(v)) if v.shape() == Shape::vector(3) => {
                 // a quaternion on a group has length one
                 let turn = if self.group_of(a).is_some() { algebra::turn } else { algebra::turn_by_any };
                 self.build(link, &[a, a, v], Growth::Pairs, || turn(a, v))
             }
-            (Divide, Value::Quaternion(a), Value::Matrix(s)) if s.shape().is_scalar() => {
+            (Div(_), Value::Quaternion(a), Value::Matrix(s)) if s.shape().is_scalar() => {
                 if s.is_zero() {
                     return self.refuse(division_by_zero(&link.right).note("it simplifies to 0"));
                 }
                 self.grow(link, &[a, s], Growth::Product, || a / s).map(Value::Quaternion)
             }
-            (operator, left, right) => self.refuse(misfit(operator, link, &left, &right)),
+            (_, left, right) => self.refuse(misfit(link, &left, &right)),
         }
     }
 
@@ -124,7 +119,9 @@ impl<'g> Elaborator<'_, '_, 'g> {
         let is_conjugate = name == "conjugate" || (name == "inverse" && self.group_of(q).is_some());
         if is_conjugate {
             let conjugate = self.grow(call, &[q], Growth::Sum, || algebra::conjugate(q))?;
-            self.note_inverse(q, conjugate);
+            if let Some(group) = self.group_of(q) {
+                self.members.insert(conjugate, group);
+            }
             return Some(Value::Quaternion(conjugate));
         }
         let value = self.grow(call, &vec![q; operands], growth, || make(q))?;
@@ -159,17 +156,17 @@ fn no_method(call: &ExprMethodCall, name: &str) -> Diagnostic {
 }
 
 /// Operands that do not fit a quaternion.
-fn misfit(operator: Operator, link: &ExprBinary, left: &Value, right: &Value) -> Diagnostic {
-    let (a, b, verb) = (spell(&link.left), spell(&link.right), operator.verb());
+fn misfit(link: &ExprBinary, left: &Value, right: &Value) -> Diagnostic {
+    let (a, b, verb) = (spell(&link.left), spell(&link.right), verb(&link.op));
     let error = error!(link, "`{a}` is {} and `{b}` is {}: they cannot be {verb}", left.describe(), right.describe());
     let vector = |value: &Value| value.matrix().is_some_and(|expr| expr.shape() == Shape::vector(3));
     let (a, b) = (parenthesized(&link.left), parenthesized(&link.right));
-    match (operator, left, right) {
-        (Operator::Multiply, left, Value::Quaternion(_)) if vector(left) => {
+    match (&link.op, left, right) {
+        (BinOp::Mul(_), left, Value::Quaternion(_)) if vector(left) => {
             error.help(format!("write the quaternion first, `{b} * {a}`, to turn the vector"))
         }
-        (Operator::Divide, _, Value::Quaternion(_)) => error.help(format!("multiply by `{b}.inverse()`")),
-        (Operator::Add | Operator::Subtract, Value::Quaternion(_), right) if vector(right) => {
+        (BinOp::Div(_), _, Value::Quaternion(_)) => error.help(format!("multiply by `{b}.inverse()`")),
+        (BinOp::Add(_) | BinOp::Sub(_), Value::Quaternion(_), right) if vector(right) => {
             error.help(format!("take the vector part, `{a}.imag()`"))
         }
         _ => error.note("a quaternion is added to a quaternion or to `I`, and multiplies a quaternion, a scalar or a vector of three components"),

@@ -1,12 +1,12 @@
 //! Powers: `0..N`, `(0..N).map(|i| …)`, sums over sites, `q[(i + 1) % N]`.
 
 use clebsch_symbolic::{Expr, Property, Role, Shape};
-use syn::{Expr as Syntax, ExprBinary, ExprIndex, ExprMethodCall, ExprRange, RangeLimits};
+use syn::{BinOp, Expr as Syntax, ExprBinary, ExprIndex, ExprMethodCall, ExprRange, RangeLimits};
 
 use super::super::power::{Linear, Range, SiteIndex, Term, index_name, is_inside};
 use super::super::value::{Each, Value};
 use super::Elaborator;
-use super::operators::{Operator, division_by_zero};
+use super::operators::division_by_zero;
 use crate::diagnostic::refuse;
 use crate::parse::{shortened, spell};
 
@@ -74,24 +74,18 @@ impl<'g> Elaborator<'_, '_, 'g> {
     }
 
     /// Sums over sites are added, and multiplied and divided by scalars.
-    pub(super) fn sums(
-        &mut self,
-        operator: Operator,
-        link: &ExprBinary,
-        left: Value<'g>,
-        right: Value<'g>,
-    ) -> Option<Value<'g>> {
+    pub(super) fn sums(&mut self, link: &ExprBinary, left: Value<'g>, right: Value<'g>) -> Option<Value<'g>> {
         let graph = self.graph();
-        let sign = graph.integer(if operator == Operator::Subtract { -1 } else { 1 });
-        let (terms, factor) = match (operator, left, right) {
-            (Operator::Add | Operator::Subtract, left, right) => {
+        let sign = graph.integer(if matches!(link.op, BinOp::Sub(_)) { -1 } else { 1 });
+        let (terms, factor) = match (&link.op, left, right) {
+            (BinOp::Add(_) | BinOp::Sub(_), left, right) => {
                 let mut terms = self.terms(&link.left, left)?;
                 terms.extend(scaled(self.terms(&link.right, right)?, sign));
                 return Some(Value::Sum(terms));
             }
-            (Operator::Multiply, Value::Sum(terms), factor) => (terms, self.factor(&link.right, factor)?),
-            (Operator::Multiply, factor, Value::Sum(terms)) => (terms, self.factor(&link.left, factor)?),
-            (Operator::Divide, Value::Sum(terms), divisor) => {
+            (BinOp::Mul(_), Value::Sum(terms), factor) => (terms, self.factor(&link.right, factor)?),
+            (BinOp::Mul(_), factor, Value::Sum(terms)) => (terms, self.factor(&link.left, factor)?),
+            (BinOp::Div(_), Value::Sum(terms), divisor) => {
                 let divisor = self.factor(&link.right, divisor)?;
                 if divisor.is_zero() {
                     return self.refuse(division_by_zero(&link.right));
