@@ -33,7 +33,6 @@ mod table;
 mod terms;
 #[cfg(test)]
 mod tests;
-mod windows;
 pub mod work;
 
 pub use algebra::{Algebra, Basis, Sparse};

@@ -5,7 +5,6 @@
 //! r(F) = T* ∂_F K − J(q, ∂_q K) = N + J(q, ∂U₀) for F, move, and let N⁺ be the other trivialisation of ∂_F K (which is Ad* of
 //! r where K does not depend on q) plus J(q⁺, ∂U₁).
 
-mod action;
 mod catalogue;
 mod cayley;
 mod choice;
@@ -15,7 +14,6 @@ mod collocation;
 mod control;
 mod derivation;
 mod discrete_lagrangian;
-mod displacement;
 mod energy;
 mod equation;
 mod equations;
@@ -38,7 +36,6 @@ mod summation;
 mod symbols;
 mod symmetry;
 mod system;
-mod tolerance;
 mod trivialisation;
 mod variation;
 mod velocity;
@@ -129,7 +126,7 @@ fn mechanics(model: Mechanics<'_>) -> Result<MechanicsFormulas<'_>, Diagnostics>
         if is_exact { None } else { collocation::collocation(&sources(1), &energy, potential_energy, is_free)? };
     substep::adopt_sine(&mut system.symbols, &mut substeps);
     substep::check_poles(&model, &system.symbols, &substeps)?;
-    tolerance::check(&model, &substeps, collocation.is_some())?;
+    substep::check_tolerance(&model, &substeps, collocation.is_some())?;
     let uniform_inertia = energy::uniform(&system.symbols, energy.kinetic, inertia);
     let formulas = MechanicsFormulas {
         projection: if is_free { None } else { system.projection() },

@@ -1,7 +1,6 @@
 //! The rows of the table of formulas, made of what was derived.
 
 mod energy;
-mod lagrangian;
 mod motions;
 mod steps;
 

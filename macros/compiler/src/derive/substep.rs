@@ -191,3 +191,28 @@ pub(super) fn check_poles(
         Found::when(feature == Feature::Poles && equations.any(has_poles))
     })
 }
+
+/// A tolerance ends an iteration, or the series of the free rotations between kicks; a number of iterations limits one.
+pub(super) fn check_tolerance(
+    model: &Mechanics<'_>,
+    substeps: &[Substep<'_>],
+    collocates: bool,
+) -> Result<(), Diagnostics> {
+    let solutions: Vec<Solution> =
+        substeps.iter().flat_map(|s| &s.equations).map(|equation| equation.solution).collect();
+    let is_iterated = collocates || solutions.contains(&Solution::Newton);
+    if let Some(iterations) = &model.dials.iterations {
+        let asked = (Feature::Iterations, Found::at(iterations.span));
+        features::check(asked, |feature| Found::when(feature == Feature::ExplicitEquation && !is_iterated))?;
+    }
+    let Some(tolerance) = &model.dials.tolerance else { return Ok(()) };
+    let turns_freely = solutions.contains(&Solution::FreeRotation);
+    // without kicks d is found once, to round-off
+    let is_series = turns_freely && model.potential.is_some();
+    features::check((Feature::Tolerance, Found::at(tolerance.span)), |feature| match feature {
+        _ if is_iterated || is_series => None,
+        Feature::FreeMotion => Found::when(turns_freely),
+        Feature::ExplicitEquation => Found::when(!turns_freely),
+        _ => None,
+    })
+}

@@ -11,7 +11,8 @@
 use clebsch_symbolic::{Expr, Property, Role, WordTerm, identity};
 
 use super::moves::inverse_by;
-use super::{MechanicsFormulas, Substep};
+use super::symbols::moved;
+use super::{ConservedMomentum, MechanicsFormulas, Substep};
 use crate::diagnostic::Diagnostics;
 use crate::model::Factor;
 use crate::model::features::{self, Feature, Found};
@@ -89,6 +90,24 @@ impl<'g> MechanicsFormulas<'g> {
             Some((self.inverse_letter(k), found.1))
         };
         (0..self.model.factors.len()).filter_map(inverse).collect()
+    }
+
+    /// The conserved momenta that every F conserves, whether or not it solves the momentum equation: those with the same value at
+    /// (Φ_F q, M⁺) as at (q, M) where M⁺ is made of M. Kicks leave them as they are.
+    pub(super) fn conserved_by_any_element(&self) -> Vec<&ConservedMomentum<'g>> {
+        let substeps = || self.substeps.iter().take(self.stepped);
+        if substeps().any(|substep| substep.other.is_some()) {
+            return Vec::new();
+        }
+        let move_of = |substep: &Substep<'g>| -> Vec<(Expr<'g>, Expr<'g>)> {
+            let momenta = self.symbols.momenta.iter().enumerate().filter(|(k, _)| !substep.unchanged[*k]);
+            moved(&self.model).into_iter().chain(momenta.map(|(k, mu)| (*mu, self.carried(k, *mu)))).collect()
+        };
+        let moves: Vec<_> = substeps().map(move_of).collect();
+        let stays = |momentum: &&ConservedMomentum<'g>| {
+            moves.iter().all(|moved| identity::equal(&[momentum.value.substitute(moved)], &[momentum.value]))
+        };
+        self.symmetries.conserved.iter().filter(stays).collect()
     }
 }
 
