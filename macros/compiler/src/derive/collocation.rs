@@ -45,8 +45,12 @@ pub(super) fn collocation<'g>(
         return Ok(None);
     }
     check(sources, energy, is_free)?;
-    let leaves = model.configurations.iter().enumerate();
-    let general: Vec<_> = leaves.map(|(i, leaf)| (leaf.symbol, off_orbit(model, i))).collect();
+    // leaves of the configuration that need not lie on its orbit
+    let mut general = Vec::new();
+    for (i, leaf) in model.configurations.iter().enumerate() {
+        let role = Role::Configuration(i);
+        general.push((leaf.symbol, model.graph.symbol(&leaf.name, leaf.shape, role, Property::General)));
+    }
     check_linear(sources, &general)?;
     let lift = lift(sources)?;
     // stages lie off the orbit of q, where what simplifies on it does not hold
@@ -70,12 +74,6 @@ pub(super) fn collocation<'g>(
         is_affine: sources.momentum_map.iter().any(is_moved),
         lift,
     }))
-}
-
-/// A leaf of the configuration that need not lie on its orbit.
-fn off_orbit<'g>(model: &System<'g>, i: usize) -> Expr<'g> {
-    let leaf = &model.configurations[i];
-    model.graph.symbol(&leaf.name, leaf.shape, Role::Configuration(i), Property::General)
 }
 
 /// ξ = Σ⁻¹(J − A) for each factor.

@@ -50,22 +50,18 @@ pub(super) fn separate<'g>(model: &Mechanics<'g>, cost: Expr<'g>) -> DiscreteLag
     let static_part = cost.substitute(&identities(model));
     let difference = cost - static_part;
     let kinetic = if model.reads_configuration(difference) { difference.expand() } else { difference };
-    let (start, end) = placed_potential(model);
+    // −h/2 V at both ends of a step of second order, −h V at the end of one of first order
+    let (h, zero) = (model.step_size, model.graph.integer(0));
+    let (start, end) = match (model.potential, model.order) {
+        (None, _) => (zero, zero),
+        (Some(potential), Order::First) => (zero, -(h * potential)),
+        (Some(potential), _) => (-(h * potential / 2), -(h * potential / 2)),
+    };
     if model.reads_configuration(kinetic) {
         return DiscreteLagrangian { kinetic: cost, start, end, couples: true };
     }
     let start = if model.reads_configuration(static_part) { start + static_part } else { start };
     DiscreteLagrangian { kinetic, start, end, couples: false }
-}
-
-/// −h/2 V at both ends of a step of second order, −h V at the end of one of first order.
-fn placed_potential<'g>(model: &Mechanics<'g>) -> (Expr<'g>, Expr<'g>) {
-    let (h, zero) = (model.step_size, model.graph.integer(0));
-    match (model.potential, model.order) {
-        (None, _) => (zero, zero),
-        (Some(potential), Order::First) => (zero, -(h * potential)),
-        (Some(potential), _) => (-(h * potential / 2), -(h * potential / 2)),
-    }
 }
 
 impl<'g> DiscreteLagrangian<'g> {

@@ -6,7 +6,7 @@ use super::equation::{MomentumEquation, Solution, Sources, is_diagonal};
 use super::velocity;
 use crate::diagnostic::Diagnostics;
 use crate::model::features::{self, Feature, Found};
-use crate::model::{Discretization, Mechanics};
+use crate::model::{Discretization, Factor, Mechanics};
 
 /// Whether a step without a potential is to be the exact free motion.
 pub(super) fn is_exact(model: &Mechanics<'_>) -> bool {
@@ -45,24 +45,22 @@ pub(super) fn check<'g>(model: &Mechanics<'g>, energy: Expr<'g>, velocities: &[E
         }
         Feature::Forces => Found::when(model.force.is_some()),
         Feature::Tangent => Found::when(model.has_variations()),
-        Feature::VaryingEnergy => (!is_constant_form(model, energy, velocities)).then(velocity),
-        Feature::NoDistributionOfMass => (!has_mass(model, energy, velocities)).then(velocity),
+        // a constant quadratic form of each velocity alone
+        Feature::VaryingEnergy => {
+            let is_form = |velocity: &Expr<'g>| velocity::inertia(energy, velocities, *velocity).is_some();
+            let varies = model.reads_configuration(energy) || energy.depends_on(model.time);
+            (varies || !velocities.iter().all(is_form)).then(velocity)
+        }
+        // whether a distribution of mass has the energy, on the factors where this matters
+        Feature::NoDistributionOfMass => {
+            let mut factors = model.factors.iter().zip(velocities);
+            let is_massless = |(factor, velocity): (&Factor<'g>, &Expr<'g>)| {
+                let inertia = || energy.gradient(*velocity).matrix_of_linear(*velocity);
+                factor.group == SpecialOrthogonal(4) && velocity::mass_matrix(factor.group, inertia()).is_none()
+            };
+            factors.any(is_massless).then(velocity)
+        }
         _ => None,
-    })
-}
-
-/// Whether an energy is a constant quadratic form of each velocity alone.
-fn is_constant_form<'g>(model: &Mechanics<'g>, energy: Expr<'g>, velocities: &[Expr<'g>]) -> bool {
-    !model.reads_configuration(energy)
-        && !energy.depends_on(model.time)
-        && velocities.iter().all(|velocity| velocity::inertia(energy, velocities, *velocity).is_some())
-}
-
-/// Whether a distribution of mass has the energy, on the factors where this matters.
-fn has_mass<'g>(model: &Mechanics<'g>, energy: Expr<'g>, velocities: &[Expr<'g>]) -> bool {
-    model.factors.iter().zip(velocities).all(|(factor, velocity)| {
-        factor.group != Group::SpecialOrthogonal(4)
-            || velocity::mass_matrix(factor.group, energy.gradient(*velocity).matrix_of_linear(*velocity)).is_some()
     })
 }
 

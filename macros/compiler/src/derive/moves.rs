@@ -105,7 +105,11 @@ impl<'g> MechanicsFormulas<'g> {
 
     /// q⁺ = Φ_F(q) with F = I + D: for linear actions q + D q, without cancellation. Where sums keep their rests, what is added to q.
     pub(super) fn advance(&self) -> Vec<Expr<'g>> {
-        if self.is_compensated() { self.displacements() } else { self.at_increments(&self.model.action) }
+        if !self.is_compensated() {
+            return self.at_increments(&self.model.action);
+        }
+        let inverses = self.inverses();
+        self.displacements().into_iter().map(|added| added.substitute(&inverses)).collect()
     }
 
     /// M⁺ = Ad*_{F⁻¹} M for a left action, Ad*_F M for a right one, with F = I + D; the other trivialisation of ∂_F K where the cost couples.
@@ -119,9 +123,7 @@ impl<'g> MechanicsFormulas<'g> {
         }
         self.carried_on(substep).map(|carried| self.at_increments(&carried))
     }
-}
 
-impl<'g> MechanicsFormulas<'g> {
     /// q⁺ = q + α x_Q(q) + β x_Q(x_Q(q)) of vectors that turn in one plane, without the matrix of the turn.
     ///
     /// For each leaf from q and the chart coordinates, or q⁺ − q where sums keep their rests; `None` where a leaf is no vector or does not

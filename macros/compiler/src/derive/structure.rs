@@ -28,7 +28,7 @@ pub(super) fn specialised<'g>(sources: &Sources<'_, 'g>, equation: MomentumEquat
         let is_inertial = pattern::is_inertial_as_a_whole(sources, &equation);
         return vec![MomentumEquation { is_inertial, ..equation }];
     }
-    let mut whole = Reduced::new(sources, equation, Vec::new());
+    let mut whole = Reduced::new(sources, equation);
     whole.equation.is_inertial = pattern::is_inertial(sources, &whole.equation, &whole.columns);
     if let Some(explicit) = whole.substituted() {
         return vec![explicit];
@@ -50,14 +50,10 @@ struct Reduced<'a, 'b, 'g> {
 }
 
 impl<'a, 'b, 'g> Reduced<'a, 'b, 'g> {
-    fn new(
-        sources: &'a Sources<'b, 'g>,
-        equation: MomentumEquation<'g>,
-        eliminated: Vec<MomentumEquation<'g>>,
-    ) -> Reduced<'a, 'b, 'g> {
+    fn new(sources: &'a Sources<'b, 'g>, equation: MomentumEquation<'g>) -> Reduced<'a, 'b, 'g> {
         let columns = equation.columns(&sources.symbols);
         let pattern = Pattern::of(sources, &equation, &columns);
-        Reduced { sources, equation, columns, pattern, eliminated }
+        Reduced { sources, equation, columns, pattern, eliminated: Vec::new() }
     }
 
     /// The solution by substitution, where coordinate after coordinate has a constant slope and needs only those before it.
@@ -141,7 +137,8 @@ impl<'a, 'b, 'g> Reduced<'a, 'b, 'g> {
         let residual = identity::without_vanishing_terms(residual);
         let left = left.into_iter().map(|i| whole.components[i]).collect();
         let cleared = whole.cleared || whole.residual.has_inverse() && !residual.has_inverse();
-        Some(Reduced::new(sources, MomentumEquation::new(sources, left, residual, cleared), eliminated))
+        let left = Reduced::new(sources, MomentumEquation::new(sources, left, residual, cleared));
+        Some(Reduced { eliminated, ..left })
     }
 
     /// The constant ∂ρ_i/∂x_i, from the inertia where it is that: Σ_ii/(s·h).
@@ -224,7 +221,7 @@ impl<'a, 'b, 'g> Reduced<'a, 'b, 'g> {
         let residual = identity::without_vanishing_terms(residual);
         let components = positions.iter().map(|&i| whole.components[i]).collect();
         let part = MomentumEquation::new(sources, components, residual, whole.cleared);
-        let part = Reduced::new(sources, MomentumEquation { is_inertial: whole.is_inertial, ..part }, Vec::new());
+        let part = Reduced::new(sources, MomentumEquation { is_inertial: whole.is_inertial, ..part });
         part.substituted().unwrap_or_else(|| part.whole())
     }
 }

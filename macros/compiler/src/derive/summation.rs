@@ -11,8 +11,7 @@
 use clebsch_symbolic::{Expr, Property, Role, WordTerm, identity};
 
 use super::moves::inverse_by;
-use super::symbols::moved;
-use super::{ConservedMomentum, MechanicsFormulas, Substep};
+use super::{MechanicsFormulas, Substep};
 use crate::diagnostic::Diagnostics;
 use crate::model::Factor;
 use crate::model::features::{self, Feature, Found};
@@ -21,12 +20,6 @@ impl<'g> MechanicsFormulas<'g> {
     /// Whether the sums of a step keep the rests of their rounding.
     pub fn is_compensated(&self) -> bool {
         self.model.is_compensated()
-    }
-
-    /// Φ_{I+D}(q) − q for each leaf of the configuration.
-    pub(super) fn displacements(&self) -> Vec<Expr<'g>> {
-        let inverses = self.inverses();
-        self.displacements_by_letters().into_iter().map(|added| added.substitute(&inverses)).collect()
     }
 
     /// What the move adds to the momentum M, for each factor; `None` where it adds nothing.
@@ -56,8 +49,8 @@ impl<'g> MechanicsFormulas<'g> {
         changes.then(|| self.symbols.momenta.iter().enumerate().map(carried).collect())
     }
 
-    /// Φ_{I+D}(q) − q, where letters stand for F⁻¹.
-    fn displacements_by_letters(&self) -> Vec<Expr<'g>> {
+    /// Φ_{I+D}(q) − q for each leaf of the configuration, where letters stand for F⁻¹.
+    pub(super) fn displacements(&self) -> Vec<Expr<'g>> {
         let leaves = self.model.configurations.iter().zip(&self.model.action);
         leaves.map(|(leaf, image)| self.beside(*image, leaf.symbol)).collect()
     }
@@ -82,32 +75,15 @@ impl<'g> MechanicsFormulas<'g> {
     }
 
     /// What the letters stand for.
-    fn inverses(&self) -> Vec<(Expr<'g>, Expr<'g>)> {
+    pub(super) fn inverses(&self) -> Vec<(Expr<'g>, Expr<'g>)> {
         let near = self.increments();
-        let inverse = |k: usize| {
-            let inverse = self.model.factors[k].symbol.inverse();
-            let found = near.iter().find(|(letter, _)| *letter == inverse)?;
-            Some((self.inverse_letter(k), found.1))
-        };
-        (0..self.model.factors.len()).filter_map(inverse).collect()
-    }
-
-    /// The conserved momenta that every F conserves, whether or not it solves the momentum equation: those with the same value at
-    /// (Φ_F q, M⁺) as at (q, M) where M⁺ is made of M. Kicks leave them as they are.
-    pub(super) fn conserved_by_any_element(&self) -> Vec<&ConservedMomentum<'g>> {
-        let substeps = || self.substeps.iter().take(self.stepped);
-        if substeps().any(|substep| substep.other.is_some()) {
-            return Vec::new();
+        let mut inverses = Vec::new();
+        for (k, factor) in self.model.factors.iter().enumerate() {
+            let inverse = factor.symbol.inverse();
+            let found = near.iter().find(|(letter, _)| *letter == inverse);
+            inverses.extend(found.map(|(_, explicit)| (self.inverse_letter(k), *explicit)));
         }
-        let move_of = |substep: &Substep<'g>| -> Vec<(Expr<'g>, Expr<'g>)> {
-            let momenta = self.symbols.momenta.iter().enumerate().filter(|(k, _)| !substep.unchanged[*k]);
-            moved(&self.model).into_iter().chain(momenta.map(|(k, mu)| (*mu, self.carried(k, *mu)))).collect()
-        };
-        let moves: Vec<_> = substeps().map(move_of).collect();
-        let stays = |momentum: &&ConservedMomentum<'g>| {
-            moves.iter().all(|moved| identity::equal(&[momentum.value.substitute(moved)], &[momentum.value]))
-        };
-        self.symmetries.conserved.iter().filter(stays).collect()
+        inverses
     }
 }
 
@@ -128,7 +104,7 @@ pub(super) fn check(formulas: &MechanicsFormulas<'_>) -> Result<(), Diagnostics>
         Feature::OtherSum => {
             // Ad*_F M = Fᵀ M F⁻ᵀ always does: M cancels with F = I + D and F⁻¹ = I − D S
             let near = formulas.symbols.increments.as_slice();
-            let mut leaves = formulas.model.configurations.iter().zip(formulas.displacements_by_letters());
+            let mut leaves = formulas.model.configurations.iter().zip(formulas.displacements());
             let (leaf, _) = leaves.find(|(leaf, added)| !cancels(*added, leaf.symbol, near))?;
             Some(Found::somewhere().named(&leaf.name))
         }

@@ -127,6 +127,10 @@ impl<'g> Symbols<'g> {
         let groups = || model.factors.iter().map(|factor| factor.group);
         let vectors: Vec<Shape> = groups().map(|group| Shape::vector(group.dimension())).collect();
         let matrices: Vec<Shape> = groups().map(|group| group.element_shape()).collect();
+        // q⁺ lies in the same space as q
+        let image = |(i, leaf): (usize, &Configuration<'g>)| {
+            graph.symbol(&format!("{}⁺", leaf.name), leaf.shape, Role::Image(i), leaf.symbol.property())
+        };
         Symbols {
             covectors: numbered(&["p", "α", "β"], Role::Covector, &leaves),
             algebra: numbered(&["ξ", "η", "ζ"], Role::Algebra, &vectors),
@@ -142,7 +146,7 @@ impl<'g> Symbols<'g> {
             logarithms: (0..model.factors.len()).map(|k| logarithm(model, k)).collect(),
             increments: numbered(&["D", "Δ", "B"], Role::Increment, &matrices),
             following: numbered(&["D⁺"], Role::Following, &matrices),
-            images: model.configurations.iter().enumerate().map(|(i, leaf)| image(model, i, leaf)).collect(),
+            images: model.configurations.iter().enumerate().map(image).collect(),
             momentum_matrices: numbered(&["M", "N", "P"], Role::MomentumMatrix, &matrices),
         }
     }
@@ -188,11 +192,6 @@ pub(super) fn entries<'g>(vectors: &[Expr<'g>]) -> Vec<Expr<'g>> {
 /// The replacement of symbols by zero.
 pub(super) fn at_zero<'g>(symbols: impl IntoIterator<Item = Expr<'g>>) -> Vec<(Expr<'g>, Expr<'g>)> {
     symbols.into_iter().map(|symbol| (symbol, symbol.graph().zero(symbol.shape()))).collect()
-}
-
-/// The symbol of a leaf of q⁺, which lies in the same space as that of q.
-fn image<'g>(model: &System<'g>, i: usize, leaf: &Configuration<'g>) -> Expr<'g> {
-    model.graph.symbol(&format!("{}⁺", leaf.name), leaf.shape, Role::Image(i), leaf.symbol.property())
 }
 
 /// The symbol of the coordinates of log F.

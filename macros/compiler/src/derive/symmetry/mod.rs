@@ -13,8 +13,8 @@ use clebsch_symbolic::{Expr, Group, Rational, Shape, Zero, identity};
 
 use super::equation::Sources;
 use super::power::{self, SiteTerm};
-use super::symbols::of_columns;
-use super::{DiscreteLagrangian, naming};
+use super::symbols::{moved, of_columns};
+use super::{DiscreteLagrangian, MechanicsFormulas, Substep, naming};
 use crate::model::{Isotropy, is_large};
 use directions::Directions;
 
@@ -208,6 +208,26 @@ impl<'g> Finder<'_, 'g> {
             held.count() == self.sources.model.symmetries[offer].group.dimension()
         };
         (0..self.sources.model.symmetries.len()).filter(|&offer| !is_whole(offer)).collect()
+    }
+}
+
+impl<'g> MechanicsFormulas<'g> {
+    /// The conserved momenta that every F conserves, whether or not it solves the momentum equation: those with the same value at
+    /// (Φ_F q, M⁺) as at (q, M) where M⁺ is made of M. Kicks leave them as they are.
+    pub(in crate::derive) fn conserved_by_any_element(&self) -> Vec<&ConservedMomentum<'g>> {
+        let substeps = || self.substeps.iter().take(self.stepped);
+        if substeps().any(|substep| substep.other.is_some()) {
+            return Vec::new();
+        }
+        let move_of = |substep: &Substep<'g>| -> Vec<(Expr<'g>, Expr<'g>)> {
+            let momenta = self.symbols.momenta.iter().enumerate().filter(|(k, _)| !substep.unchanged[*k]);
+            moved(&self.model).into_iter().chain(momenta.map(|(k, mu)| (*mu, self.carried(k, *mu)))).collect()
+        };
+        let moves: Vec<_> = substeps().map(move_of).collect();
+        let stays = |momentum: &&ConservedMomentum<'g>| {
+            moves.iter().all(|moved| identity::equal(&[momentum.value.substitute(moved)], &[momentum.value]))
+        };
+        self.symmetries.conserved.iter().filter(stays).collect()
     }
 }
 
