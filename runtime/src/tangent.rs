@@ -2,6 +2,7 @@
 
 use crate::linear::divided;
 use crate::parameters::check_finite;
+use crate::parts::{Q, U};
 use crate::scheme::Scheme;
 use crate::scheme::edges::{AtFixedElement, ByQuantities, Drift, Edges};
 use crate::{Carried, Clebsch, Differentiated, Error, Scalar, Sensitive, Space, State, Stepper, Time, Variational};
@@ -188,14 +189,7 @@ where
         Ok((q, mu, tangent))
     }
 
-    fn pass(
-        &self,
-        number: usize,
-        t: T,
-        q: &S::Configuration,
-        mu: &SVector<T, M>,
-        u: &S::Input,
-    ) -> Result<Passed<S, M>, Error> {
+    fn pass(&self, number: usize, t: T, q: &Q<S>, mu: &SVector<T, M>, u: &U<S>) -> Result<Passed<S, M>, Error> {
         check_finite("the input", u)?;
         let increment = B::Scheme::visit(self.at(t), number, Drift(q, mu, u))?;
         let next = S::advance(&self.system, q, &increment);

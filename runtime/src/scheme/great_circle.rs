@@ -60,7 +60,7 @@ impl<T: Scalar, const N: usize> Plane<T, N> for (SVector<T, N>, SVector<T, N>) {
 }
 
 /// How points are pushed between their turns.
-pub trait Turns<S: GreatCircles<M>, M: Method<S>, const N: usize> {
+pub trait Turns<S: GreatCircles<M>, M: Method<S>, const N: usize>: Sized {
     /// What a state holds of its momentum.
     type Plane: Plane<S::Scalar, N>;
     /// What one step leaves to the next.
@@ -76,12 +76,12 @@ pub trait Turns<S: GreatCircles<M>, M: Method<S>, const N: usize> {
     }
 
     /// As many steps, in place.
-    fn turn(
-        at: At<'_, S, M>,
-        steps: usize,
-        state: (&mut Point<S, N>, &mut Self::Plane, &mut Self::Gradient),
-    ) -> Result<(), Error>;
+    fn turn(at: At<'_, S, M>, steps: usize, state: Places<'_, S, Self, M, N>) -> Result<(), Error>;
 }
+
+/// Where a turn finds q, what is held of the momentum, and the gradient, and writes the next ones.
+type Places<'a, S, C, M, const N: usize> =
+    (&'a mut Point<S, N>, &'a mut <C as Turns<S, M, N>>::Plane, &'a mut <C as Turns<S, M, N>>::Gradient);
 
 impl<S: GreatCircles<M, Configuration = Point<S, N>>, M: Method<S>, const N: usize> Turns<S, M, N> for Shared {
     type Plane = Point<S, N>;
@@ -98,11 +98,7 @@ impl<S: GreatCircles<M, Configuration = Point<S, N>>, M: Method<S>, const N: usi
     }
 
     #[inline(always)]
-    fn turn(
-        at: At<'_, S, M>,
-        steps: usize,
-        (q, w, gradient): (&mut Point<S, N>, &mut Point<S, N>, &mut Point<S, N>),
-    ) -> Result<(), Error> {
+    fn turn(at: At<'_, S, M>, steps: usize, (q, w, gradient): Places<'_, S, Self, M, N>) -> Result<(), Error> {
         if steps == 0 {
             return Ok(());
         }
@@ -128,11 +124,8 @@ impl<S: GreatCircles<M, Configuration = Point<S, N>>, M: Method<S>, const N: usi
     fn gradient(_: At<'_, S, M>, _: &Point<S, N>) {}
 
     #[inline(always)]
-    fn turn(
-        At { system, constants, t, .. }: At<'_, S, M>,
-        steps: usize,
-        (q, w, ()): (&mut Point<S, N>, &mut Point<S, N>, &mut ()),
-    ) -> Result<(), Error> {
+    fn turn(at: At<'_, S, M>, steps: usize, (q, w, ()): Places<'_, S, Self, M, N>) -> Result<(), Error> {
+        let At { system, constants, t, .. } = at;
         let a = S::turn(constants);
         for _ in 0..steps {
             if let Some(gradient) = system.start_gradient(constants, t, q) {
@@ -155,11 +148,7 @@ impl<S: GreatCircles<M>, M: Method<S>, const N: usize> Turns<S, M, N> for Unpush
     fn gradient(_: At<'_, S, M>, _: &Point<S, N>) {}
 
     #[inline(always)]
-    fn turn(
-        at: At<'_, S, M>,
-        steps: usize,
-        (q, plane, ()): (&mut Point<S, N>, &mut Self::Plane, &mut ()),
-    ) -> Result<(), Error> {
+    fn turn(at: At<'_, S, M>, steps: usize, (q, plane, ()): Places<'_, S, Self, M, N>) -> Result<(), Error> {
         let a = S::turn(at.constants);
         (0..steps).try_for_each(|_| turn_freely(a, plane, q))
     }
@@ -206,7 +195,7 @@ where
         at: At<'_, S, M>,
         state: Before<'_, S, Self, M>,
         _: &S::Input,
-        (q, held, left): (&mut Point<S, N>, &mut C::Plane, &mut C::Gradient),
+        (q, held, left): Places<'_, S, C, M, N>,
     ) -> Result<(), Error> {
         (*q, *held, *left) = (*state.0, *state.1, *state.2);
         C::turn(at, 1, (q, held, left))

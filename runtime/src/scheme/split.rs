@@ -16,7 +16,7 @@
 use super::sequence::{Apart, From, InSequence, Sequence, To};
 use super::substep::{Moving, moved};
 use super::{At, Pair};
-use crate::parts::{Mu, Q, SplitKicks, Substep};
+use crate::parts::{Mu, Q, Solved, SplitKicks, Substep, T};
 use crate::{Clock, Error, Method, Scalar, Space, Time};
 use core::marker::PhantomData;
 use num_traits::Zero;
@@ -117,7 +117,7 @@ impl<S: Substep<0, M> + SplitKicks<M>, M: Method<S>, Z: Kicks<K>, const K: usize
             state
         };
         let drifted = |part, mut state: Moving<S, M>| {
-            let x = solve_part(at, part, &state.q, &state.mu)?;
+            let x = solve(at, part, &state.q, &state.mu)?;
             state.drift(At { t: Zero::zero(), ..at }, &x);
             state.on_space();
             Ok(state)
@@ -132,7 +132,7 @@ impl<S: Substep<0, M> + SplitKicks<M>, M: Method<S>, Z: Kicks<K>, const K: usize
             (q, p.zip_map(&kick, |a, b| a + b))
         };
         let drifted = |part, (q, p): Pair<S>| {
-            let x = solve_part(at, part, &q, &at.system.momentum_map(&q, &p))?;
+            let x = solve(at, part, &q, &at.system.momentum_map(&q, &p))?;
             let d = at.system.increment(&x);
             let q = moved(at.system, &q, &x, &d);
             Ok((q, at.system.lift(&q, &p, &d)))
@@ -144,12 +144,7 @@ impl<S: Substep<0, M> + SplitKicks<M>, M: Method<S>, Z: Kicks<K>, const K: usize
 
 /// The coordinates of the drift of a part of the step: it is the drift of the step with this part of the momentum, at any time.
 #[inline(always)]
-fn solve_part<S: Substep<0, M>, M: Method<S>>(
-    at: At<'_, S, M>,
-    part: S::Scalar,
-    q: &Q<S>,
-    mu: &Mu<S>,
-) -> Result<S::Coordinates, Error> {
+fn solve<S: Substep<0, M>, M: Method<S>>(at: At<'_, S, M>, part: T<S>, q: &Q<S>, mu: &Mu<S>) -> Solved<S::Coordinates> {
     let mu = mu.zip_map(mu, |mu, _| mu * part);
     at.system.solve(at.constants, Zero::zero(), q, &mu, &S::Input::origin())
 }
