@@ -3,7 +3,7 @@
 use super::At;
 use super::sequence::{Carry, From, InSequence, Sequence, To};
 use super::substep::Moving;
-use crate::parts::{FreeMotion, Mu, Q, Substep};
+use crate::parts::{FreeMotion, Mu, Q, Substep, T, U};
 use crate::{Error, Method};
 
 /// (q, N) ↦ (q⁺, N⁺) along a free motion. What the motion keeps is made once, and travels along with the state.
@@ -33,13 +33,7 @@ impl<S: Substep<0, M> + FreeMotion<M>, M: Method<S>> Sequence<S, M> for Order {
         Ok(state.end::<Kept>(*kept))
     }
 
-    fn steps(
-        at: At<'_, S, M>,
-        _: S::Scalar,
-        steps: usize,
-        (q, mu, left): From<'_, S, M, Kept>,
-        _: &S::Input,
-    ) -> To<S, M, Kept> {
+    fn steps(at: At<'_, S, M>, _: T<S>, steps: usize, (q, mu, left): From<'_, S, M, Kept>, _: &U<S>) -> To<S, M, Kept> {
         let (mut state, kept) = Moving::<S, M>::start::<Kept>(q, mu, left);
         for _ in 0..steps {
             follow(at, kept, &mut state)?;

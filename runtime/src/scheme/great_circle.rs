@@ -4,7 +4,7 @@ use super::sequence::{Apart, Shared};
 use super::substep::{inverse_legendre, plus};
 use super::{At, Before, Pair, Scheme, Stepped};
 use crate::matrices::skew_outer;
-use crate::parts::GreatCircles;
+use crate::parts::{GreatCircles, T, U};
 use crate::sphere::{push, tangent, turn_freely, turn_great_circle, turned_in_plane};
 use crate::{Clebsch, Error, Method, Scalar, Space};
 use core::marker::PhantomData;
@@ -201,13 +201,7 @@ where
         C::turn(at, 1, (q, held, left))
     }
 
-    fn steps(
-        at: At<'_, S, M>,
-        _: S::Scalar,
-        steps: usize,
-        state: Before<'_, S, Self, M>,
-        _: &S::Input,
-    ) -> Stepped<S, Self, M> {
+    fn steps(at: At<'_, S, M>, _: T<S>, steps: usize, state: Before<'_, S, Self, M>, _: &U<S>) -> Stepped<S, Self, M> {
         let (mut q, mut held, mut left) = (*state.0, *state.1, *state.2);
         C::turn(at, steps, (&mut q, &mut held, &mut left))?;
         Ok((q, held, left))

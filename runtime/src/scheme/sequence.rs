@@ -2,7 +2,7 @@
 
 use super::substep::{RestsOf, inverse_legendre, symmetric};
 use super::{At, Before, Pair, Scheme, Stepped, one_by_one};
-use crate::parts::{Mu, Parts, Q, Substep};
+use crate::parts::{Mu, Parts, Q, Substep, T, U};
 use crate::sums::Sums;
 use crate::{Clebsch, Error, Method, Space};
 use core::marker::PhantomData;
@@ -71,13 +71,7 @@ impl<S: Substep<0, M>, M: Method<S>, P: Sequence<S, M>> Scheme<S, M> for InSeque
     }
 
     #[inline]
-    fn steps(
-        at: At<'_, S, M>,
-        h: S::Scalar,
-        steps: usize,
-        state: Before<'_, S, Self, M>,
-        u: &S::Input,
-    ) -> Stepped<S, Self, M> {
+    fn steps(at: At<'_, S, M>, h: T<S>, steps: usize, state: Before<'_, S, Self, M>, u: &U<S>) -> Stepped<S, Self, M> {
         P::steps(at, h, steps, state, u)
     }
 

@@ -16,7 +16,7 @@
 use super::sequence::{Apart, From, InSequence, Sequence, To};
 use super::substep::{Moving, moved};
 use super::{At, Pair};
-use crate::parts::{Mu, Q, Solved, SplitKicks, Substep, T};
+use crate::parts::{Mu, Q, Solved, SplitKicks, Substep, T, U};
 use crate::{Clock, Error, Method, Scalar, Space, Time};
 use core::marker::PhantomData;
 use num_traits::Zero;
@@ -104,14 +104,8 @@ impl<S: Substep<0, M> + SplitKicks<M>, M: Method<S>, Z: Kicks<K>, const K: usize
         Self::steps(at, S::step_size(at.constants), 1, state, u)
     }
 
-    fn steps(
-        at: At<'_, S, M>,
-        _: S::Scalar,
-        steps: usize,
-        (q, mu, left): From<'_, S, M, Apart>,
-        _: &S::Input,
-    ) -> To<S, M, Apart> {
-        let (start, ()) = Moving::<S, M>::start::<Apart>(q, mu, left);
+    fn steps(at: At<'_, S, M>, _: T<S>, steps: usize, state: From<'_, S, M, Apart>, _: &U<S>) -> To<S, M, Apart> {
+        let (start, ()) = Moving::<S, M>::start::<Apart>(state.0, state.1, state.2);
         let kicked = |t, weight, gradient, mut state: Moving<S, M>| {
             state.push(Some(at.system.kick(at.constants, t, &state.q, weight, gradient)));
             state
