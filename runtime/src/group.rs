@@ -2,12 +2,6 @@
 //!
 //! These types hold nothing: `F: SO<3>` in a declaration is a 3×3 matrix. An editor shows this page, with the components of a momentum.
 //!
-//! | group | of | page |
-//! |---|---|---|
-//! | turns | rotations of space; of space and time; of complex vectors; unit quaternions | [`SO`], [`U`], [`SU`] |
-//! | motions | of points by adding, turning, scaling and shearing | [`Translation`], [`SE`], [`Sim`], [`Aff`], [`Heisenberg`] |
-//! | linear maps | all of them; those that keep the volume; those that keep a symplectic form | [`GL`], [`SL`], [`Sp`] |
-//!
 //! A group of one's own is declared by its equation or by a basis of its Lie algebra, and needs no type.
 //!
 //! # Conventions

@@ -29,13 +29,17 @@ impl<S: Clebsch, M: Method<S>> Stepper<S, M> {
     /// ```
     /// # use clebsch::Clebsch;
     /// # use nalgebra::Vector3;
+    /// /// Fewer steps for a small error.
+    /// struct Fine;
+    ///
     /// /// A pendulum by drift, then kick.
     /// #[derive(Clebsch, Clone, Debug)]
     /// #[clebsch(
-    ///     action    = |F: SO<3>, q: Unit<Vector3>| F * q,
-    ///     cost      = |h, F| (F - I).norm_squared() / (4 * h),
-    ///     potential = |q| q.z,
-    ///     order     = 1,
+    ///     action      = |F: SO<3>, q: Unit<Vector3>| F * q,
+    ///     cost        = |h, F| (F - I).norm_squared() / (4 * h),
+    ///     potential   = |q| q.z,
+    ///     order       = 1,
+    ///     method Fine = (order = 6),
     /// )]
     /// struct Pendulum;
     ///
@@ -47,6 +51,10 @@ impl<S: Clebsch, M: Method<S>> Stepper<S, M> {
     /// assert!(error(stepper.synchronized_energy(&late)) < 1e-4);
     /// # let worst = stepper.trajectory(start).take(1000).flatten().map(|state| error(stepper.energy(&state))).fold(0.0, f64::max);
     /// # assert!(worst > 1e-3);
+    ///
+    /// let fine = Pendulum.stepper_by::<Fine>(0.1)?;
+    /// let state = fine.state_of(&stepper, &start)?;
+    /// assert!(error(fine.energy(&fine.advance(&state, 100)?)) < 1e-7);
     /// # Ok::<(), clebsch::Error>(())
     /// ```
     ///
@@ -78,32 +86,7 @@ impl<S: Clebsch, M: Method<S>> Stepper<S, M> {
 
     /// The state of this stepper that is the same body as `state` of `other`, which may have another method or another step size.
     ///
-    /// Time and configuration are taken over, and the momentum that [`synchronized`](Self::synchronized) reads; half a kick is added where this method needs it.
-    ///
-    /// ```
-    /// # use clebsch::Clebsch;
-    /// # use nalgebra::Vector3;
-    /// /// Fewer steps for a small error.
-    /// struct Fine;
-    ///
-    /// /// A pendulum by drift, then kick.
-    /// #[derive(Clebsch, Clone, Debug)]
-    /// #[clebsch(
-    ///     action      = |F: SO<3>, q: Unit<Vector3>| F * q,
-    ///     cost        = |h, F| (F - I).norm_squared() / (4 * h),
-    ///     potential   = |q| q.z,
-    ///     order       = 1,
-    ///     method Fine = (order = 6),
-    /// )]
-    /// struct Pendulum;
-    ///
-    /// let coarse = Pendulum.stepper(0.01)?;
-    /// let fine = Pendulum.stepper_by::<Fine>(0.1)?;
-    /// let state = coarse.staggered_state(Vector3::y(), Vector3::new(0.6, 0.0, 0.2))?;
-    /// let state = fine.state_of(&coarse, &state)?;
-    /// assert!((fine.energy(&fine.advance(&state, 100)?) - 0.2).abs() < 1e-7);
-    /// # Ok::<(), clebsch::Error>(())
-    /// ```
+    /// Time and configuration are taken over, and the momentum that [`synchronized`](Self::synchronized) reads; half a kick is added where this method needs it. See the example there.
     ///
     /// # Errors
     /// As [`state`](Self::state).
