@@ -1,6 +1,6 @@
 //! Tokens of operations on whole matrices: nalgebra's, and calls of the runtime's for those that it has not.
 
-use clebsch_symbolic::{Rational, Role, Shape, integer};
+use clebsch_symbolic::{Operation, Rational, Role, Shape, integer};
 use proc_macro2::TokenStream;
 use quote::{format_ident, quote};
 
@@ -52,26 +52,26 @@ impl Scope<'_, '_> {
                 let (constants, vector) = (&self.constants, reference(0));
                 quote!(#constants.inertia_inverse.times(#vector))
             }
-            MatrixOperation::Transpose => method("transpose"),
-            MatrixOperation::Inverse => call("inverse"),
-            MatrixOperation::Analytic(function) => call(&Callee::Analytic(*function).to_string()),
+            MatrixOperation::Of(Operation::Transpose) => method("transpose"),
+            MatrixOperation::Of(Operation::Inverse) => call("inverse"),
+            MatrixOperation::Of(Operation::Analytic(function)) => call(&Callee::Analytic(*function).to_string()),
             MatrixOperation::Value => self.opaque(false, operands),
             MatrixOperation::Gradient(argument) => {
                 let gradient = self.opaque(true, operands);
                 let access = &self.model.configurations[argument - usize::from(self.takes_time())].accessor;
                 quote!(#gradient #access)
             }
-            MatrixOperation::Block(i, j) => self.block(&reference(0), *shape, (*i, *j)),
-            MatrixOperation::Embedded(i, j) => {
+            MatrixOperation::Of(Operation::Block(i, j)) => self.block(&reference(0), *shape, (*i, *j)),
+            MatrixOperation::Of(Operation::Embed(i, j)) => {
                 let (matrix, i, j) = (reference(0), size(*i), size(*j));
                 quote!(runtime::embedded(#matrix, #i, #j))
             }
             MatrixOperation::Hadamard => method("component_mul"),
-            MatrixOperation::DiagonalMatrix => {
+            MatrixOperation::Of(Operation::DiagonalMatrix) => {
                 let (matrix, diagonal) = (matrix(), reference(0));
                 quote!(<#matrix>::from_diagonal(#diagonal))
             }
-            MatrixOperation::Diagonal => method("diagonal"),
+            MatrixOperation::Of(Operation::Diagonal) => method("diagonal"),
             MatrixOperation::Hat => call("hat"),
             MatrixOperation::Axial => call("axial"),
             MatrixOperation::Skew => call("skew"),
@@ -80,7 +80,7 @@ impl Scope<'_, '_> {
             MatrixOperation::SkewOuter => call("skew_outer"),
             MatrixOperation::Pairing => method("dot"),
             MatrixOperation::Trace => method("trace"),
-            MatrixOperation::Determinant => call("determinant"),
+            MatrixOperation::Of(Operation::Determinant) => call("determinant"),
             MatrixOperation::Largest => {
                 let matrix = reference(0);
                 quote!(runtime::Space::<T>::max_abs(#matrix))
@@ -90,6 +90,8 @@ impl Scope<'_, '_> {
                 let (matrix, index) = (self.operand(&operands[0], Binding::Atom), index(is_column, (*i, *j)));
                 quote!(#matrix #index)
             }
+            // by construction: bases have operations of their own, and functions are of numbers
+            MatrixOperation::Of(_) => TokenStream::new(),
         }
     }
 

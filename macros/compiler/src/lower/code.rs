@@ -1,6 +1,6 @@
 //! Code: what kernels are made of, and what of each other and of their arguments they read.
 
-use clebsch_symbolic::{Analytic, Function, Rational, Role, Shape, integer};
+use clebsch_symbolic::{Function, Operation, Rational, Role, Shape, integer};
 
 use super::scalar::{Callee, Output, is_unit};
 use super::{Cost, Input};
@@ -75,26 +75,14 @@ pub enum MatrixOperation {
     InertiaTimes,
     /// A B.
     Product,
-    /// Aᵀ.
-    Transpose,
-    /// A⁻¹.
-    Inverse,
-    /// A power series of A.
-    Analytic(Analytic),
+    /// What expressions know as an operation on one matrix, but for bases.
+    Of(Operation),
     /// The value of an opaque potential.
     Value,
     /// A leaf of its gradient, by the number of the argument.
     Gradient(usize),
-    /// The block from (i, j) on.
-    Block(usize, usize),
-    /// A in a zero matrix from (i, j) on.
-    Embedded(usize, usize),
     /// The product entry by entry.
     Hadamard,
-    /// The diagonal matrix of a vector.
-    DiagonalMatrix,
-    /// The diagonal of a matrix.
-    Diagonal,
     /// x^ in the basis of so(3).
     Hat,
     /// ⟨A, E_k⟩ in that basis.
@@ -111,8 +99,6 @@ pub enum MatrixOperation {
     Pairing,
     /// tr A.
     Trace,
-    /// det A.
-    Determinant,
     /// The largest |A_ij|.
     Largest,
     /// The entry (i, j).
@@ -123,7 +109,8 @@ impl MatrixOperation {
     /// Whether the sign of an operand is that of the result; of sums each term has its own.
     pub(super) fn is_linear(&self) -> bool {
         use MatrixOperation::*;
-        !matches!(self, Entries | Shifted | Inverse | Analytic(_) | Value | Gradient(_) | Determinant | Largest)
+        use Operation::{Analytic, Determinant, Inverse};
+        !matches!(self, Entries | Shifted | Value | Gradient(_) | Largest | Of(Inverse | Analytic(_) | Determinant))
     }
 }
 
@@ -342,7 +329,7 @@ impl Code {
     pub(crate) fn needs_name(&self) -> bool {
         let Code::Whole(whole) = self else { return false };
         use MatrixOperation::*;
-        matches!(whole.operation, Embedded(..) | Skew | SkewComponents | SkewOuter)
+        matches!(whole.operation, Of(Operation::Embed(..)) | Skew | SkewComponents | SkewOuter)
     }
 
     /// The argument that it reads an entry of or takes as a whole, with the shape of that.

@@ -3,7 +3,7 @@
 use std::fmt;
 use std::iter::Sum;
 
-use clebsch_symbolic::{Shape, Zero};
+use clebsch_symbolic::{Operation, Shape, Zero};
 
 use super::scalar::is_unit;
 use super::{Code, Kernel, MatrixOperation};
@@ -101,13 +101,15 @@ impl MatrixOperation {
             MatrixOperation::SkewOuter => Cost::sums(n, 2 * n),
             MatrixOperation::Pairing => Cost::sums(first.len(), first.len()),
             MatrixOperation::Trace => Cost::sums(first.rows, 0),
-            MatrixOperation::Inverse => Cost { divisions: n, ..Cost::sums(n.pow(3), n.pow(3)) },
-            MatrixOperation::Determinant => {
+            MatrixOperation::Of(Operation::Inverse) => Cost { divisions: n, ..Cost::sums(n.pow(3), n.pow(3)) },
+            MatrixOperation::Of(Operation::Determinant) => {
                 let third = first.rows.pow(3) / 3;
                 Cost { divisions: first.rows.pow(2) / 2, ..Cost::sums(third, third) }
             }
             // squarings and a rational approximation, twelve products
-            MatrixOperation::Analytic(_) => Cost { calls: 1, ..Cost::sums(12 * n.pow(2) * (n - 1), 12 * n.pow(3)) },
+            MatrixOperation::Of(Operation::Analytic(_)) => {
+                Cost { calls: 1, ..Cost::sums(12 * n.pow(2) * (n - 1), 12 * n.pow(3)) }
+            }
             MatrixOperation::Value | MatrixOperation::Gradient(_) => Cost { calls: 1, ..Cost::default() },
             _ => Cost::default(),
         }

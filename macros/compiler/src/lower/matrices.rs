@@ -139,24 +139,17 @@ impl Matrices {
 
     fn made_of(&mut self, operation: Operation, a: Expr<'_>, shape: Shape) -> Code {
         let graph = a.graph();
-        let operation = match operation {
-            Operation::Function(function) => return self.function(function, a),
-            Operation::Block(row, column) => return self.block(a, row, column, shape),
-            Operation::Embed(row, column) if self.joins_blocks => return self.embedded(a, (row, column), shape),
-            Operation::Wedge(algebra) => return self.wedge(graph, algebra, a, shape),
+        match operation {
+            Operation::Function(function) => self.function(function, a),
+            Operation::Block(row, column) => self.block(a, row, column, shape),
+            Operation::Embed(row, column) if self.joins_blocks => self.embedded(a, (row, column), shape),
+            Operation::Wedge(algebra) => self.wedge(graph, algebra, a, shape),
             Operation::Components(algebra) => {
                 let outer = self.outer(graph, algebra, a);
-                return outer.unwrap_or_else(|| self.components_of(graph, algebra, a));
+                outer.unwrap_or_else(|| self.components_of(graph, algebra, a))
             }
-            Operation::Transpose => MatrixOperation::Transpose,
-            Operation::Inverse => MatrixOperation::Inverse,
-            Operation::Analytic(function) => MatrixOperation::Analytic(function),
-            Operation::Determinant => MatrixOperation::Determinant,
-            Operation::Embed(row, column) => MatrixOperation::Embedded(row, column),
-            Operation::DiagonalMatrix => MatrixOperation::DiagonalMatrix,
-            Operation::Diagonal => MatrixOperation::Diagonal,
-        };
-        self.of_matrix(operation, a, shape)
+            operation => self.of_matrix(MatrixOperation::Of(operation), a, shape),
+        }
     }
 
     /// An operation on one matrix.
@@ -208,7 +201,7 @@ impl Matrices {
         if shape.is_scalar() {
             return self.entry(&value, row, column);
         }
-        self.operation(MatrixOperation::Block(row, column), vec![value], shape)
+        self.operation(MatrixOperation::Of(Operation::Block(row, column)), vec![value], shape)
     }
 
     /// Σ x_k E_k, entry by entry where the basis has no function of its own.

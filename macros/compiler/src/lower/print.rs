@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use clebsch_symbolic::{Analytic, Rational, integer};
+use clebsch_symbolic::{Analytic, Operation, Rational, integer};
 
 use super::{Callee, Code, Form, Input, Kernel, KernelTable, LARGEST_UNROLLED, MOST_UNKNOWNS, MatrixOperation};
 use super::{MechanicsProgram, Program, Solve, Whole};
@@ -108,13 +108,15 @@ impl KernelTable {
             MatrixOperation::Sum(weights) => (sum(weights.iter().zip(operands)), true),
             MatrixOperation::Scaled | MatrixOperation::Product => (operands.join("*"), false),
             MatrixOperation::Shifted => (format!("{} + {}*I", operands[0], operands[1]), true),
-            MatrixOperation::Transpose => (format!("{}ᵀ", operands[0]), false),
+            MatrixOperation::Of(Operation::Transpose) => (format!("{}ᵀ", operands[0]), false),
             MatrixOperation::Skew | MatrixOperation::Hat => (format!("{}^", operands[0]), false),
             MatrixOperation::SkewTimes => (format!("{}^*{}", operands[0], operands[1]), false),
             MatrixOperation::SkewComponents | MatrixOperation::Axial => (format!("⟨{}, E⟩", operands[0]), false),
             MatrixOperation::SkewOuter => (format!("⟨{}*{}ᵀ, E⟩", operands[0], operands[1]), false),
             MatrixOperation::Pairing => (format!("⟨{}, {}⟩", operands[0], operands[1]), false),
             MatrixOperation::Entry(i, j) => (format!("{}[{i},{j}]", operands[0]), false),
+            MatrixOperation::Of(Operation::Embed(i, j)) => (format!("embedded({i}, {j})({})", operands[0]), false),
+            MatrixOperation::Of(operation) => (format!("{operation:?}({})", operands[0]).to_lowercase(), false),
             other => (format!("{other:?}({})", operands.join(", ")).to_lowercase(), false),
         };
         bracketed(text, is_sum && place > 0)

@@ -1,6 +1,6 @@
 //! Matrices of blocks, such as those of SE(n), entry by entry: what a person writes in place of views and embeddings.
 
-use clebsch_symbolic::{Expr, Rational, Shape, integer};
+use clebsch_symbolic::{Expr, Operation, Rational, Shape, integer};
 
 use super::{Matrices, entry, linear};
 use crate::lower::{Code, Input, MatrixOperation, Whole};
@@ -22,8 +22,8 @@ impl Matrices {
             MatrixOperation::Argument(first) => Code::Read(Input { row: i, column: j, ..first.clone() }),
             MatrixOperation::Entries => whole.operands[i * whole.shape.columns + j].clone(),
             MatrixOperation::Zero => Code::Number(integer(0)),
-            MatrixOperation::Transpose => self.entry(&whole.operands[0], j, i),
-            MatrixOperation::Block(row, column) => self.entry(&whole.operands[0], row + i, column + j),
+            MatrixOperation::Of(Operation::Transpose) => self.entry(&whole.operands[0], j, i),
+            MatrixOperation::Of(Operation::Block(row, column)) => self.entry(&whole.operands[0], row + i, column + j),
             MatrixOperation::Hat => match (3 + j - i) % 3 {
                 0 => Code::Number(integer(0)),
                 1 => linear(integer(0), vec![(integer(-1), self.entry(&whole.operands[0], 3 - i - j, 0))]),
@@ -37,7 +37,7 @@ impl Matrices {
     pub(super) fn is_listed(&self, code: &Code) -> bool {
         self.operation_of(code).is_some_and(|whole| match whole.operation {
             MatrixOperation::Entries | MatrixOperation::Zero | MatrixOperation::Hat => true,
-            MatrixOperation::Transpose => self.is_listed(&whole.operands[0]),
+            MatrixOperation::Of(Operation::Transpose) => self.is_listed(&whole.operands[0]),
             _ => false,
         })
     }
@@ -46,8 +46,8 @@ impl Matrices {
     pub(super) fn is_read(&self, code: &Code) -> bool {
         self.is_listed(code)
             || self.operation_of(code).is_some_and(|whole| match whole.operation {
-                MatrixOperation::Block(..) => true,
-                MatrixOperation::Transpose => self.is_read(&whole.operands[0]),
+                MatrixOperation::Of(Operation::Block(..)) => true,
+                MatrixOperation::Of(Operation::Transpose) => self.is_read(&whole.operands[0]),
                 _ => false,
             })
     }
