@@ -3,50 +3,43 @@
 use proc_macro2::{Literal, TokenStream};
 use quote::quote;
 
-use super::function::Body;
 use super::functions::HAMILTON_EQUATIONS;
 use super::scope::{index, nested, size};
 use super::{Emitter, flag};
+use crate::derive::Id;
 
 impl Emitter<'_, '_> {
     /// The implementation of `HamiltonEquations`: the slope of (q, p), the covector of a momentum, and a guess.
     pub(super) fn hamilton_equations(&self) -> TokenStream {
         let numbers = self.numbers_of_pair();
-        let words = |word: &str| match word {
-            "Numbers" => Some(quote!([T; #numbers])),
-            _ => self.word_of_step(word),
-        };
-        let functions = self.functions(HAMILTON_EQUATIONS, (0, 0), &words, |function, kernel| {
-            let scope = self.scope_of_step();
-            let code = match function.name {
-                "slope" => {
-                    let (kernel, equations) =
-                        (kernel?, self.trait_of_parts("HamiltonEquations", &[self.numbers_of_pair()]));
-                    let (locals, entries) =
-                        (scope.locals(kernel), kernel.outputs.iter().flat_map(|(_, entries)| entries));
-                    let entries = entries.map(|entry| scope.code(entry, false));
-                    let code = quote!(let (q, p) = <Self as #equations>::parted(y); #locals [#(#entries),*]);
-                    return Some(Body::new(kernel, code).inlined(quote!(#[inline(always)])));
+        let (scope, count) = (self.scope_of_step(), size(self.formulas.weighted().len()));
+        let words = |word: &str| {
+            let [q, p] = [quote!(q), quote!(p)].map(|name| self.entries(&name));
+            Some(match word {
+                "Numbers" => quote!([T; #numbers]),
+                "Equations" => self.trait_of_parts("HamiltonEquations", std::slice::from_ref(&numbers)),
+                "Slopes" => {
+                    let outputs = self.program.kernel(Id::HamiltonEquations).outputs.iter();
+                    let entries = outputs.flat_map(|(_, entries)| entries).map(|entry| scope.code(entry, false));
+                    quote!([#(#entries),*])
                 }
-                "part" => match self.formulas.weighted().len() {
-                    0 => quote!(*x * part),
-                    count => {
-                        let count = size(count);
-                        quote!((*x * part, [<T as runtime::One>::one(); #count]))
-                    }
-                },
+                "Weights" => quote!([<T as runtime::One>::one(); #count]),
                 // all entries of q and then those of p
-                "joined" => {
-                    let [q, p] = [quote!(q), quote!(p)].map(|name| self.entries(&name));
-                    quote!([#(#q,)* #(#p),*])
-                }
-                "parted" => {
-                    let (q, p) = (self.built(0), self.built(self.entries(&quote!(q)).len()));
+                "Joined" => quote!([#(#q,)* #(#p),*]),
+                "Parted" => {
+                    let (q, p) = (self.built(0), self.built(q.len()));
                     quote!((#q, #p))
                 }
-                _ => return function.written(&scope, kernel, &words),
-            };
-            Some(Body::from(code))
+                _ => return self.word_of_step(word),
+            })
+        };
+        let functions = self.functions(HAMILTON_EQUATIONS, (0, 0), &words, |function, kernel| {
+            let is_weighted = !self.formulas.weighted().is_empty();
+            match function.name {
+                "part" if function.code.contains("Weights") != is_weighted => None,
+                "slope" => Some(function.written(&scope, kernel, &words)?.inlined(quote!(#[inline(always)]))),
+                _ => function.written(&scope, kernel, &words),
+            }
         });
         let tolerance = self.tolerance().map(|part| quote!(const TOLERANCE: ::core::primitive::f64 = #part;));
         let most = self.iterations().map(|most| quote!(const SWEEPS: ::core::primitive::u32 = #most;));

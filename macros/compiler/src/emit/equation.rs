@@ -93,6 +93,12 @@ impl<'e, 'a, 'g> EquationType<'e, 'a, 'g> {
             "Momenta" => Some(target.clone()),
             "Given" => Some(given.clone()),
             "Prepared" => Some(prepared.clone()),
+            "ByReference" if self.emitter.keeps_matrices => Some(quote!(let x = &x;)),
+            "ByReference" => Some(quote!()),
+            "SineSquared" => {
+                let kernel = self.emitter.program.find(self.solve.id(Id::SineSquared));
+                kernel.map(|kernel| self.scope.body_of_scalar(kernel))
+            }
             "Square" => Some(matrix(self.solve.dimension, self.solve.dimension)),
             _ => None,
         };
@@ -108,20 +114,11 @@ impl<'e, 'a, 'g> EquationType<'e, 'a, 'g> {
     /// What one of them does, where the equation has it.
     fn function(&self, function: &Function, kernel: Option<&'e Kernel>, words: &Words<'_>) -> Option<Body<'e>> {
         let EquationType { emitter, solve, scope, .. } = self;
-        let keeps = emitter.keeps_matrices;
         let is_newton = solve.solution == Solution::Newton;
         // with whole matrices the terms hold the momenta
-        let target = (is_newton && keeps && self.prepares()).then(|| quote!(let mu = &terms.0;));
+        let target = (is_newton && emitter.keeps_matrices).then(|| quote!(let mu = &terms.0;));
         Some(match function.name {
-            "closed_form" => {
-                let sine = scope.body_of_scalar(emitter.program.find(solve.id(Id::SineSquared))?);
-                let (solution, by_reference) = (scope.body(kernel?), keeps.then(|| quote!(let x = &x;)));
-                let code = quote! {
-                    let x = { #solution };
-                    runtime::below_right_angle(x, { #by_reference #sine })
-                };
-                Body::new(kernel?, code)
-            }
+            "closed_form" => function.written(scope, kernel, words)?,
             "explicit" => {
                 let is_predicted = !emitter.rows.titled(solve.id(Id::Predictor)).is_empty();
                 let title = match (is_predicted, solve.given.is_empty()) {

@@ -163,22 +163,28 @@ functions! {
     HAMILTON_EQUATIONS(true) {
         fn step_size(c: &C) -> T { Id::Constants } = { c.step_size }
         /// Hamilton's equations: (q′, p′) at y = (q, p), all entries of q and then those of p, rows first.
-        fn slope(&self, c: &C, t: T, y: &Numbers) -> Numbers { Id::HamiltonEquations }
+        fn slope(&self, c: &C, t: T, y: &Numbers) -> Numbers { Id::HamiltonEquations } = {
+            let (q, p) = <Self as Equations>::parted(y); Locals Slopes
+        }
         /// A covector p at q with the momentum J(q, p) = μ.
         fn covector(&self, c: &C, q: &Q, mu: &Mu) -> Q { Id::Covector }
         /// J(q, p), entry by entry.
         fn momentum(&self, q: &Q, p: &Q) -> Mu { Id::MomentumOfStep }
         /// The chart coordinates x of the motion by the velocity ξ = Σ⁻¹(μ − A) for the time h, to first order in h.
         fn guess(&self, c: &C, t: T, q: &Q, mu: &Mu) -> Mu { Id::Guess => }
-        fn part(x: &Mu, part: T) -> X { Id::Guess }
-        fn joined(q: &Q, p: &Q) -> Numbers { Id::HamiltonEquations }
-        fn parted(y: &Numbers) -> (Q, Q) { Id::HamiltonEquations }
+        fn part(x: &Mu, part: T) -> X { Id::Guess } = { *x * part }
+        fn part(x: &Mu, part: T) -> X { Id::Guess } = { (*x * part, Weights) }
+        fn joined(q: &Q, p: &Q) -> Numbers { Id::HamiltonEquations } = { Joined }
+        fn parted(y: &Numbers) -> (Q, Q) { Id::HamiltonEquations } = { Parted }
     }
 
     /// The types of momentum equations: of a vector of momenta, and of another of unknowns.
     EQUATION(true) {
         /// The solution: the rotation by θ in one plane with sin θ = |a|, |a|² < 1.
-        fn closed_form(&self, mu: &Momenta) -> Solved<Vector> { Id::ClosedForm(0, 0) => Id::Solution(0, 0), Id::Predictor(0, 0) }
+        fn closed_form(&self, mu: &Momenta) -> Solved<Vector> { Id::ClosedForm(0, 0) => Id::Solution(0, 0), Id::Predictor(0, 0) } = {
+            let x = { Locals Value0 };
+            runtime::below_right_angle(x, { ByReference SineSquared })
+        }
         /// The solution, coordinate after coordinate.
         fn explicit(&self, mu: &Momenta Given) -> Vector { Id::Explicit(0, 0) => Id::Solution(0, 0), Id::Predictor(0, 0) }
         /// Dρ and −ρ(0).

@@ -109,11 +109,8 @@ pub(super) fn plain(scalars: &mut Scalars, expressions: &[Expr<'_>]) -> Kernel {
 
 /// Several expressions, one output each.
 pub(super) fn separate(scalars: &mut Scalars, expressions: &[Expr<'_>], hoisting: Hoisting<'_>) -> Kernel {
-    if scalars.keeps_matrices {
-        return matrices::kernel(expressions);
-    }
-    let outputs: Vec<Grid> = expressions.iter().map(|&expr| grid(scalars, expr)).collect();
-    kernel(scalars, &outputs, hoisting)
+    let forms: Vec<MatrixForm<'_>> = expressions.iter().map(|&expr| MatrixForm::Whole(expr)).collect();
+    of_matrices(scalars, &forms, hoisting)
 }
 
 /// Vectors, one after the other in one output.
