@@ -20,13 +20,6 @@ pub struct EdgeForce<'g> {
     pub end: Vec<Expr<'g>>,
 }
 
-impl<'g> EdgeForce<'g> {
-    /// The whole impulse at the start.
-    pub fn whole_start(&self) -> Option<Vec<Expr<'g>>> {
-        total(self.start.clone(), self.start_moving.clone())
-    }
-}
-
 /// f in 𝔤*, that on configurations by J(q, f); `None` if nothing acts.
 pub(super) fn covector<'g>(model: &Mechanics<'g>, system: &SystemFormulas<'g>) -> Option<Vec<Expr<'g>>> {
     let force = model.force.as_ref()?;

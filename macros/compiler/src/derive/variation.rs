@@ -4,6 +4,7 @@
 use clebsch_symbolic::{Expr, Property};
 
 use super::choice::Direction;
+use super::force::total;
 use super::{Bend, DiscreteLagrangian, EdgeForce, SystemFormulas, cayley, control, trivialisation};
 use crate::diagnostic::Diagnostics;
 use crate::model::features::{self, Feature, Found};
@@ -115,7 +116,7 @@ impl<'g> Source<'_, 'g> {
             last = last + self.at_image(stack(&kick));
         }
         if let Some(force) = force {
-            if let Some(start) = force.whole_start() {
+            if let Some(start) = total(force.start.clone(), force.start_moving.clone()) {
                 first = first - system.later(stack(&start), begins).substitute(&rational);
             }
             last = last + self.at_image(system.later(stack(&force.end), ends)).substitute(&rational);

@@ -7,22 +7,14 @@ use crate::diagnostic::Diagnostics;
 use crate::model::features::{self, Feature, Found};
 use crate::model::{Discretization, Factor, System};
 
-/// The velocity ξ(F)/h of a factor.
+/// The velocity ξ(F)/h of a factor, as the coordinates of log F/h, of 2(F − I)(F + I)⁻¹/h, projected where that leaves the algebra, or of
+/// P(F − I)/h.
 pub(super) fn of_element<'g>(model: &System<'g>, k: usize, h: Expr<'g>, discretization: Discretization) -> Expr<'g> {
+    let Factor { group, symbol: f, .. } = model.factors[k];
+    let identity = group.identity(model.graph);
     match discretization {
-        Discretization::Exponential if !model.factors[k].group.is_translation() => logarithm(model, k) / h,
-        _ => discrete_velocity(&model.factors[k], h, discretization),
-    }
-}
-
-/// The coordinates of ξ: of 2(F − I)(F + I)⁻¹/h, projected where that leaves the algebra, or of P(F − I)/h.
-fn discrete_velocity<'g>(factor: &Factor<'g>, h: Expr<'g>, discretization: Discretization) -> Expr<'g> {
-    let (group, f) = (factor.group, factor.symbol);
-    let identity = group.identity(f.graph());
-    if group.is_translation() {
-        return f / h;
-    }
-    match discretization {
+        _ if group.is_translation() => f / h,
+        Discretization::Exponential => logarithm(model, k) / h,
         // tan(θ/2) is the vector part over the scalar part
         Discretization::Cayley if group == Group::UnitQuaternions => {
             2 * (f.block(0, 0, Shape::vector(3)) / (f.entry(3, 0) * h))

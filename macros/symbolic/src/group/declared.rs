@@ -50,7 +50,10 @@ impl Group {
         };
         // the chart is found for the group with the general one, and then kept with it
         let general = declared(Chart::Exponential);
-        if graph.is_closed_under_products(algebra) {
+        let span = graph.span(algebra);
+        let is_in_algebra = |(i, j): (usize, usize)| span.holds(&graph.basis_product(algebra, i, j));
+        // then I + Z stays in the group
+        if Shape::square(algebra.dimension).positions().all(is_in_algebra) {
             declared(Chart::Affine)
         } else if sample::is_cayley_tangent(graph, general) {
             declared(Chart::Cayley)
@@ -81,12 +84,6 @@ impl Graph {
             }
         }
         product
-    }
-
-    /// Whether products of basis elements lie in their span, so that I + Z stays in the group.
-    fn is_closed_under_products(&self, algebra: Algebra) -> bool {
-        let (m, span) = (algebra.dimension, self.span(algebra));
-        (0..m).all(|i| (0..m).all(|j| span.holds(&self.basis_product(algebra, i, j))))
     }
 
     /// The span of a basis.

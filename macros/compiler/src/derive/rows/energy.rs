@@ -53,19 +53,26 @@ impl<'g> MechanicsFormulas<'g> {
 
     /// The discrete Lagrangian, part by part, and its Legendre transforms.
     pub(super) fn rows_of_lagrangian(&self, Names { q, f, .. }: &Names) -> [Formula<'g>; 5] {
-        let end = self.end_of_step(self.lagrangian.end);
+        // as a function of (t⁺, q⁺)
+        let mut moved = self.images_of_leaves();
+        moved.push((self.model.time, self.model.graph.symbol("t⁺", Shape::scalar(), Role::Letter, Property::General)));
+        let end = self.lagrangian.end.substitute(&moved);
         let next = tuple(self.symbols.images.iter().map(Expr::to_string));
         // the factors that move freely, with the symbols of their momenta and of their elements
         let free = (0..self.model.factors.len()).filter(|&k| exact::is_free_rotation(&self.model, k));
         let free: Vec<_> = free.map(|k| (k, self.symbols.momenta[k], self.model.factors[k].symbol)).collect();
         let legendre = Formula::shorter(Id::Legendre, format!("F⁻ℓd({q}, {f})"), self.legendre.clone());
         let mut legendre_next = Formula::new(Id::LegendreNext, format!("F⁺ℓd({q}, {f})"), self.legendre_next.clone());
+        let mut after = self.legendre_next.clone();
         if let Some(kick) = &self.legendre_kick {
             let is_timed = kick.iter().any(|part| part.depends_on(self.model.time));
             let place = if is_timed { format!("(t⁺, {q}⁺)") } else { format!("{q}⁺") };
             legendre_next.wording = Wording::AndKick(place, kick.clone());
+            // what is computed has its last kick at q⁺ = Φ_F(q)
+            let end = moved_on(&self.model);
+            after.iter_mut().zip(kick).for_each(|(after, kick)| *after = *after + kick.substitute(&end));
         }
-        let after = self.with_inverses(&self.legendre_with_last_kick());
+        let after = self.with_inverses(&after);
         let time = |part: Expr<'g>, name| if part.depends_on(self.model.time) { name } else { "" };
         let place = if self.lagrangian.couples { format!("{q}, ") } else { String::new() };
         let symbol = format!("K({}h, {place}{f})", time(self.lagrangian.kinetic, "t, "));
@@ -84,20 +91,5 @@ impl<'g> MechanicsFormulas<'g> {
             Formula { free: free.clone(), ..legendre }.computed_as(self.with_inverses(&self.legendre)),
             Formula { free, ..legendre_next }.computed_as(after),
         ]
-    }
-
-    /// F⁺ℓd with its last kick at q⁺ = Φ_F(q).
-    fn legendre_with_last_kick(&self) -> Vec<Expr<'g>> {
-        let Some(kick) = &self.legendre_kick else { return self.legendre_next.clone() };
-        let end = moved_on(&self.model);
-        self.legendre_next.iter().zip(kick).map(|(kinetic, kick)| *kinetic + kick.substitute(&end)).collect()
-    }
-
-    /// A function of (t, q) at the end of a step: of (t⁺, q⁺).
-    fn end_of_step(&self, function: Expr<'g>) -> Expr<'g> {
-        let time = self.model.graph.symbol("t⁺", Shape::scalar(), Role::Letter, Property::General);
-        let mut moved = self.images_of_leaves();
-        moved.push((self.model.time, time));
-        function.substitute(&moved)
     }
 }

@@ -3,7 +3,7 @@
 use clebsch_symbolic::{Expr, Group, Operation, Shape, View};
 
 use crate::derive::equation::MomentumEquation;
-use crate::derive::{Solution, SystemFormulas};
+use crate::derive::{ChartBlock, Solution, SystemFormulas};
 
 /// From as many unknowns on, those of SO(7), Newton's method solves Sylvester's equation and not a linear system in all of them: it takes as long
 /// there, half as long for SO(10), and less memory in all.
@@ -21,7 +21,13 @@ impl<'g> MomentumEquation<'g> {
     /// ⟨A, E⟩ is the skew part of A, so that a term uΔ counts as Δuᵀ. `None` where Δ stands between two matrices, and for other groups.
     pub fn sylvester_factor(&self, system: &SystemFormulas<'g>) -> Option<Expr<'g>> {
         let graph = system.model.graph;
-        let (n, direction) = self.whole_rotation(system)?;
+        // the unknowns are all those of one SO(n)
+        let [block] = system.symbols.blocks_of(&self.components)[..] else { return None };
+        let ChartBlock { factor, direction, .. } = system.symbols.blocks[block];
+        let Group::SpecialOrthogonal(n) = system.model.factors[factor].group else { return None };
+        if !self.components.iter().copied().eq(system.symbols.blocks[block].components()) {
+            return None;
+        }
         let mut factor = graph.zero(Shape::square(n));
         for outer in self.directional.word_terms() {
             let [components] = outer.word[..] else { return None };
@@ -46,13 +52,5 @@ impl<'g> MomentumEquation<'g> {
             }
         }
         Some(factor)
-    }
-
-    /// n and δ, where the unknowns are all those of one SO(n).
-    fn whole_rotation(&self, system: &SystemFormulas<'g>) -> Option<(usize, Expr<'g>)> {
-        let [block] = system.symbols.blocks_of(&self.components)[..] else { return None };
-        let block = &system.symbols.blocks[block];
-        let Group::SpecialOrthogonal(n) = system.model.factors[block.factor].group else { return None };
-        self.components.iter().copied().eq(block.components()).then_some((n, block.direction))
     }
 }
