@@ -151,14 +151,6 @@ impl<K: Hash + Eq, V> Table<K, V> {
     }
 }
 
-impl<K: Hash + Eq, V> FromIterator<(K, V)> for Table<K, V> {
-    fn from_iter<I: IntoIterator<Item = (K, V)>>(entries: I) -> Table<K, V> {
-        let mut table = Table::default();
-        entries.into_iter().for_each(|(key, value)| table.insert(key, value));
-        table
-    }
-}
-
 impl<K: Hash + Eq, V> std::ops::Index<&K> for Table<K, V> {
     type Output = V;
     fn index(&self, key: &K) -> &V {

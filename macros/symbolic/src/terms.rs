@@ -258,7 +258,12 @@ impl Graph {
             _ => None,
         };
         match (&*self.node(left), &*self.node(right)) {
-            (ExprNode::Literal(a), ExprNode::Literal(b)) => Some(self.multiply_literals(a, b, shape)),
+            (ExprNode::Literal(a), ExprNode::Literal(b)) => {
+                let inner = a.len() / shape.rows;
+                let product = |i: usize, j: usize, k: usize| &a[i * inner + k] * &b[k * shape.columns + j];
+                let entry = |(i, j)| (0..inner).map(|k| product(i, j, k)).sum::<Rational>();
+                Some(self.literal(shape, shape.positions().map(entry).collect()))
+            }
             (ExprNode::Of(first, a), ExprNode::Of(second, b)) => {
                 let ((a, row, column), (b, other_row, other_column)) =
                     embedded((first, a)).zip(embedded((second, b)))?;
@@ -308,12 +313,6 @@ impl Graph {
         let Some(first) = filled.next() else { return Some((0, literal)) };
         let rows = filled.next_back().unwrap_or(first) + 1 - first;
         (rows < shape.rows).then(|| (first, literal.block(first, 0, Shape::new(rows, shape.columns))))
-    }
-
-    fn multiply_literals(&self, a: &[Rational], b: &[Rational], shape: Shape) -> Expr<'_> {
-        let inner = a.len() / shape.rows;
-        let entry = |(i, j)| (0..inner).map(|k| &a[i * inner + k] * &b[k * shape.columns + j]).sum::<Rational>();
-        self.literal(shape, shape.positions().map(entry).collect())
     }
 
     /// Whether this is the symbol of an orthogonal matrix.

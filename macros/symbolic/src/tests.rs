@@ -71,8 +71,8 @@ mod table {
 
     #[test]
     fn a_key_has_its_last_value() {
-        let mut table: Table<String, usize> =
-            ["b", "a", "b"].iter().zip(0..).map(|(k, v)| (k.to_string(), v)).collect();
+        let mut table: Table<String, usize> = Table::default();
+        ["b", "a", "b"].iter().zip(0..).for_each(|(k, v)| table.insert(k.to_string(), v));
         *table.entry("c".into()) += 5;
         let entries: Vec<(&str, usize)> = table.iter().map(|(key, value)| (key.as_str(), *value)).collect();
         assert_eq!(entries, [("b", 2), ("a", 1), ("c", 5)]);

@@ -3,7 +3,7 @@
 use clebsch_symbolic::{Chart, Expr, Group, Property, Role, Shape, identity};
 
 use super::{MechanicsFormulas, Substep, SystemFormulas, cayley};
-use crate::model::Isotropy;
+use crate::model::{Factor, Isotropy};
 
 impl<'g> SystemFormulas<'g> {
     /// The replacement of each group element by I + D (D for translations), and of its inverse by that of I + D.
@@ -85,22 +85,18 @@ impl<'g> MechanicsFormulas<'g> {
         parts.iter().map(|part| part.substitute(&elements).expand()).collect()
     }
 
-    /// F − I of each factor, from the chart coordinates.
+    /// F − I of each factor, from the chart coordinates: F − I = 2 (w x^ + (x^)²)/(w² + |x|²) of the rotation whose Gibbs vector is x/w.
     pub(super) fn chart_increments(&self) -> Vec<Expr<'g>> {
         let weighted = self.weighted();
-        let increment = |k: usize| match weighted.iter().position(|&other| other == k) {
-            Some(number) => self.weighted_increment(k, number),
-            None => self.chart_increment(k),
+        let increment = |(k, factor): (usize, &Factor<'g>)| {
+            let Some(number) = weighted.iter().position(|&other| other == k) else { return self.chart_increment(k) };
+            let role = Role::ChartWeight(number);
+            let w = self.model.graph.symbol("w", Shape::scalar(), role, Property::General);
+            let x = self.symbols.stacked_coordinates(k);
+            let hat = factor.group.wedge(x);
+            2 * (w * hat + hat * hat) / (w * w + x.dot(x))
         };
-        (0..self.model.factors.len()).map(increment).collect()
-    }
-
-    /// F − I = 2 (w x^ + (x^)²)/(w² + |x|²) of the rotation whose Gibbs vector is x/w.
-    fn weighted_increment(&self, k: usize, number: usize) -> Expr<'g> {
-        let x = self.symbols.stacked_coordinates(k);
-        let w = self.model.graph.symbol("w", Shape::scalar(), Role::ChartWeight(number), Property::General);
-        let hat = self.model.factors[k].group.wedge(x);
-        2 * (w * hat + hat * hat) / (w * w + x.dot(x))
+        self.model.factors.iter().enumerate().map(increment).collect()
     }
 
     /// q⁺ = Φ_F(q) with F = I + D: for linear actions q + D q, without cancellation. Where sums keep their rests, what is added to q.
@@ -131,53 +127,53 @@ impl<'g> MechanicsFormulas<'g> {
     ///
     /// The increments D = αZ + βZ² of the group elements are applied one Z after the other, as cross products in space.
     pub fn displaced(&self) -> Option<Vec<Expr<'g>>> {
-        (0..self.model.configurations.len()).map(|leaf| displaced_leaf(self, leaf)).collect()
+        (0..self.model.configurations.len()).map(|leaf| self.displaced_leaf(leaf)).collect()
     }
-}
 
-fn displaced_leaf<'g>(formulas: &MechanicsFormulas<'g>, leaf: usize) -> Option<Expr<'g>> {
-    let (model, symbols) = (&formulas.model, &formulas.symbols);
-    let (q, image) = (model.configurations[leaf].symbol, model.action[leaf]);
-    if q.shape().columns != 1 {
-        return None;
+    fn displaced_leaf(&self, leaf: usize) -> Option<Expr<'g>> {
+        let (model, symbols) = (&self.model, &self.symbols);
+        let (q, image) = (model.configurations[leaf].symbol, model.action[leaf]);
+        if q.shape().columns != 1 {
+            return None;
+        }
+        let mut movers = (0..model.factors.len()).filter(|&k| image.depends_on(model.factors[k].symbol));
+        let Some(k) = movers.next() else { return Some(if self.is_compensated() { image - q } else { image }) };
+        if movers.next().is_some() {
+            return None;
+        }
+        let group = model.factors[k].group;
+        let x = symbols.stacked_coordinates(k);
+        let (alpha, beta) = symbols.charts[k].in_one_plane(&symbols.coordinates(k))?;
+        let moved = |q: Expr<'g>| {
+            self.generator[leaf].substitute(&[(symbols.algebra[k], x), (model.configurations[leaf].symbol, q)])
+        };
+        let (once, twice) = (moved(q), moved(moved(q)));
+        // affine in Z and Z²: the step size and the time stand for two free numbers
+        let (z, free) = (group.wedge(x), [model.step_size, model.time]);
+        let element = group.identity(model.graph) + free[0] * z + free[1] * (z * z);
+        let turned = image.substitute(&[(model.factors[k].symbol, element)]);
+        if !identity::equal(&[turned], &[q + free[0] * once + free[1] * twice]) {
+            return None;
+        }
+        let added = if self.is_perpendicular(k, leaf, twice) {
+            alpha * once - (beta * x.norm_squared()) * q
+        } else {
+            alpha * once + beta * twice
+        };
+        Some(if self.is_compensated() { added } else { q + added })
     }
-    let mut movers = (0..model.factors.len()).filter(|&k| image.depends_on(model.factors[k].symbol));
-    let Some(k) = movers.next() else { return Some(if formulas.is_compensated() { image - q } else { image }) };
-    if movers.next().is_some() {
-        return None;
-    }
-    let group = model.factors[k].group;
-    let x = symbols.stacked_coordinates(k);
-    let (alpha, beta) = symbols.charts[k].in_one_plane(&symbols.coordinates(k))?;
-    let moved = |q: Expr<'g>| {
-        formulas.generator[leaf].substitute(&[(symbols.algebra[k], x), (model.configurations[leaf].symbol, q)])
-    };
-    let (once, twice) = (moved(q), moved(moved(q)));
-    // affine in Z and Z²: the step size and the time stand for two free numbers
-    let (z, free) = (group.wedge(x), [model.step_size, model.time]);
-    let element = group.identity(model.graph) + free[0] * z + free[1] * (z * z);
-    let turned = image.substitute(&[(model.factors[k].symbol, element)]);
-    if !identity::equal(&[turned], &[q + free[0] * once + free[1] * twice]) {
-        return None;
-    }
-    let added = if is_perpendicular(formulas, k, leaf, twice) {
-        alpha * once - (beta * x.norm_squared()) * q
-    } else {
-        alpha * once + beta * twice
-    };
-    Some(if formulas.is_compensated() { added } else { q + added })
-}
 
-/// Whether x_Q(x_Q(q)) = −|x|² q, because x is a multiple of a momentum J(q, p): on a sphere, turned about an axis perpendicular to q.
-fn is_perpendicular<'g>(formulas: &MechanicsFormulas<'g>, k: usize, leaf: usize, twice: Expr<'g>) -> bool {
-    let (model, symbols) = (&formulas.model, &formulas.symbols);
-    // forces in 𝔤*, and what a cost gives at rest, need not be momenta of that kind
-    let is_momentum = symbols.charts[k] == Chart::Sine
-        && model.isotropy == Isotropy::Fixed
-        && model.force.is_none()
-        && formulas.substeps.iter().all(|substep| substep.rest.is_none());
-    let momentum = formulas.momentum_map[k];
-    let seen = twice.substitute(&[(symbols.stacked_coordinates(k), momentum)]);
-    let q = model.configurations[leaf].symbol;
-    is_momentum && identity::equal(&[seen], &[-(momentum.norm_squared() * q)])
+    /// Whether x_Q(x_Q(q)) = −|x|² q, because x is a multiple of a momentum J(q, p): on a sphere, turned about an axis perpendicular to q.
+    fn is_perpendicular(&self, k: usize, leaf: usize, twice: Expr<'g>) -> bool {
+        let (model, symbols) = (&self.model, &self.symbols);
+        // forces in 𝔤*, and what a cost gives at rest, need not be momenta of that kind
+        let is_momentum = symbols.charts[k] == Chart::Sine
+            && model.isotropy == Isotropy::Fixed
+            && model.force.is_none()
+            && self.substeps.iter().all(|substep| substep.rest.is_none());
+        let momentum = self.momentum_map[k];
+        let seen = twice.substitute(&[(symbols.stacked_coordinates(k), momentum)]);
+        let q = model.configurations[leaf].symbol;
+        is_momentum && identity::equal(&[seen], &[-(momentum.norm_squared() * q)])
+    }
 }

@@ -20,7 +20,7 @@ pub(super) fn blocks(graph: &Graph, group: Group) -> Vec<Block> {
         Group::Affine(n) => vec![square(n, entries(n)), column(n)],
         Group::Translation(n) => whole(unit_vectors(n)),
         Group::GeneralLinear(n) => whole(entries(n)),
-        Group::SpecialLinear(n) => whole(differences(n).chain(entries(n).into_iter().filter(off_diagonal)).collect()),
+        Group::SpecialLinear(n) => whole(differences(n).chain(off_diagonal(n)).collect()),
         Group::Symplectic(n) => whole(hamiltonian(n / 2)),
         Group::Unitary(n) => whole(anti_hermitian(n, (0..n).map(|i| vec![one(i, i)]))),
         Group::SpecialUnitary(n) => whole(anti_hermitian(n, differences(n))),
@@ -75,8 +75,9 @@ fn entries(n: usize) -> Vec<Sparse> {
     Shape::square(n).positions().map(|(i, j)| vec![one(i, j)]).collect()
 }
 
-fn off_diagonal(element: &Sparse) -> bool {
-    element.iter().all(|(i, j, _)| i != j)
+/// Eij by rows, i ≠ j.
+fn off_diagonal(n: usize) -> impl Iterator<Item = Sparse> {
+    Shape::square(n).positions().filter(|(i, j)| i != j).map(|(i, j)| vec![one(i, j)])
 }
 
 /// Eii − E(i+1)(i+1).

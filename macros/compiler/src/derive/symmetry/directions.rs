@@ -100,7 +100,10 @@ impl<'a, 'g> Directions<'a, 'g> {
             }
             let xi = self.system.symbols.algebra[*k];
             let motion = multiplied(group, leaf.symbol, group.wedge(xi), side);
-            let velocity = self.system.in_factor(*k, transported(group, leaf.symbol, xi, side));
+            let (q, inverse) = (leaf.symbol, group.inverse(leaf.symbol));
+            let (before, after) = if side == Side::Left { (inverse, q) } else { (q, inverse) };
+            let moved = group.compose(group.compose(before, group.wedge(xi)), after);
+            let velocity = self.system.in_factor(*k, group.projected_coordinates(moved));
             let generated = self.system.motion_by(&velocity);
             identity::equal(&generated, &alone(&generated, j, motion)) && self.commutes(j, motion)
         };
@@ -174,13 +177,6 @@ fn alone<'g>(parts: &[Expr<'g>], j: usize, motion: Expr<'g>) -> Vec<Expr<'g>> {
 /// w q, or q w.
 fn multiplied<'g>(group: Group, q: Expr<'g>, w: Expr<'g>, side: Side) -> Expr<'g> {
     if side == Side::Left { group.translate_right(q, w) } else { group.translate_left(q, w) }
-}
-
-/// The coordinates of q⁻¹wq, or of qwq⁻¹.
-fn transported<'g>(group: Group, q: Expr<'g>, w: Expr<'g>, side: Side) -> Expr<'g> {
-    let (element, inverse) = (group.wedge(w), group.inverse(q));
-    let (before, after) = if side == Side::Left { (inverse, q) } else { (q, inverse) };
-    group.projected_coordinates(group.compose(group.compose(before, element), after))
 }
 
 impl<'g> SystemFormulas<'g> {

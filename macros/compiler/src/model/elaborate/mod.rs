@@ -99,7 +99,8 @@ enum Growth {
 impl<'e, 'c, 'g> Elaborator<'e, 'c, 'g> {
     /// An elaborator for the closure of a key, with the names that its arguments introduce.
     pub fn new(context: &'e mut Context<'c, 'g>, key: &'e str, scope: Scope<'g>) -> Elaborator<'e, 'c, 'g> {
-        let members = scope.elements.iter().copied().collect();
+        let mut members = Table::default();
+        scope.elements.iter().for_each(|(element, group)| members.insert(*element, *group));
         Elaborator { context, key, scope, members, sizes: Table::default(), depth: 0, work: 0 }
     }
 
