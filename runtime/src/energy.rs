@@ -8,12 +8,8 @@ use num_traits::{One, Zero};
 
 /// ½ μ·Σ⁻¹μ.
 pub fn kinetic_energy<T: Scalar, const M: usize>(inverse: &SMatrix<T, M, M>, mu: &SVector<T, M>) -> T {
-    let mut energy = T::zero();
-    for i in 0..M {
-        let velocity = (0..M).fold(T::zero(), |sum, j| sum + inverse[(i, j)] * mu[j]);
-        energy += mu[i] * velocity;
-    }
-    energy * T::from_ratio(1, 2)
+    let velocity = |i: usize| (0..M).fold(T::zero(), |sum, j| sum + inverse[(i, j)] * mu[j]);
+    (0..M).fold(T::zero(), |energy, i| energy + mu[i] * velocity(i)) * T::from_ratio(1, 2)
 }
 
 /// ½ |μ|²/κ of the inertia κI, given 1/κ.

@@ -34,6 +34,19 @@ macro_rules! debug {
     };
 }
 
+/// `Debug` of a type from all of these fields. A derived one would ask for methods that are `Debug`.
+macro_rules! debug_fields {
+    ($name:ident<$($argument:tt),*> where [$($generics:tt)*]: $($field:ident),*) => {
+        impl<$($generics)*> core::fmt::Debug for $name<$($argument),*> {
+            fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+                let mut shown = f.debug_struct(stringify!($name));
+                $(shown.field(stringify!($field), &self.$field);)*
+                shown.finish()
+            }
+        }
+    };
+}
+
 /// `Copy` and `Clone` of a type whose fields are. Derived ones would ask the same of its parameters.
 macro_rules! copy {
     ($name:ident<$($argument:tt),*> where [$($generics:tt)*]) => {
@@ -56,4 +69,4 @@ macro_rules! copied {
     };
 }
 
-pub(crate) use {copied, copy, debug, getters};
+pub(crate) use {copied, copy, debug, debug_fields, getters};

@@ -9,11 +9,11 @@ mod staggered;
 mod step_size;
 mod symmetric;
 
-use crate::fields::getters;
+use crate::fields::{debug_fields, getters};
 use crate::parameters::check_finite;
 use crate::scheme::{At, Constants, Scheme};
 use crate::{Clebsch, Clock, Conserves, CotangentState, Declared, Error, Mask, Method, Scalar, Space, State, Time};
-use core::fmt::{self, Debug, Formatter};
+use core::fmt::Debug;
 use num_traits::Zero;
 
 /// A system, a step size and what no step changes, computed once.
@@ -25,19 +25,14 @@ pub struct Stepper<S: Clebsch, M: Method<S> = Declared> {
     pub(crate) constants: Constants<S, M>,
 }
 
-// derived ones would ask for methods that are `Clone` and `Debug`
+// a derived one would ask for methods that are `Clone`
 impl<S: Clebsch + Clone, M: Method<S>> Clone for Stepper<S, M> {
     fn clone(&self) -> Self {
         Self { system: self.system.clone(), h: self.h, constants: self.constants.clone() }
     }
 }
 
-impl<S: Clebsch + Debug, M: Method<S>> Debug for Stepper<S, M> {
-    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
-        let Self { system, h, constants } = self;
-        f.debug_struct("Stepper").field("system", system).field("h", h).field("constants", constants).finish()
-    }
-}
+debug_fields!(Stepper<S, M> where [S: Clebsch + Debug, M: Method<S>]: system, h, constants);
 
 impl<S: Clebsch, M: Method<S>> Stepper<S, M> {
     /// Checks `h` and the parameters of `system`.

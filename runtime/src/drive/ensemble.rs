@@ -3,6 +3,7 @@
 mod chunk;
 
 use super::Drive;
+use crate::fields::debug_fields;
 use crate::{Body, Clebsch, Clock, Conserved, Conserves, Declared, Error, Method, Scalar, State, Stepper, Time};
 use alloc::vec::Vec;
 use chunk::Chunk;
@@ -68,18 +69,7 @@ impl Display for Failure {
 
 impl core::error::Error for Failure {}
 
-// a derived one would ask for methods that are `Debug`
-impl<S: Clebsch + Debug, M: Method<S>> Debug for Ensemble<S, M> {
-    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
-        let Self { steppers, chunks, bodies, steps } = self;
-        f.debug_struct("Ensemble")
-            .field("steppers", steppers)
-            .field("chunks", chunks)
-            .field("bodies", bodies)
-            .field("steps", steps)
-            .finish()
-    }
-}
+debug_fields!(Ensemble<S, M> where [S: Clebsch + Debug, M: Method<S>]: steppers, chunks, bodies, steps);
 
 impl<S: Clebsch, M: Method<S>> Stepper<S, M> {
     /// This stepper with bodies at (q, N): stepped in place. Parameters and step size may differ between lanes: body i is in lane i mod [`LANES`](Scalar::LANES).
@@ -248,11 +238,7 @@ impl<S: Clebsch, M: Method<S>> Clone for Bodies<'_, S, M> {
     }
 }
 
-impl<S: Clebsch + Debug, M: Method<S>> Debug for Bodies<'_, S, M> {
-    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
-        f.debug_struct("Bodies").field("ensemble", self.ensemble).field("next", &self.next).finish()
-    }
-}
+debug_fields!(Bodies<'_, S, M> where [S: Clebsch + Debug, M: Method<S>]: ensemble, next);
 
 impl<S: Clebsch, M: Method<S>> Iterator for Bodies<'_, S, M> {
     type Item = Body<S>;
