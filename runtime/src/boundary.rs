@@ -1,7 +1,7 @@
 //! Fixed endpoints: the extremal of the action from one configuration to another in a given number of steps.
 //!
 //! The unknowns are the motions of the vertices of a path along their orbits, which the dynamics q_{k+1} = Φ_{F_k}(q_k) always holds on. So the
-//! problem on the whole space and the problem on the orbit have one answer, of which only the part of momenta that motions can have is
+//! problem on all of the space and the problem on the orbit have one answer, of which only the part of momenta that motions can have is
 //! determined, and no extremal is abnormal. As every vertex is an unknown, no single shot has to hit the target.
 
 mod end;
@@ -43,7 +43,7 @@ impl<S: Clebsch, B: Method<S>> Stepper<S, B> {
     /// let mut path = [boundary.rest(&q0); 50];
     /// let extremal = boundary.solve(&q0, &target, Guess::Geodesic, &mut path)?;
     /// ```
-    /// Its paths are of steps of order 1 or 2; a composed step runs back in some of its parts, and does not compile here.
+    /// Its paths are of steps of order 1 or 2; a composed step runs back in some of its steps, and does not compile here.
     #[inline]
     pub fn boundary<const M: usize>(&self) -> Boundary<'_, S, M, B>
     where
@@ -196,7 +196,7 @@ impl<'a, S: Variational<M, Scalar: Real>, B: Differentiated<S, M>, const M: usiz
         Ok(h)
     }
 
-    /// Start and guess are finite, the start on the declared space, nodes those of whole steps.
+    /// Start and guess are finite, the start on the declared space, nodes those of full steps.
     fn check(&self, start: &S::Configuration, guess: &Guess<S::Scalar, M>, nodes: usize) -> Result<(), Error> {
         let per_step = B::EDGES.max(1);
         if nodes == 0 || !nodes.is_multiple_of(per_step) {

@@ -101,7 +101,7 @@ impl<S: Controlled<D, U, C, Scalar: Real>, const D: usize, const U: usize, const
     /// # Errors
     /// * [`Error::PathLength`], [`Error::NotFinite`], [`Error::OffOrbit`], [`Error::OutsideMomentumSpace`] for what was given;
     /// * [`Error::Uncontrollable`] where inputs do not move the end towards the target;
-    /// * [`Error::Infeasible`] and [`Error::TargetMissed`] where bounds cannot be kept, or leave no way to the target;
+    /// * [`Error::Infeasible`] and [`Error::TargetMissed`] where bounds cannot be satisfied, or leave no way to the target;
     /// * [`Error::NoExtremal`] where the work was not enough;
     /// * those of a step.
     ///
@@ -127,7 +127,7 @@ impl<S: Controlled<D, U, C, Scalar: Real>, const D: usize, const U: usize, const
     /// ```text
     /// dV/dh = Σ d/dh (ℓ + p·f + z·a) + N ∂φ/∂t
     /// ```
-    /// the multipliers kept. Its zero is bracketed and found by the secant method, with halvings where that does not contract (Brent,
+    /// at fixed multipliers. Its zero is bracketed and found by the secant method, with halvings where that does not contract (Brent,
     /// *Algorithms for Minimization without Derivatives*, 1973, chapter 4); each plan is the guess of the next.
     ///
     /// # Errors

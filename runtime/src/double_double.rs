@@ -13,8 +13,8 @@ use qd::Quad;
 /// use clebsch::{DoubleDouble, Scalar};
 ///
 /// let third = DoubleDouble::from_ratio(1, 3);
-/// let rest = third + third + third - DoubleDouble::from_f64(1.0);
-/// assert!(rest.to_f64().abs() < 1e-31);
+/// let remainder = third + third + third - DoubleDouble::from_f64(1.0);
+/// assert!(remainder.to_f64().abs() < 1e-31);
 /// ```
 ///
 /// Sums, differences, products, quotients and square roots are right to a few 2⁻¹⁰⁴; so are elementary functions of numbers of order one,
@@ -100,7 +100,7 @@ macro_rules! operators {
             #[inline]
             fn $method(self, other: Self) -> Self {
                 let exact = Self(self.0.$own(other.0));
-                // an infinite number has no rest: the second number would be NaN
+                // an infinite number has no remainder: the second number would be NaN
                 if exact.is_finite() { exact } else { $trait::$method(self.0.0, other.0.0).into() }
             }
         }

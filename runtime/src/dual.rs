@@ -1,4 +1,4 @@
-//! Dual numbers of the crate `num-dual` as scalars: a whole simulation differentiates, by parameters, step size and initial data.
+//! Dual numbers of the crate `num-dual` as scalars: a simulation is differentiated by parameters, step size and initial data.
 //!
 //! Comparisons look at the values alone: a step goes as without derivatives. Iterations go on until derivatives are right, [`Scalar::DERIVATIVES`].
 
@@ -16,7 +16,7 @@ macro_rules! elementary {
     )*};
 }
 
-/// One implementation for each type: the order of its derivatives, and its parts beside the value as they are in a constant.
+/// One implementation for each type: the order of its derivatives, and these derivatives as they are in a constant.
 macro_rules! duals {
     ($([$($parameter:tt)*] $dual:ident<$($argument:ty),*>, $order:literal, $($name:ident: $zero:expr),*;)*) => {$(
         impl<$($parameter)*> Scalar for $dual<$($argument),*> {

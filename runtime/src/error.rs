@@ -160,7 +160,7 @@ errors! {
         } =>
             "entry {entry} of the gradient is {gradient:.9e}, but differences of the value give {difference:.9e}: \
              check the sign, the factor and the order of entries of the gradient method";
-        /// The nodes that were given for a path do not make up whole steps.
+        /// The nodes that were given for a path do not make up full steps.
         PathLength {
             /// Their number.
             nodes: usize,

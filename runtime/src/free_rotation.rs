@@ -216,7 +216,7 @@ struct OfLane<'a, T> {
 }
 
 impl<T: Scalar> OfLane<'_, T> {
-    /// A multiple of the quaternion of the turn, of a motion that keeps `kept` where it is known.
+    /// A multiple of the quaternion of the turn, of a motion with the constants `kept` where they are known.
     #[inline(always)]
     fn turn(self, kept: Option<KeptRotation<T::Lane>>, m: &Vector<T::Lane>) -> Result<Turn<T::Lane>, Error> {
         let inertia = match kept {

@@ -12,7 +12,7 @@
 //! ```text
 //! N F̃ = G,    N = m³ + J̃²m + mJ̃² + e₂m − e₁(m² + J̃²) − e₃,    G = −(m² + J̃² − e₁m + e₂ + e₄J̃⁻²)J̃
 //! ```
-//! The e_i are taken from m anew in each step, from det(λ² − λm − J̃²): kept as they were, rounding would grow exponentially.
+//! The e_i are taken from m anew in each step, from det(λ² − λm − J̃²): taken over unchanged, rounding would grow exponentially.
 //!
 //! Source: J. Moser and A. P. Veselov, *Discrete versions of some classical integrable systems and factorization of matrix polynomials*,
 //! Comm. Math. Phys. 139 (1991); for the integrals S. V. Manakov, *Note on the integration of Euler's equations of the dynamics of an n-dimensional

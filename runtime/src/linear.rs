@@ -116,7 +116,7 @@ pub fn solve_dense<T: Scalar, const M: usize>(a: &SMatrix<T, M, M>, b: &SVector<
     if safe.all() {
         return Some((x, orientation));
     }
-    // Copies on the cold path only: what is passed by reference lies in memory in every solve, and what is returned whole does too.
+    // Copies on the cold path only: what is passed by reference lies in memory in every solve, and a result that is returned in one piece does too.
     let (a, b, own) = (*a, *b, x);
     let (x, orientation) = eliminated_at_last((&a, &b), &own, orientation, safe)?;
     Some((x, orientation))

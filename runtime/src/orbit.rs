@@ -46,7 +46,7 @@ pub fn orthogonal<T: Scalar, const N: usize>(r: SMatrix<T, N, N>) -> SMatrix<T, 
     if !is_off.any() {
         return r;
     }
-    // a copy: what is handed on by reference would be kept in memory at every step
+    // a copy: passing it by reference would force it into memory in every step
     let moved = r;
     let change = to_rotations(&moved, &SMatrix::zeros());
     r.zip_map(&change, |entry, change| T::select(is_off, entry + change, entry))

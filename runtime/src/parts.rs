@@ -104,7 +104,7 @@ pub type RestOf<S, M = Declared> =
     <<S as Parts<M>>::Sums as Sums>::Rest<<S as Clebsch>::Scalar, <S as Clebsch>::Configuration>;
 
 /// The parts of substep K: 0 for a step that is one, 0 and 1 for a step and its adjoint. The last one can be inverted, `inverse_legendre`.
-/// Every time is that at which the whole step starts. A part that a declaration does not have is `None` and costs nothing.
+/// Every time is that at which the step starts, of which this is a substep. A part that a declaration does not have is `None` and costs nothing.
 #[allow(unused_variables, reason = "provided methods take what others need")]
 pub trait Substep<const K: usize, M: Method<Self> = Declared>: Parts<M> {
     /// Whether what acts at the end of a substep is what acts at its start, so that one kick serves both.

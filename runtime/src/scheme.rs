@@ -79,11 +79,11 @@ pub type Held<S, M = Declared> = <<M as Method<S>>::Scheme as Scheme<S, M>>::Hel
 pub type Left<S, M = Declared> = <<M as Method<S>>::Scheme as Scheme<S, M>>::Left;
 /// What no step of S by M changes.
 pub type Constants<S, M = Declared> = <<M as Method<S>>::Scheme as Scheme<S, M>>::Constants;
-/// The parts of a state: q, what is held of N, and what the last step has left.
+/// What a state consists of: q, what is held of N, and what the last step has left.
 pub type Parted<S, P, M = Declared> = (Q<S>, <P as Scheme<S, M>>::Held, <P as Scheme<S, M>>::Left);
-/// The parts of the state after steps.
+/// The state after steps, or why there is none.
 pub type Stepped<S, P, M = Declared> = Result<Parted<S, P, M>, Error>;
-/// The parts of the state before a step.
+/// What the state before a step consists of.
 pub type Before<'a, S, P, M = Declared> = (&'a Q<S>, &'a <P as Scheme<S, M>>::Held, &'a <P as Scheme<S, M>>::Left);
 /// (q, p)
 pub type Pair<S> = (Q<S>, Q<S>);
@@ -124,7 +124,7 @@ pub trait Scheme<S: Clebsch, M: Method<S> = Declared>: Sized {
     /// Checks the parameters and computes what no step of the size h changes.
     fn constants(system: &S, h: S::Scalar) -> Result<Self::Constants, Error>;
 
-    /// The constants of one step of the whole size.
+    /// The constants of one step of the full size.
     fn whole(constants: &Self::Constants) -> &M::Constants;
 
     /// What a state at q with the momentum μ holds of it.

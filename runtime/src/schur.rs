@@ -136,7 +136,7 @@ impl<T: Real, const W: usize> Reflection<T, W> {
         let others = x.iter().enumerate().filter(|(i, _)| *i != head);
         let rest = others.fold(T::zero(), |sum, (_, x)| sum + *x * *x);
         match v.get_mut(head) {
-            // not where the rest is just small: it would stay as it is, and the sweep would stand still
+            // not where the others are just small: it would stay as it is, and the sweep would stand still
             Some(first) if rest > T::zero() => {
                 let square = rest + *first * *first;
                 let (length, size) = (square.sqrt(), first.abs());

@@ -11,7 +11,7 @@ pub trait Space<T: Scalar>: Copy + Debug + PartialEq {
     /// What one lane of it is; the space itself where scalars are single numbers.
     type Lane: Space<T::Lane>;
 
-    /// Joins `visit(x)` of all scalars x, `unit` where there are none: from left to right, those of each part before parts are joined.
+    /// Joins `visit(x)` of all scalars x, `unit` where there are none: from left to right, those of each component before components are joined.
     fn reduce<V: Copy>(&self, unit: V, visit: impl Fn(T) -> V + Copy, join: impl Fn(V, V) -> V + Copy) -> V;
 
     /// Where all scalars are `value`.

@@ -4,7 +4,6 @@ use crate::linear::{eliminate, rows};
 use crate::matrices::{Blocks, embedded};
 use crate::newton::shortest;
 use crate::scheme::{At, Constants, Scheme};
-
 use crate::tangent::{of_edge, times};
 use crate::{Arrival, BoundsExpansion, Carried, Clebsch, EndpointExpansion, Error, Expansion, Scalar, Space, Tangent};
 use core::array::from_fn;

@@ -29,10 +29,10 @@ pub fn accumulate<T: Scalar, S: Space<T>>(sum: &S, rest: &S, increment: &S) -> (
 
 /// How a step adds to q and N.
 pub trait Sums {
-    /// Whether what rounding takes off is kept, and added in the next step.
+    /// Whether what rounding takes off is carried along, and added in the next step.
     const ARE_COMPENSATED: bool;
 
-    /// What rounding has taken off a sum; `()` where that is not kept.
+    /// What rounding has taken off a sum; `()` where that is not carried along.
     type Rest<T: Scalar, V: Space<T>>: Space<T>;
     /// What one step leaves to the next: an impulse I and the rests of q and N.
     type Left<T: Scalar, I: Space<T>, Q: Space<T>, N: Space<T>>: Space<T>;

@@ -11,7 +11,6 @@ use crate::linear::{Solution, eliminate, entry, matrix, power_of_two_near, rows,
 use crate::matrices::{matrix_of, skew, skew_components};
 use crate::orientation::Orientation;
 use crate::schur::Schur;
-
 use crate::{Mask, Real, Scalar, Space};
 use core::array::from_fn;
 use nalgebra::{SMatrix, SVector};

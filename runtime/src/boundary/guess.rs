@@ -18,7 +18,7 @@ pub enum Guess<T, const M: usize> {
     Path,
 }
 
-/// Corrections of a constant group element, or of a whole path, until its end is near the target.
+/// Corrections of a constant group element, or of a path, until its end is near the target.
 const PASSES: usize = 60;
 /// The edges of a coarse path, an even number: a step has at most two.
 pub(super) const COARSE: usize = 8;
@@ -31,7 +31,7 @@ const CORRECTIONS: usize = 3;
 type Motions<T, const M: usize> = [SVector<T, M>; COARSE + 1];
 
 impl<T: Real, S: Variational<M, Scalar = T>, B: Differentiated<S, M>, const M: usize> Search<'_, S, M, B> {
-    /// Fills the nodes with the guess and brings the end so near to the target that Newton's method does the rest.
+    /// Fills the nodes with the guess and brings the end so near to the target that Newton's method takes over.
     pub fn prepare(&mut self, guess: &Guess<T, M>) -> Result<(), Error> {
         let start = match guess {
             Guess::Geodesic => Some(Space::origin()),
@@ -66,7 +66,7 @@ impl<T: Real, S: Variational<M, Scalar = T>, B: Differentiated<S, M>, const M: u
 
     /// η of the group element τ(η) that all edges share, corrected so that the end is brought to the target. Each correction is the arc over
     /// the gap, divided by the number of edges. It is exact where all motions commute and along the rotations about one axis; where it does
-    /// not bring the end nearer, the rest is left to [`close`](Self::close).
+    /// not bring the end nearer, [`close`](Self::close) takes over.
     fn constant(&self, mut eta: SVector<T, M>) -> SVector<T, M> {
         let Endpoints { system, start, .. } = self.problem;
         let edges = self.path.len();

@@ -123,7 +123,7 @@ impl<T: Real, S: Variational<M, Scalar = T>, B: Differentiated<S, M>, const M: u
             later = node;
         }
         if summary.decrement != zero {
-            // Compared with the action itself and, as parts of that may cancel, with |N|²/tr H: the kinetic part.
+            // Compared with the action itself and, as terms of that may cancel, with |N|²/tr H: the kinetic part.
             let is_stiff = summary.stiffness > zero;
             let kinetic = if is_stiff { summary.momenta * summary.edges / summary.stiffness } else { zero };
             summary.size = (summary.decrement.abs() / (summary.magnitude + kinetic)).sqrt();

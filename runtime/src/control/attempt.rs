@@ -1,6 +1,6 @@
 //! One attempt after another, from the guess to plans that only a search finds.
 //!
-//! Corrections that close the whole gap to the target at once are the fastest; where they drive the slacks of bounds to nothing they get
+//! Corrections that close all of the gap to the target at once are the fastest; where they drive the slacks of bounds to nothing they get
 //! stuck there. Then the gap g is priced instead, by ν·g + ½ g·Rg beside the barriers of the bounds, and ν and R are raised between critical
 //! plans until little of it is left. Where that ends at a plan from which no small change leads nearer, inputs are varied before.
 //!
@@ -94,7 +94,7 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: usize
     }
 }
 
-/// The inputs in the middle of a step, that turn so often in the whole plan: one way and, half as far and twice as fast, the other.
+/// The inputs in the middle of a step, that turn so often in the plan: one way and, half as far and twice as fast, the other.
 fn pattern<T: Real, const U: usize>(amplitudes: &SVector<T, U>, turns: T, index: usize, steps: usize) -> SVector<T, U> {
     let half = T::from_ratio(1, 2);
     let part = (T::from_f64(index as f64) + half) / T::from_f64(steps as f64);

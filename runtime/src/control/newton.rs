@@ -62,7 +62,7 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: usize
             size = if decrement == zero { zero } else { (decrement.abs() / magnitude).sqrt() };
             match now.verdict(&end, size, unit, barrier::last(bounds, magnitude)) {
                 Verdict::Done | Verdict::Tighten if now.may_be_at_saddle(summary.negative, size) => continue,
-                // Nothing pushes, but bounds are not kept yet.
+                // Nothing pushes, but bounds are still violated.
                 Verdict::Done if self.is_violated(now.relaxation) => {}
                 Verdict::Done => {
                     self.settle(&change, now.settings.barrier)?;

@@ -2,7 +2,7 @@
 //! down from a saddle, where no gradient leads: along a direction in which the price curves down.
 //!
 //! The correction makes J − μ Σ ln s + ν⁺·g + ½ g·Rg + z⁺·(a + s) smallest in its quadratic model, g = −e the gap, with the multipliers
-//! ν⁺ and z⁺ that come next and the Hessian that the backward sweep had: its slope is known, and near a solution whole steps pass.
+//! ν⁺ and z⁺ that come next and the Hessian that the backward sweep had: its slope is known, and near a solution full steps pass.
 //!
 //! A negative eigenvalue of one Q_uu, counted with all curvature as it is, is one of the Hessian L Δ Lᵀ of the augmented Lagrangian: the input
 //! of that stage changed along its eigenvector, and those that follow by their gains, is the column of L⁻ᵀ.
@@ -71,7 +71,7 @@ impl<T: Real, const D: usize, const U: usize> Descent<'_, T, D, U> {
 impl<T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: usize, const C: usize> Plan<'_, S, D, U, C> {
     /// Makes a part of the correction. Returns its fraction and how many roll-outs were refused, other than by slacks; `None` where no part
     /// that is large enough helps. Prices have the size `magnitude`, of which round-off is a part ε. A full step that is trusted needs no
-    /// proof. Where slacks allow only a part, as much of the gap is left to later corrections, before the whole is made shorter.
+    /// proof. Where slacks allow only a part, as much of the gap is left to later corrections, before the correction is made shorter.
     pub fn descend(
         &mut self,
         now: &mut Iterate<T, D>,

@@ -5,7 +5,7 @@
 //! Q(δ, δu) = ℓ + z·a + V(Aδ + Bδu) + ½ (δ, δu)·∂²(ℓ + z·a + p·f)(δ, δu),    δu = k + Kδ + Gδν = −Q_uu⁻¹ (Q_u + Q_ux δ + Q_uν δν)
 //! P = Q_xx + Q_xu K,    p = Q_x + Q_xu k,    Ψ = Q_xν + Kᵀ Q_uν,    Γ = Σ Q_uνᵀ Q_uu⁻¹ Q_uν
 //! ```
-//! and δν is what closes the gap: Γ δν = V_ν. The inertia of the whole problem is that of all Q_uu less that of Γ.
+//! and δν is what closes the gap: Γ δν = V_ν. The inertia of the problem is that of all Q_uu less that of Γ.
 //!
 //! Sources: Jacobson and Mayne, *Differential Dynamic Programming* (1970); for the multipliers of the target Bryson and Ho, *Applied Optimal
 //! Control* (1975), section 6.3; for the bounds Rao, Wright and Rawlings, *Application of interior-point methods to model predictive control* (1998).

@@ -257,7 +257,7 @@ where
     }
 }
 
-/// The first site whose state is not finite, with the first of its parts that is not.
+/// The first site whose state is not finite, and what of it is not.
 #[cold]
 fn not_finite<T: Scalar, Q: Space<T>, M: Space<T>>(q: &[Q], mu: &[M], kick: &[M]) -> Option<SiteError> {
     q.iter().zip(mu).zip(kick).enumerate().find_map(|(i, ((q, mu), kick))| {

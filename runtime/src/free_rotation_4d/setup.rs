@@ -83,7 +83,7 @@ pub(super) fn velocity<T: Scalar>(d: &[T; 4], m: &Vector<T>) -> Vector<T> {
     m.component_div(&SVector::from([p + q, p + r, p + s, q + r, q + s, r + s]))
 }
 
-/// The coefficients of exp(δm + κ⋆m) − I, by the two parts of a rotation in four dimensions, which commute.
+/// The coefficients of exp(δm + κ⋆m) − I, by the two factors of a rotation in four dimensions, which commute.
 fn turn<T: Real>([delta, kappa]: [T; 2], square: T, pf: T) -> [T; 4] {
     let (half, quarter, two) = (T::from_ratio(1, 2), T::from_ratio(1, 4), T::from_f64(2.0));
     let (left, right) = (delta + kappa, delta - kappa);
@@ -243,7 +243,7 @@ fn least_squares<T: Real>(columns: [Vector<T>; 4], b: Vector<T>) -> [T; 4] {
         *column = if length > T::zero() { *column / length } else { SVector::from_element(T::zero()) };
     }
     let mut rest = b;
-    // a_k less its parts along those before is r_kk q_k
+    // a_k less its components along those before is r_kk q_k
     let (mut order, mut upper, mut right) = ([0; 4], [[T::zero(); 4]; 4], [T::zero(); 4]);
     let mut used = [false; 4];
     let mut rank = 0;

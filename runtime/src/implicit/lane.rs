@@ -3,7 +3,6 @@
 use super::path::Homotopy;
 use super::{Equation, Jacobian, QUICK, at_identity, not_converged, size, with_derivatives};
 use crate::orientation::Orientation;
-
 use crate::{Error, Mask, Scalar, Space};
 use core::marker::PhantomData;
 use nalgebra::SVector;

@@ -138,7 +138,7 @@ pub fn compose<T: Scalar, C: Clone, X, const K: usize>(
     Ok(state)
 }
 
-/// The constants of a composed step: of a step of the whole size, and of those that it is made of.
+/// The constants of a composed step: of a step of the full size, and of those that it is made of.
 #[derive(Clone, Debug)]
 pub struct Stages<T, C, const K: usize> {
     /// Those of a step of size h.

@@ -17,7 +17,7 @@ pub trait Edges<S: Clebsch, const M: usize, B: Method<S> = Declared>: Scheme<S, 
     /// What is asked for at an edge of the step.
     fn visit<V: Visit<S, M, B>>(at: AtOf<'_, S, Self, B>, edge: usize, visit: V) -> V::Output;
 
-    /// The slopes of an edge along h and t of the whole step, in the columns that are told.
+    /// The slopes of an edge along h and t of the composed step, in the columns that are told.
     #[inline(always)]
     fn slopes_of_step<const P: usize>(
         _constants: &Self::Constants,

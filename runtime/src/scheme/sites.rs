@@ -10,7 +10,7 @@ use core::marker::PhantomData;
 
 /// Half a kick, the moves, half a kick.
 pub type SitesOfSecondOrder<const N: usize> = SitesInTurn<BothKicks, N>;
-/// The moves, and a whole kick.
+/// The moves, and a full kick.
 pub type SitesOfFirstOrder<const N: usize> = SitesInTurn<EndKick, N>;
 /// The moves alone: nothing ties the sites together.
 pub type FreeSites<const N: usize> = SitesInTurn<NoKick, N>;

@@ -1,4 +1,4 @@
-//! Points of the path, and Newton's method with one unknown held fixed.
+//! Points of the path, and Newton's method with one unknown fixed.
 
 use crate::implicit::{Equation, Jacobian, is_much_smaller, not_converged, size};
 use crate::orientation::Orientation;
@@ -22,7 +22,7 @@ pub(crate) struct Homotopy<'a, T: Real, E: Equation<T, M, N>, const M: usize, co
     pub equation: &'a E,
     /// Terms for the target 0.
     still: E::Terms,
-    /// Terms for the whole target.
+    /// Terms for the target μ.
     pub moving: E::Terms,
     /// The sign of det Dρ on the branch.
     pub branch: Option<Orientation>,
@@ -108,7 +108,7 @@ impl<'a, T: Real, E: Equation<T, M, N>, const M: usize, const N: usize> Homotopy
         fastest.0
     }
 
-    /// The point at `length` along the tangent, brought back to the path with `parameter` held fixed. `None` if Newton's method does not
+    /// The point at `length` along the tangent, brought back to the path with `parameter` fixed. `None` if Newton's method does not
     /// contract cleanly or the path turns by too much for this length.
     pub fn step(&mut self, from: &PathPoint<T, M>, parameter: usize, length: T) -> Option<PathPoint<T, M>> {
         let (mut xi, mut s) = (from.xi + from.slope_xi * length, from.s + from.slope_s * length);
