@@ -83,7 +83,7 @@ fn culprit(declaration: &Declaration) -> Option<(Location, String, &'static str)
     };
     rows.into_iter().find_map(|(closure, without, what, instead)| {
         let closure = closure.filter(|_| is_small(without))?;
-        Some((Location::of(&closure.body), format!("what is derived from this {what} takes"), instead))
+        Some((Location::from(&closure.body), format!("what is derived from this {what} takes"), instead))
     })
 }
 

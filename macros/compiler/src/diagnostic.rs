@@ -9,30 +9,8 @@ use quote::{ToTokens, quote_spanned};
 /// A stretch of the user's source, from the first to the last token.
 #[derive(Copy, Clone, Debug)]
 pub struct Location {
-    start: Span,
-    end: Span,
-}
-
-impl Location {
-    /// The place of everything that a syntax tree was made from.
-    pub fn of(tokens: &(impl ToTokens + ?Sized)) -> Location {
-        let mut spans = tokens.to_token_stream().into_iter().map(|token| match token {
-            TokenTree::Group(group) => (group.span_open(), group.span_close()),
-            other => (other.span(), other.span()),
-        });
-        let first = spans.next().unwrap_or_else(|| (Span::call_site(), Span::call_site()));
-        Location { start: first.0, end: spans.last().unwrap_or(first).1 }
-    }
-
-    /// The place from one token to another.
-    pub fn between(start: Span, end: Span) -> Location {
-        Location { start, end }
-    }
-
-    /// The place's first token.
-    pub fn start(self) -> Span {
-        self.start
-    }
+    pub(crate) start: Span,
+    pub(crate) end: Span,
 }
 
 impl From<Span> for Location {
@@ -41,9 +19,15 @@ impl From<Span> for Location {
     }
 }
 
+/// The place of everything that a syntax tree was made from.
 impl<T: ToTokens + ?Sized> From<&T> for Location {
     fn from(tokens: &T) -> Location {
-        Location::of(tokens)
+        let mut spans = tokens.to_token_stream().into_iter().map(|token| match token {
+            TokenTree::Group(group) => (group.span_open(), group.span_close()),
+            other => (other.span(), other.span()),
+        });
+        let first = spans.next().unwrap_or_else(|| (Span::call_site(), Span::call_site()));
+        Location { start: first.0, end: spans.last().unwrap_or(first).1 }
     }
 }
 
@@ -100,10 +84,7 @@ impl Diagnostic {
 
     /// Help, if there is any.
     pub fn maybe_help(self, text: Option<impl fmt::Display>) -> Diagnostic {
-        match text {
-            Some(text) => self.help(text),
-            None => self,
-        }
+        if let Some(text) = text { self.help(text) } else { self }
     }
 
     /// Says that something is part of the language, but not of this version, and what to write instead.

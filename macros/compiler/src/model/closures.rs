@@ -1,7 +1,7 @@
 //! The closures as a whole: what each of them gives, and what it has to give.
 
 use clebsch_symbolic::{Expr, Graph, Shape};
-use syn::{BinOp, Expr as Syntax};
+use syn::{BinOp, Expr as Syntax, ExprBinary};
 
 use super::elaborate::{Context, Elaborator};
 use super::groups::without_cayley_map;
@@ -14,7 +14,7 @@ use super::typed::{Arguments, Typed, Velocity};
 use super::value::{Each, Value};
 use super::{Discretization, Factor, Kinetic, Written};
 use crate::diagnostic::{Location, error, refuse, report};
-use crate::parse::{self, Closure, Declaration, Opaque, spell, tail};
+use crate::parse::{self, Closure, Declaration, Opaque, parenthesized, spell, tail};
 
 /// What an optional closure gives, if it is there; `None` where it has an error, which was reported.
 pub(super) fn optional<C, T>(closure: Option<C>, read: impl FnOnce(C) -> Option<T>) -> Option<Option<T>> {
@@ -178,10 +178,8 @@ pub(super) fn scalar<'g>(
 
 /// How a scalar is made from a value.
 fn to_scalar(tail: &Syntax, value: &Value) -> Option<String> {
-    let text = match tail {
-        Syntax::Binary(_) | Syntax::Unary(_) => format!("({})", spell(tail)),
-        _ => spell(tail),
-    };
+    let is_operation = matches!(tail, Syntax::Binary(_) | Syntax::Unary(_));
+    let text = if is_operation { parenthesized(tail) } else { spell(tail) };
     Some(match value {
         Value::Matrix(expr) if expr.shape() == Shape::vector(3) => format!("take a component, as in `{text}.z`"),
         Value::Matrix(expr) if expr.shape().is_column() => format!("take a component, as in `{text}[0]`"),
@@ -195,17 +193,14 @@ fn to_scalar(tail: &Syntax, value: &Value) -> Option<String> {
 
 /// Why a product has its shape. `let`s of a block are out of scope here, and then there is no reason.
 fn because<'g>(elaborator: &mut Elaborator<'_, '_, 'g>, tail: &Syntax, value: &Value<'g>) -> Option<String> {
-    let Syntax::Binary(product) = tail else { return None };
-    if !matches!(product.op, BinOp::Mul(_)) {
-        return None;
-    }
-    let left = elaborator.elaborate(&product.left)?.matrix()?;
-    let right = elaborator.elaborate(&product.right)?.matrix()?;
+    let Syntax::Binary(ExprBinary { left: a, op: BinOp::Mul(_), right: b, .. }) = tail else { return None };
+    let left = elaborator.elaborate(a)?.matrix()?;
+    let right = elaborator.elaborate(b)?.matrix()?;
     let [left, right] = [left, right].map(|factor| Value::Matrix(factor).describe());
-    let (a, b, text) = (spell(&product.left), spell(&product.right), spell(tail));
+    let (a, b, text) = (spell(a), spell(b), spell(tail));
     Some(format!("`{text}` is {} because `{a}` is {left} and `{b}` is {right}", value.describe()))
 }
 
 pub(super) fn written(closure: &Closure) -> Written {
-    Written { place: Location::of(&closure.body), text: spell(&closure.body) }
+    Written { place: Location::from(&closure.body), text: spell(&closure.body) }
 }

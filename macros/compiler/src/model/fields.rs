@@ -60,7 +60,8 @@ pub(super) fn read<'g>(
     sites: Option<&syn::Ident>,
     diagnostics: &Diagnostics,
 ) -> Fields<'g> {
-    let used = first_uses(declaration);
+    let mut used = BTreeMap::new();
+    declaration.closures().for_each(|closure| first_uses(closure.body.to_token_stream(), &mut used));
     let mut scalar = Agreement::new(declaration, diagnostics);
     spaces.iter().for_each(|ty| scalar.meet(ty, "the configuration"));
     let (mut known, mut parameters, mut leaf_count) = (BTreeMap::new(), Vec::new(), 0);
@@ -90,7 +91,7 @@ pub(super) fn read<'g>(
         parameters.extend(parameter);
         known.insert(name, value);
     }
-    Fields { known, parameters, scalar: scalar.settle() }
+    Fields { known, parameters, scalar: scalar.found.map_or(ScalarType::F64, |(scalar, _)| scalar) }
 }
 
 /// The shape of a field's type; an error without a message for a type that no closure can read.
@@ -182,19 +183,11 @@ fn parameter<'g>(
 }
 
 /// Where each field is first read: `self.name` anywhere in a closure, macros included.
-fn first_uses(declaration: &Declaration) -> BTreeMap<String, Span> {
-    let mut uses = BTreeMap::new();
-    for closure in declaration.closures() {
-        collect_uses(closure.body.to_token_stream(), &mut uses);
-    }
-    uses
-}
-
-fn collect_uses(stream: TokenStream, uses: &mut BTreeMap<String, Span>) {
+fn first_uses(stream: TokenStream, uses: &mut BTreeMap<String, Span>) {
     let tokens: Vec<TokenTree> = stream.into_iter().collect();
     for (position, token) in tokens.iter().enumerate() {
         if let TokenTree::Group(group) = token {
-            collect_uses(group.stream(), uses);
+            first_uses(group.stream(), uses);
             continue;
         }
         let [TokenTree::Ident(this), TokenTree::Punct(dot), field, ..] = &tokens[position..] else { continue };

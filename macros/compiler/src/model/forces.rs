@@ -13,11 +13,6 @@ use super::{Factor, Force, LeafSpace};
 use crate::diagnostic::{Diagnostics, refuse};
 use crate::parse::{Argument, Closure, Declaration, shortened, tail};
 
-pub(super) struct Forces<'g> {
-    pub force: Option<Force<'g>>,
-    pub input: Space<'g>,
-}
-
 /// A closure that has been read.
 struct ReadForce<'g> {
     value: Vec<Expr<'g>>,
@@ -26,8 +21,8 @@ struct ReadForce<'g> {
 }
 
 impl<'g> ActedSystem<'_, '_, 'g> {
-    /// Reads both closures; `None` if one has an error, which was reported.
-    pub fn forces(&mut self, declaration: &Declaration) -> Option<Forces<'g>> {
+    /// The forces, if there are any, with their input; `None` if a closure has an error, which was reported.
+    pub fn forces(&mut self, declaration: &Declaration) -> Option<(Option<Force<'g>>, Space<'g>)> {
         let of_group = optional(declaration.force.as_ref(), |closure| self.force(closure));
         let on_leaves = optional(declaration.force_on.as_ref(), |closure| self.force(closure));
         let takes_input =
@@ -56,7 +51,7 @@ impl<'g> ActedSystem<'_, '_, 'g> {
             velocities,
             written: closures.map(written).collect(),
         });
-        Some(Forces { force, input })
+        Some((force, input))
     }
 
     fn force(&mut self, closure: &Closure) -> Option<ReadForce<'g>> {
@@ -65,7 +60,8 @@ impl<'g> ActedSystem<'_, '_, 'g> {
         let velocity = Velocity { graph: self.context.graph, factors: self.factors, diagnostics };
         let pattern = matched.argument(Slot::Velocity).map(|argument| &argument.pattern);
         let (value, velocities) = optional(pattern, |pattern| velocity.of(pattern, self.element))?.unzip();
-        let velocities = velocities.unwrap_or_else(|| velocity.unnamed());
+        let unnamed = || (0..self.factors.len()).map(|k| velocity.symbol(k, "velocity")).collect();
+        let velocities = velocities.unwrap_or_else(unnamed);
         let input = optional(matched.argument(Slot::Input), |argument| self.read_input(argument))?;
         let introduced = [(Slot::Velocity, value), (Slot::Input, input.as_ref().map(Space::value))];
         let mut scope = self.arguments.scope(&matched, &introduced);

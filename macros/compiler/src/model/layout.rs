@@ -38,20 +38,15 @@ impl Layout {
 
     /// How each leaf is reached, in order: `.0`, `[1]`, `.0[1]`.
     pub fn accessors(&self) -> Vec<Access> {
-        let mut accessors = Vec::new();
-        self.collect(Access::default(), &mut accessors);
-        accessors
-    }
-
-    fn collect(&self, prefix: Access, accessors: &mut Vec<Access>) {
         let (parts, step): (_, fn(usize) -> Part) = match self {
-            Layout::Leaf(_) => return accessors.push(prefix),
+            Layout::Leaf(_) => return vec![Access::default()],
             Layout::Tuple(parts) => (parts, Part::Field),
             Layout::Array(parts) => (parts, Part::Index),
         };
-        for (position, part) in parts.iter().enumerate() {
-            part.collect(prefix.then(step(position)), accessors);
-        }
+        let within = |(position, part): (usize, &Layout)| -> Vec<Access> {
+            part.accessors().iter().map(|access| access.within(step(position))).collect()
+        };
+        parts.iter().enumerate().flat_map(within).collect()
     }
 
     /// The same nesting with its leaves numbered from `offset` on.
@@ -91,24 +86,15 @@ impl Access {
         self.0.is_empty()
     }
 
-    /// The same access with one more part inside.
+    /// The same access inside a part.
     #[must_use]
-    pub(super) fn then(&self, part: Part) -> Access {
-        Access(self.0.iter().copied().chain([part]).collect())
-    }
-
-    /// The same access inside the entry for the site at a place.
-    #[must_use]
-    pub(super) fn at_site(&self, place: usize) -> Access {
-        Access([Part::Site(place)].into_iter().chain(self.0.iter().copied()).collect())
+    pub(super) fn within(&self, part: Part) -> Access {
+        Access([&[part], self.0.as_slice()].concat())
     }
 
     /// The place of the site whose entry this is, if it is one.
     pub fn site(&self) -> Option<usize> {
-        match self.0.first() {
-            Some(Part::Site(place)) => Some(*place),
-            _ => None,
-        }
+        if let Some(Part::Site(place)) = self.0.first() { Some(*place) } else { None }
     }
 
     /// The access from the entry of a site on.

@@ -48,9 +48,9 @@ use clebsch_symbolic::{Expr, Graph};
 use self::action_laws::Action;
 use self::closures::{Closures, optional};
 use self::elaborate::Context;
-use self::forces::Forces;
 use self::groups::GroupNames;
 use self::sites::Sites;
+use self::space::Space;
 use self::typed::{ActedSystem, Arguments, Typed};
 use crate::diagnostic::Diagnostics;
 use crate::parse::{Declaration, Potential};
@@ -118,8 +118,8 @@ pub fn model<'g>(graph: &'g Graph, declaration: &Declaration) -> Result<Model<'g
         configurations: space.leaves,
         configuration: space.layout,
         action: formulas.action,
-        inputs: formulas.forces.input.leaves,
-        input: formulas.forces.input.layout,
+        inputs: formulas.input.leaves,
+        input: formulas.input.layout,
         control: formulas.control,
         endpoint: formulas.endpoint,
         emit: dials.emit,
@@ -134,7 +134,7 @@ pub fn model<'g>(graph: &'g Graph, declaration: &Declaration) -> Result<Model<'g
         Mover::Momenta(kinetic) => kinetic,
         Mover::Inputs(motion) => return Ok(Model::Steered(Box::new(Steered { system: Rc::new(system), motion }))),
     };
-    let force = formulas.forces.force;
+    let force = formulas.force;
     if dials.emit.momentum {
         system = momentum::alone(system, kinetic.energy(), force.as_ref())?;
     }
@@ -168,7 +168,8 @@ struct ClosureValues<'g> {
     /// The potential of a power.
     terms: Vec<Term<'g>>,
     symmetries: Vec<OfferedSymmetry<'g>>,
-    forces: Forces<'g>,
+    force: Option<Force<'g>>,
+    input: Space<'g>,
     control: Option<InputChoice<'g>>,
     endpoint: Option<Expr<'g>>,
 }
@@ -197,14 +198,13 @@ impl<'g> ClosureValues<'g> {
         forces::check_dials(declaration, diagnostics);
         let endpoint = optional(declaration.endpoint.as_ref(), |closure| system.endpoint(closure));
         let forces = system.forces(declaration);
-        let (mover, forces) = match system.motion(declaration) {
-            Some((motion, input)) => (Some(Mover::Inputs(motion)), Some(Forces { force: None, input })),
+        let (mover, (force, input)) = match system.motion(declaration) {
+            Some((motion, input)) => (Some(Mover::Inputs(motion)), (None, input)),
             // what moves has an error, and without it nothing is known of the input
             None if declaration.kinetic.is_steered() => return None,
-            None => (kinetic.map(Mover::Momenta), forces),
+            None => (kinetic.map(Mover::Momenta), forces?),
         };
-        let forces = forces?;
-        let control = optional(declaration.control.as_ref(), |control| system.choice(control, &forces.input))?;
+        let control = optional(declaration.control.as_ref(), |control| system.choice(control, &input))?;
         Some(ClosureValues {
             action,
             laws: laws?,
@@ -212,7 +212,8 @@ impl<'g> ClosureValues<'g> {
             potential,
             terms,
             symmetries,
-            forces,
+            force,
+            input,
             control,
             endpoint: endpoint?,
         })

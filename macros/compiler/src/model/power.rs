@@ -40,21 +40,17 @@ impl Term<'_> {
 
 /// What the index of a sum inside `depth` others is called.
 pub(super) fn index_name(depth: usize) -> String {
-    match depth {
-        0..=3 => ["i", "j", "k", "l"][depth].to_string(),
-        _ => format!("i{depth}"),
-    }
+    ["i", "j", "k", "l"].get(depth).map_or_else(|| format!("i{depth}"), ToString::to_string)
 }
 
 impl<'g> SiteIndex<'g> {
     /// As a closure writes it, `(i + 1) % N`.
     pub fn text(&self) -> String {
-        if !self.wraps {
-            return self.index.to_string();
-        }
-        match self.index.as_symbol() {
-            Some(_) => format!("{} % N", self.index),
-            None => format!("({}) % N", self.index),
+        let index = &self.index;
+        match (self.wraps, index.as_symbol()) {
+            (false, _) => index.to_string(),
+            (true, Some(_)) => format!("{index} % N"),
+            (true, None) => format!("({index}) % N"),
         }
     }
 }
@@ -102,10 +98,7 @@ impl Linear {
 }
 
 fn whole(number: Rational) -> Option<i64> {
-    match number.parts() {
-        Some((value, 1)) => Some(value),
-        _ => None,
-    }
+    if let Some((value, 1)) = number.parts() { Some(value) } else { None }
 }
 
 /// Whether 0 ≤ index < N for every N ≥ 1 and all indices in their ranges.

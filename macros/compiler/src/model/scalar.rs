@@ -10,7 +10,8 @@ use crate::parse::{Declaration, spell_type};
 /// The scalar that all types agree on.
 pub(super) struct Agreement<'d> {
     generics: &'d Generics,
-    found: Option<(ScalarType, String)>,
+    /// What all agree on, and what named it first.
+    pub found: Option<(ScalarType, String)>,
     diagnostics: &'d Diagnostics,
 }
 
@@ -43,11 +44,6 @@ impl<'d> Agreement<'d> {
             }
             Some(_) => {}
         }
-    }
-
-    /// What all agreed on; `f64` if nobody named a scalar.
-    pub fn settle(self) -> ScalarType {
-        self.found.map_or(ScalarType::F64, |(scalar, _)| scalar)
     }
 }
 

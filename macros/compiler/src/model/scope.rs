@@ -20,7 +20,8 @@ pub(super) struct Scope<'g> {
     arguments: usize,
     /// Names of the declaration that are not arguments here, and what to do about it.
     pub missing: Vec<(String, String)>,
-    velocities: Vec<(Expr<'g>, Group)>,
+    /// The symbols of velocities, each with the group of its factor.
+    pub velocities: Vec<(Expr<'g>, Group)>,
     /// The symbols that lie on a group.
     pub elements: Vec<(Expr<'g>, Group)>,
 }
@@ -88,11 +89,6 @@ impl<'g> Scope<'g> {
     /// Notes which symbols are velocities, each of one factor.
     pub fn set_velocities(&mut self, velocities: &[Expr<'g>], factors: &[Factor<'g>]) {
         self.velocities = velocities.iter().copied().zip(factors.iter().map(|factor| factor.group)).collect();
-    }
-
-    /// The group whose velocity an expression is.
-    pub fn group_of_velocity(&self, expr: Expr<'g>) -> Option<Group> {
-        self.velocities.iter().find(|(velocity, _)| *velocity == expr).map(|(_, group)| *group)
     }
 
     /// The value of a name, the latest first.

@@ -92,10 +92,8 @@ pub(super) fn plain(ty: &Type) -> &Type {
 }
 
 pub(super) fn last_segment(ty: &Type) -> Option<&PathSegment> {
-    match plain(ty) {
-        Type::Path(path) if path.qself.is_none() => path.path.segments.last(),
-        _ => None,
-    }
+    let Type::Path(path) = plain(ty) else { return None };
+    path.path.segments.last().filter(|_| path.qself.is_none())
 }
 
 /// The name of the last segment of a type's path; empty where there is none.
@@ -104,10 +102,8 @@ pub(super) fn last_name(ty: &Type) -> String {
 }
 
 pub(super) fn arguments(segment: &PathSegment) -> Vec<&GenericArgument> {
-    match &segment.arguments {
-        PathArguments::AngleBracketed(arguments) => arguments.args.iter().collect(),
-        _ => Vec::new(),
-    }
+    let PathArguments::AngleBracketed(arguments) = &segment.arguments else { return Vec::new() };
+    arguments.args.iter().collect()
 }
 
 /// The shape that a name like `Matrix2x3` stands for.

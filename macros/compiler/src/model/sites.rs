@@ -7,7 +7,7 @@ use super::features::{self, Feature, Found};
 use super::power::{Range, SiteIndex, Term};
 use super::space::Space;
 use super::value::Value;
-use super::{Configuration, Item, Leaf, Order, Parameter, Power, ScalarType, System};
+use super::{Configuration, Item, Leaf, Order, Parameter, Part, Power, ScalarType, System};
 use crate::diagnostic::Diagnostics;
 use crate::parse::{Declaration, Potential};
 
@@ -144,7 +144,7 @@ pub(super) fn power_of<'g>(
         let field = &system.parameters[*field];
         let leaf = |(leaf, symbol): (&Leaf<'g>, &Expr<'g>)| Leaf {
             symbol: *symbol,
-            accessor: leaf.accessor.at_site(*place),
+            accessor: leaf.accessor.within(Part::Site(*place)),
             ..leaf.clone()
         };
         let leaves = field.leaves.iter().zip(leaves).map(leaf).collect();

@@ -75,10 +75,7 @@ impl<'g> ActedSystem<'_, '_, 'g> {
         let diagnostics = self.context.diagnostics;
         let (configuration, element) = (self.arguments.names.configuration, self.arguments.names.element);
         let (q, f) = (configuration.spell(), element.spell());
-        let parts = match value {
-            Value::Tuple(parts) => parts.as_slice(),
-            _ => &[],
-        };
+        let parts = if let Value::Tuple(parts) = value { parts.as_slice() } else { &[] };
         let body = tail(&closure.body);
         let [point, moved] = parts else {
             refuse!(diagnostics, body, "the symmetry gives {}, but it has to give a pair", value.describe();

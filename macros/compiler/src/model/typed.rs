@@ -134,7 +134,7 @@ impl<'g> Factor<'g> {
     /// A factor with its symbol, the side still open.
     pub(super) fn new(graph: &'g Graph, (group, ty): (Group, &Type), name: String, role: Role) -> Factor<'g> {
         let symbol = graph.symbol(&name, group.element_shape(), role, group.element_property());
-        let (accessor, span) = (Access::default(), Location::of(ty).start());
+        let (accessor, span) = (Access::default(), Location::from(ty).start);
         Factor { group, symbol, name, side: Side::Left, moves: true, accessor, span }
     }
 }
@@ -178,12 +178,7 @@ impl<'g> Velocity<'_, 'g> {
         }
     }
 
-    /// The symbols of a velocity that the closure does not ask for.
-    pub fn unnamed(&self) -> Vec<Expr<'g>> {
-        (0..self.factors.len()).map(|k| self.symbol(k, "velocity")).collect()
-    }
-
-    fn symbol(&self, factor: usize, name: &str) -> Expr<'g> {
+    pub fn symbol(&self, factor: usize, name: &str) -> Expr<'g> {
         let shape = Shape::vector(self.factors[factor].group.dimension());
         self.graph.symbol(name, shape, Role::Algebra(factor), Property::General)
     }

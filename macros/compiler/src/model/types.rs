@@ -310,10 +310,7 @@ impl<'g> Kinetic<'g> {
 
     /// How a Lagrangian becomes a cost; `None` for what is one.
     pub fn discretization(&self) -> Option<Discretization> {
-        match self {
-            Kinetic::Cost(_) => None,
-            Kinetic::Lagrangian { discretization, .. } => Some(*discretization),
-        }
+        if let Kinetic::Lagrangian { discretization, .. } = self { Some(*discretization) } else { None }
     }
 }
 

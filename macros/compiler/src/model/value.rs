@@ -68,10 +68,7 @@ impl<'g> Value<'g> {
     }
 
     pub fn matrix(&self) -> Option<Expr<'g>> {
-        match self {
-            Value::Matrix(expr) => Some(*expr),
-            _ => None,
-        }
+        if let Value::Matrix(expr) = self { Some(*expr) } else { None }
     }
 
     /// Whether operators are of such values.

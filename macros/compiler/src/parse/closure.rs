@@ -41,7 +41,7 @@ pub enum Pattern {
 impl Closure {
     /// Takes a closure apart; whatever is more than mathematics is an error.
     pub fn read(key: &Ident, closure: ExprClosure, diagnostics: &Diagnostics) -> Option<Closure> {
-        let head = Location::between(closure.inputs_begin.span, closure.inputs_end.span);
+        let head = Location { start: closure.inputs_begin.span, end: closure.inputs_end.span };
         let plain = closure.attrs.is_empty()
             && closure.lifetimes.is_none()
             && closure.constness.is_none()
@@ -88,7 +88,7 @@ impl Pattern {
             Pat::Paren(inner) => Pattern::read(&inner.pat, diagnostics),
             Pat::Tuple(tuple) => {
                 let parts: Vec<_> = tuple.elems.iter().map(|part| Pattern::read(part, diagnostics)).collect();
-                Some(Pattern::Tuple(parts.into_iter().collect::<Option<_>>()?, Location::of(pattern)))
+                Some(Pattern::Tuple(parts.into_iter().collect::<Option<_>>()?, Location::from(pattern)))
             }
             Pat::Reference(reference) => Pattern::read(&reference.pat, diagnostics),
             Pat::Wild(wild) => refuse!(diagnostics, wild.underscore_token.span, "an argument needs a name";

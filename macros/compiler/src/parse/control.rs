@@ -1,6 +1,6 @@
 //! What is steered: `controls`, `dynamics` or `effort`, with `bounds` and `endpoint`.
 
-use proc_macro2::{Ident, Literal, Span};
+use proc_macro2::{Ident, Literal};
 use syn::ext::IdentExt;
 use syn::{Expr, ExprLit, GenericArgument, Lit, PathArguments, Type, parse_quote, parse_quote_spanned};
 
@@ -20,13 +20,13 @@ pub struct Choice {
 /// What moves the configuration, and by what its inputs are chosen: the keys that say what is steered are taken. Where inputs, not momenta,
 /// move the configuration, its cost is the price.
 pub(super) fn read(keys: &mut Keys) -> (Option<Kinetic>, Option<Choice>) {
-    let bounds = keys.take("bounds");
-    let Some(motion) = keys.take("controls").or_else(|| keys.take("dynamics")) else {
+    let bounds = keys.closures.remove("bounds");
+    let Some(motion) = keys.closures.remove("controls").or_else(|| keys.closures.remove("dynamics")) else {
         let control = control_of_forces(keys, bounds);
-        let lagrangian = keys.take("lagrangian").map(Kinetic::Lagrangian);
-        return (keys.take("cost").map(Kinetic::Cost).or(lagrangian), control);
+        let lagrangian = keys.closures.remove("lagrangian").map(Kinetic::Lagrangian);
+        return (keys.closures.remove("cost").map(Kinetic::Cost).or(lagrangian), control);
     };
-    let price = keys.take("cost");
+    let price = keys.closures.remove("cost");
     if price.is_none() && !keys.was_given("cost") {
         let input = motion.arguments.last().map_or("u".into(), |argument| argument.pattern.spell());
         report!(keys.diagnostics, &motion.key, "there are `{}`, but no cost to choose them by", motion.key;
@@ -37,7 +37,7 @@ pub(super) fn read(keys: &mut Keys) -> (Option<Kinetic>, Option<Choice>) {
 }
 
 fn control_of_forces(keys: &mut Keys, bounds: Option<Closure>) -> Option<Choice> {
-    let Some(price) = keys.take("effort") else {
+    let Some(price) = keys.closures.remove("effort") else {
         let bounds = bounds.filter(|_| !keys.was_given("effort"))?;
         refuse!(keys.diagnostics, &bounds.key, "`{}` without anything to choose", bounds.key;
             help "add `effort = |u| u.norm_squared() / 2` to a force with an input, or `controls`, or `dynamics`");
@@ -61,7 +61,7 @@ pub(super) fn check_endpoint(keys: &Keys, control: Option<&Choice>) {
 
 /// The translations that `dynamics` are made of: the action is x ↦ x + a, and the closure loses the type of x.
 fn moved(keys: &mut Keys, mut dynamics: Closure) -> Option<Kinetic> {
-    if keys.take("action").is_some() {
+    if keys.closures.remove("action").is_some() {
         // it has been refused beside them
         return None;
     }
@@ -78,9 +78,15 @@ fn moved(keys: &mut Keys, mut dynamics: Closure) -> Option<Kinetic> {
             help "write `dynamics = {example}`, with all of the configuration in one vector");
     };
     // what is wrong with the size is so where it was written
-    size.set_span(Location::of(&ty).start());
+    size.set_span(Location::from(&ty).start);
     let span = name.span();
-    let shift = shift_beside(&dynamics, span);
+    // a name for the translation that the closure does not use
+    let names: Vec<&Ident> = dynamics.arguments.iter().flat_map(|argument| argument.pattern.names()).collect();
+    let mut shift = String::from("shift");
+    while names.iter().any(|name| name.unraw() == shift) {
+        shift.push('_');
+    }
+    let shift = Ident::new(&shift, span);
     let group: Type = parse_quote_spanned!(span=> Translation<#size>);
     let arguments = vec![
         Argument { pattern: Pattern::Name(shift.clone()), ty: Some(group) },
@@ -90,16 +96,6 @@ fn moved(keys: &mut Keys, mut dynamics: Closure) -> Option<Kinetic> {
     let action = Closure { key, arguments, head: dynamics.head, body: parse_quote!(#name + #shift) };
     keys.closures.insert("action", action);
     Some(Kinetic::Dynamics(dynamics))
-}
-
-/// A name for the translation that the closure does not use.
-fn shift_beside(dynamics: &Closure, span: Span) -> Ident {
-    let names: Vec<&Ident> = dynamics.arguments.iter().flat_map(|argument| argument.pattern.names()).collect();
-    let mut shift = String::from("shift");
-    while names.iter().any(|name| name.unraw() == shift) {
-        shift.push('_');
-    }
-    Ident::new(&shift, span)
 }
 
 /// n of `VectorN`, `SVector<n>` and `SVector<f64, n>`.

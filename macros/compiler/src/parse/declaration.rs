@@ -54,17 +54,11 @@ pub enum Potential {
 
 impl Potential {
     pub(crate) fn closure(&self) -> Option<&Closure> {
-        match self {
-            Potential::Closure(closure) => Some(closure),
-            Potential::Opaque(_) => None,
-        }
+        if let Potential::Closure(closure) = self { Some(closure) } else { None }
     }
 
     pub(crate) fn opaque(&self) -> Option<&Opaque> {
-        match self {
-            Potential::Closure(_) => None,
-            Potential::Opaque(opaque) => Some(opaque),
-        }
+        if let Potential::Opaque(opaque) = self { Some(opaque) } else { None }
     }
 }
 
@@ -129,7 +123,8 @@ pub(super) fn assemble(input: &DeriveInput, mut keys: Keys, fields: Vec<Field>) 
         diagnostics.push(missing_kinetic(&input.ident));
     }
     control::check_endpoint(&keys, control.as_ref());
-    let [action, force, force_on, endpoint] = ["action", "force", "force_on", "endpoint"].map(|name| keys.take(name));
+    let [action, force, force_on, endpoint] =
+        ["action", "force", "force_on", "endpoint"].map(|name| keys.closures.remove(name));
     let Keys { potential, symmetries, groups, dials, methods, .. } = keys;
     let methods = methods::checked(&input.ident, methods, diagnostics);
     // by construction: what is missing has an error

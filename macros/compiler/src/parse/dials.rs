@@ -214,11 +214,6 @@ impl Emit {
         (!words.is_empty()).then(|| format!("[{words}]"))
     }
 
-    /// What is emitted of a method beside the integrator: what says which system is stepped, and derivatives of its steps.
-    pub(super) fn of_method(self) -> Emit {
-        Emit { generated: false, latex: false, ..self }
-    }
-
     /// Whether discrete Lagrangians are differentiated twice.
     pub fn variations(self) -> bool {
         self.tangent || self.boundary

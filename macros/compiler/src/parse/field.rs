@@ -21,10 +21,15 @@ pub struct Field {
 impl Field {
     /// The name without `r#`; `0` for the first field of a tuple struct.
     pub fn name(&self) -> String {
-        match &self.member {
-            Member::Named(ident) => ident.unraw().to_string(),
-            Member::Unnamed(index) => index.index.to_string(),
-        }
+        member_name(&self.member)
+    }
+}
+
+/// The name of a field without `r#`, or its number.
+pub(crate) fn member_name(member: &Member) -> String {
+    match member {
+        Member::Named(ident) => ident.unraw().to_string(),
+        Member::Unnamed(index) => index.index.to_string(),
     }
 }
 
@@ -32,7 +37,7 @@ impl Field {
 pub(super) fn read(position: usize, field: &syn::Field, diagnostics: &Diagnostics) -> Field {
     let member = match &field.ident {
         Some(ident) => Member::Named(ident.clone()),
-        None => Member::Unnamed(Index { index: position as u32, span: Location::of(&field.ty).start() }),
+        None => Member::Unnamed(Index { index: position as u32, span: Location::from(&field.ty).start }),
     };
     let mut promise: Option<(Promise, Span)> = None;
     for attribute in field.attrs.iter().filter(|attribute| attribute.path().is_ident("clebsch")) {

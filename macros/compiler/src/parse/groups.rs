@@ -54,7 +54,7 @@ pub(super) fn read(word: &Ident, stream: ParseStream, keys: &mut Keys) -> Result
         bail!(span.join(), "the basis of `{name}` is a list of matrices";
             help "write `group {name} = basis([Matrix2::new(0, -1, 1, 0)])`");
     };
-    let definition = Definition::Basis(list.elems.iter().cloned().collect(), Location::of(list));
+    let definition = Definition::Basis(list.elems.iter().cloned().collect(), Location::from(list));
     keys.groups.push(DeclaredGroup { name, definition });
     Ok(())
 }

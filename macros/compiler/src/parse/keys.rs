@@ -142,7 +142,7 @@ impl Dials {
 /// All keys that were given, and the errors of reading them.
 pub(super) struct Keys<'d> {
     pub diagnostics: &'d Diagnostics,
-    /// Those that are closures, by name.
+    /// Those that are closures and could be read, by name.
     pub closures: BTreeMap<&'static str, Closure>,
     pub potential: Option<Potential>,
     pub symmetries: Vec<Closure>,
@@ -182,11 +182,6 @@ impl<'d> Keys<'d> {
 
     pub fn place_of(&self, name: &str) -> Option<Span> {
         self.given.iter().find(|(given, _)| given == name).map(|(_, span)| *span)
-    }
-
-    /// Takes a closure that could be read.
-    pub fn take(&mut self, name: &str) -> Option<Closure> {
-        self.closures.remove(name)
     }
 
     pub fn is_empty(&self) -> bool {

@@ -85,7 +85,8 @@ impl Declaration {
         let system = &self.dials;
         let dials = Dials {
             isotropy: system.isotropy.clone(),
-            emit: system.emit.of_method(),
+            // what says which system is stepped, and derivatives of its steps
+            emit: Emit { generated: false, latex: false, ..system.emit },
             scalar: system.scalar.clone(),
             krate: system.krate.clone(),
             ..method.dials.clone()

@@ -20,6 +20,7 @@ pub use control::Choice;
 pub use declaration::{Declaration, Kinetic, Potential};
 pub use dials::*;
 pub use field::Field;
+pub(crate) use field::member_name;
 pub use groups::{DeclaredGroup, Definition};
 pub use keys::{Located, keys_as_markdown};
 pub use methods::DeclaredMethod;

@@ -43,7 +43,7 @@ pub(super) fn read(stream: ParseStream) -> Result<Opaque, Diagnostic> {
     let takes_time = arguments.first().is_some_and(is_time);
     let [value, gradient] = &arguments[usize::from(takes_time)..] else { return Err(two_methods(span.join())) };
     let (value, gradient) = (method(value)?, method(gradient)?);
-    Ok(Opaque { value, gradient, takes_time, place: Location::between(word.span(), span.close()) })
+    Ok(Opaque { value, gradient, takes_time, place: Location { start: word.span(), end: span.close() } })
 }
 
 /// `Self::value`.

@@ -105,8 +105,8 @@ impl Reader<'_, '_> {
         error: impl Fn(Location, String) -> Diagnostic,
     ) -> Result<(), Diagnostic> {
         let literal: L = self.stream.parse().map_err(|_| self.expected(self.stream, "a number"))?;
-        let place = Location::of(&literal);
-        *dial = value(&literal).map(|value| Located { value, span: place.start() });
+        let place = Location::from(&literal);
+        *dial = value(&literal).map(|value| Located { value, span: place.start });
         if dial.is_none() {
             self.diagnostics.push(error(place, tokens(&literal)));
         }

@@ -20,7 +20,7 @@ pub(super) fn read(graph: &Graph, name: &str, elements: &[Syntax], place: Locati
     let matrices: Vec<Matrix> = literals.filter_map(|literal| errors.take(literal)).collect();
     errors.propagate(())?;
     let shape = common_shape(name, &matrices, elements)?;
-    check_size(name, shape.rows, place.start())?;
+    check_size(name, shape.rows, place.start)?;
     independent(name, &matrices, elements)?;
     let basis: Vec<Sparse> = matrices.iter().map(|(_, entries)| sparse(shape, entries)).collect();
     closed(graph, name, shape, &basis, place)?;

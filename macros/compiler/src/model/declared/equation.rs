@@ -5,12 +5,12 @@ use clebsch_symbolic::{Expr, Graph, Group, One, Property, Rational, Role, Shape,
 use quote::ToTokens;
 use syn::Expr as Syntax;
 
-use super::super::scope::{Scope, check_reserved};
+use super::super::scope::check_reserved;
 use super::super::shapes::vectors;
 use super::super::value::Value;
 use super::{check_literal, check_size, dense, elaborate, empty_scope, follow, open_bracket, sparse, spell_matrix};
 use crate::diagnostic::{Diagnostic, Diagnostics, Location, bail, error};
-use crate::parse::{Closure, Pattern, shortened, spell_type, tail};
+use crate::parse::{Closure, shortened, spell_type, tail};
 
 /// Reads `|F: Matrix4| a == b`.
 pub(super) fn read(graph: &Graph, name: &str, closure: &Closure) -> Result<Group, Diagnostics> {
@@ -19,7 +19,13 @@ pub(super) fn read(graph: &Graph, name: &str, closure: &Closure) -> Result<Group
     check_literal(&key, closure.body.to_token_stream())?;
     let pattern = &closure.arguments[0].pattern;
     let symbol = graph.symbol(&pattern.spell(), Shape::square(n), Role::DeclaredElement, Property::General);
-    let scope = scope(pattern, symbol)?;
+    let diagnostics = Diagnostics::new();
+    let mut scope = empty_scope();
+    for ident in pattern.names() {
+        check_reserved(ident, "an argument", &diagnostics);
+    }
+    scope.add_argument(pattern, Some(Value::Matrix(symbol)), &diagnostics);
+    diagnostics.propagate(())?;
     let (left, right) = elaborate(graph, &key, scope, |elaborator| elaborator.equation(&closure.body))?;
     let body = tail(&closure.body);
     let equation = GroupEquation { graph, name, symbol, body };
@@ -39,23 +45,13 @@ fn size(name: &str, closure: &Closure) -> Result<usize, Diagnostics> {
     };
     match vectors(ty, &syn::Generics::default()).transpose()? {
         Some((shape, _)) if shape.is_square() => {
-            check_size(name, shape.rows, Location::of(ty).start())?;
+            check_size(name, shape.rows, Location::from(ty).start)?;
             Ok(shape.rows)
         }
         _ => {
             bail!(ty, "`{}` is no space of square matrices", spell_type(ty); help "write `Matrix3` or `SMatrix<8, 8>`")
         }
     }
-}
-
-fn scope<'g>(pattern: &Pattern, symbol: Expr<'g>) -> Result<Scope<'g>, Diagnostics> {
-    let diagnostics = Diagnostics::new();
-    let mut scope = empty_scope();
-    for ident in pattern.names() {
-        check_reserved(ident, "an argument", &diagnostics);
-    }
-    scope.add_argument(pattern, Some(Value::Matrix(symbol)), &diagnostics);
-    diagnostics.propagate(scope)
 }
 
 /// An equation between expressions in the symbol.

@@ -78,7 +78,7 @@ fn check_literal(key: &str, stream: TokenStream) -> Result<(), Diagnostics> {
             TokenTree::Ident(this) if this == "self" => {
                 let field = tokens.get(position + 2);
                 let text = field.map_or_else(|| "`self`".into(), |field| format!("`self.{field}`"));
-                let place = Location::between(this.span(), field.unwrap_or(token).span());
+                let place = Location { start: this.span(), end: field.unwrap_or(token).span() };
                 return Err(not_literal(place, key, &text).into());
             }
             _ => {}

@@ -3,6 +3,31 @@
 
 use clebsch_symbolic::{Analytic, CheckedAdd, CheckedMul, Function, Matrix, Number, Ratio, Rational, Shape, Zero};
 
+/// The elementary functions of numbers that have none, all of the same value.
+macro_rules! without_functions {
+    ($none:expr) => {
+        fn fractional_power(self, _: (i64, i64)) -> Self {
+            $none
+        }
+
+        fn function(self, _: Function) -> Self {
+            $none
+        }
+
+        fn analytic(_: Analytic, argument: &Matrix<Self>) -> Matrix<Self> {
+            Matrix::from_fn(argument.shape, |_| $none)
+        }
+
+        fn opaque(_: &str, _: usize, _: &[&Matrix<Self>], shape: Shape) -> Matrix<Self> {
+            Matrix::from_fn(shape, |_| $none)
+        }
+
+        fn pi() -> Self {
+            $none
+        }
+    };
+}
+
 /// A rational number, or `None` where it does not fit or something is divided by 0.
 #[derive(Copy, Clone, PartialEq, Eq, Debug)]
 pub(super) struct Exact(Option<Ratio<i128>>);
@@ -41,25 +66,7 @@ impl Number for Exact {
         Exact(self.0.filter(|value| !value.is_zero()).map(|value| value.recip()))
     }
 
-    fn fractional_power(self, _: (i64, i64)) -> Exact {
-        Exact(None)
-    }
-
-    fn function(self, _: Function) -> Exact {
-        Exact(None)
-    }
-
-    fn analytic(_: Analytic, argument: &Matrix<Exact>) -> Matrix<Exact> {
-        Matrix::from_fn(argument.shape, |_| Exact(None))
-    }
-
-    fn opaque(_: &str, _: usize, _: &[&Matrix<Exact>], shape: Shape) -> Matrix<Exact> {
-        Matrix::from_fn(shape, |_| Exact(None))
-    }
-
-    fn pi() -> Exact {
-        Exact(None)
-    }
+    without_functions!(Exact(None));
 }
 
 /// c_0 + c_1 s + … + c_{N−1} s^{N−1}.
@@ -108,23 +115,5 @@ impl<K: Number, const N: usize> Number for Series<K, N> {
     }
 
     // by construction: the formulas that are followed along a curve are rational
-    fn fractional_power(self, exponent: (i64, i64)) -> Self {
-        Series::constant(self.0[0].fractional_power(exponent))
-    }
-
-    fn function(self, function: Function) -> Self {
-        Series::constant(self.0[0].function(function))
-    }
-
-    fn analytic(_: Analytic, argument: &Matrix<Self>) -> Matrix<Self> {
-        argument.clone()
-    }
-
-    fn opaque(_: &str, _: usize, _: &[&Matrix<Self>], shape: Shape) -> Matrix<Self> {
-        Matrix::from_fn(shape, |_| Series::constant(K::from_integer(0)))
-    }
-
-    fn pi() -> Self {
-        Series::constant(K::pi())
-    }
+    without_functions!(Series::constant(K::from_integer(0)));
 }

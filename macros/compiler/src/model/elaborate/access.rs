@@ -6,7 +6,7 @@ use syn::{Expr as Syntax, ExprField, ExprIndex, Index, Member};
 
 use super::{Elaborator, Growth, Value};
 use crate::diagnostic::{error, nearest, refuse};
-use crate::parse::{listed, parenthesized, spell};
+use crate::parse::{listed, member_name, parenthesized, spell};
 
 const COMPONENTS: [&str; 4] = ["x", "y", "z", "w"];
 
@@ -39,10 +39,7 @@ impl<'g> Elaborator<'_, '_, 'g> {
     }
 
     fn parameter(&mut self, member: &Member) -> Option<Value<'g>> {
-        let name = match member {
-            Member::Named(ident) => syn::ext::IdentExt::unraw(ident).to_string(),
-            Member::Unnamed(index) => index.index.to_string(),
-        };
+        let name = member_name(member);
         if let Some(value) = self.context.fields.value(&name) {
             return value.clone();
         }

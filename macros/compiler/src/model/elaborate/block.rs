@@ -43,14 +43,12 @@ impl<'g> Elaborator<'_, '_, 'g> {
 
     fn local(&mut self, local: &Local) {
         let diagnostics = self.context.diagnostics;
-        let pattern = match &local.pat {
-            syn::Pat::Type(typed) => {
-                report!(diagnostics, &typed.ty, "a `let` has no type";
-                    help "remove it: the shape follows from the value");
-                Pattern::read(&typed.pat, diagnostics)
-            }
-            other => Pattern::read(other, diagnostics),
-        };
+        let mut pattern = &local.pat;
+        if let syn::Pat::Type(typed) = pattern {
+            report!(diagnostics, &typed.ty, "a `let` has no type"; help "remove it: the shape follows from the value");
+            pattern = &typed.pat;
+        }
+        let pattern = Pattern::read(pattern, diagnostics);
         let value = match &local.init {
             Some(init) if init.diverge.is_none() => self.elaborate(&init.expr),
             _ => {

@@ -63,10 +63,7 @@ impl<'g> Elaborator<'_, '_, 'g> {
             _ => return named_shape(&name).map(Some),
         };
         let given = arguments(segment);
-        let known = match self.sizes(&given[given.len().saturating_sub(sizes)..]) {
-            Some(known) => known,
-            None => return Some(None),
-        };
+        let Some(known) = self.sizes(&given[given.len().saturating_sub(sizes)..]) else { return Some(None) };
         Some(match known.as_slice() {
             [n] if sizes == 1 => Some(Shape::vector(*n)),
             [rows, columns] => Some(Shape::new(*rows, *columns)),

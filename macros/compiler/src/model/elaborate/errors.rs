@@ -92,7 +92,7 @@ impl<'g> Elaborator<'_, '_, 'g> {
 /// Where an expression is, by its keyword if it has one, what it is, and what to write instead.
 fn describe(syntax: &Syntax) -> (Location, &'static str, String) {
     let at = |span: Span, what, help: &str| (span.into(), what, help.to_string());
-    let whole = |what, help: &str| (Location::of(syntax), what, help.to_string());
+    let whole = |what, help: &str| (Location::from(syntax), what, help.to_string());
     match syntax {
         Syntax::If(inner) => {
             at(inner.if_token.span, "`if`", "write one formula that holds everywhere, smooth where the cases meet")
@@ -102,7 +102,7 @@ fn describe(syntax: &Syntax) -> (Location, &'static str, String) {
         Syntax::While(inner) => at(inner.while_token.span, "`while`", ""),
         Syntax::Loop(inner) => at(inner.loop_token.span, "`loop`", ""),
         Syntax::Cast(inner) => {
-            let place = Location::between(inner.as_token.span, Location::of(&inner.ty).start());
+            let place = Location { start: inner.as_token.span, end: Location::from(&inner.ty).start };
             (place, "`as`", format!("write `{}`: numbers mix freely", spell(&inner.expr)))
         }
         Syntax::Return(inner) => at(inner.return_token.span, "`return`", "end the block with its value"),

@@ -4,7 +4,6 @@ use clebsch_symbolic::{Expr, Function, Rational, Shape, integer};
 use syn::{Expr as Syntax, ExprMethodCall, Ident};
 
 use super::access::{is_self, strip};
-use super::quaternions::is_of_quaternions;
 use super::tables::{Binary, METHODS, NEEDLESS, REFUSED, Rule, SYNONYMS, Unary};
 use super::{Elaborator, Growth, Value, open_identity};
 use crate::diagnostic::{Diagnostic, error, meant, refuse};
@@ -41,7 +40,7 @@ impl<'g> Elaborator<'_, '_, 'g> {
 
     fn unknown_method(&mut self, call: &ExprMethodCall, name: &str, receiver: Option<Value<'g>>) -> Option<Value<'g>> {
         let method = &call.method;
-        if is_of_quaternions(name) {
+        if ["scalar", "imag", "conjugate"].contains(&name) {
             // a receiver with an error of its own may have been a quaternion
             let found = receiver?.describe();
             refuse!(self, method, "`{}` is {found}, but `{name}` is of a quaternion", spell(&call.receiver);

@@ -24,9 +24,8 @@ impl<'g> Elaborator<'_, '_, 'g> {
                 note "a part lies inside of the whole");
         }
         let of = format!("the starts of `{name}` in `{}`", spell(&call.receiver));
-        let mut start = |syntax: Option<&Syntax>, last: usize| match syntax {
-            Some(syntax) => self.position(syntax, last + 1, &of),
-            None => Some(0),
+        let mut start = |syntax: Option<&Syntax>, last: usize| {
+            syntax.map_or(Some(0), |syntax| self.position(syntax, last + 1, &of))
         };
         let row = start(call.args.first().filter(|_| part.starts[0]), all.rows - shape.rows);
         let column = start(call.args.last().filter(|_| part.starts[1]), all.columns - shape.columns);

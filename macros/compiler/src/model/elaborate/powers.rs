@@ -78,7 +78,7 @@ impl<'g> Elaborator<'_, '_, 'g> {
 
     /// `xi.matrix()`, for the velocity of one factor.
     pub(super) fn velocity_matrix(&mut self, call: &ExprMethodCall, a: Expr<'g>) -> Option<Value<'g>> {
-        if let Some(group) = self.scope.group_of_velocity(a) {
+        if let Some(&(_, group)) = self.scope.velocities.iter().find(|(velocity, _)| *velocity == a) {
             let matrix = self.grow(call, &[a], Growth::Sum, || group.wedge(a))?;
             return Some(Value::leaf(matrix, group == Group::UnitQuaternions));
         }

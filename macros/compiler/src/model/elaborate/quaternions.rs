@@ -32,11 +32,6 @@ const SYNONYMS: [(&str, &str); 9] = [
     ("w", "scalar"), ("try_inverse", "inverse"), ("magnitude", "norm"), ("magnitude_squared", "norm_squared"),
 ];
 
-/// Whether only quaternions have a method of this name.
-pub(super) fn is_of_quaternions(name: &str) -> bool {
-    ["scalar", "imag", "conjugate"].contains(&name)
-}
-
 impl<'g> Elaborator<'_, '_, 'g> {
     /// An operator of which at least one side is a quaternion.
     pub(super) fn quaternions(&mut self, link: &ExprBinary, left: Value<'g>, right: Value<'g>) -> Option<Value<'g>> {

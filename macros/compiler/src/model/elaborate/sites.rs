@@ -19,10 +19,6 @@ pub(super) fn scaled<'g>(terms: Vec<Term<'g>>, factor: Expr<'g>) -> Vec<Term<'g>
 }
 
 impl<'g> Elaborator<'_, '_, 'g> {
-    pub(super) fn is_number_of_sites(&self, expr: Expr<'g>) -> bool {
-        self.context.power.as_ref().is_some_and(|power| power.count == expr)
-    }
-
     /// `a..b` in a power, where the ends may depend on N and on the indices of the sums around.
     pub(super) fn range_of_power(&mut self, range: &ExprRange, start: &Syntax, end: &Syntax) -> Option<Value<'g>> {
         let (from, to) = (self.scalar(start), self.scalar(end));
