@@ -1,6 +1,6 @@
 //! What generated code names, and nothing else. Not part of the public interface: it changes without notice.
 //!
-//! What is the same for every problem is here and compiled once. The compiler's side is the module of types in its `emit` stage.
+//! What is the same for every problem is here and compiled once. The compiler's side is the module `block` in its `emit` stage.
 
 pub use crate::__formulas_of_sites as formulas_of_sites;
 pub use crate::collocation::{GAUSS_16, SWEEPS, collocate};

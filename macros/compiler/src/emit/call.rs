@@ -5,7 +5,6 @@ use proc_macro2::TokenStream;
 use quote::{format_ident, quote};
 
 use super::Emitter;
-use super::function::lines;
 use super::scope::{Scope, index, nested, size};
 use crate::lower::{Callee, Code, Output};
 
@@ -85,14 +84,13 @@ impl Emitter<'_, '_> {
                 }
             }
         });
-        let documentation = lines(
-            "Checks the gradient method of the potential against differences of its value method at a configuration.\n\n\
-             For a test: `system.check_potential(&q).unwrap()` at some typical configurations.\n\n\
-             # Errors\n\
-             `Error::WrongGradient` with the first entry that differs, `Error::NotFinite`.",
-        );
         let check = quote! {
-            #documentation
+            /// Checks the gradient method of the potential against differences of its value method at a configuration.
+            ///
+            /// For a test: `system.check_potential(&q).unwrap()` at some typical configurations.
+            ///
+            /// # Errors
+            /// `Error::WrongGradient` with the first entry that differs, `Error::NotFinite`.
             pub fn check_potential(
                 &self,
                 #time_parameter

@@ -113,6 +113,8 @@ struct SystemEmitter<'a, 'g> {
     kernels: &'a KernelTable,
     keeps_matrices: bool,
     power: Option<&'a Power<'g>>,
+    /// The number of its sites.
+    length: Option<TokenStream>,
     opaque: Option<&'a Opaque>,
 }
 
@@ -202,6 +204,7 @@ impl<'a, 'g> SystemEmitter<'a, 'g> {
         users.extend(model.constants.iter().map(|constant| constant.path.to_token_stream()));
         users.extend(opaque.map(|Opaque { value, gradient, .. }| quote!(#value #gradient)));
         let names = Names::new(&item.scalar, !model.configurations.is_empty(), &users);
+        let length = power.map(|power| names.of_user(power.length.to_token_stream()));
         let configuration = nested_type(&model.configuration, |k| {
             leaf(model.configurations[k].shape, model.configurations[k].is_quaternion)
         });
@@ -219,7 +222,7 @@ impl<'a, 'g> SystemEmitter<'a, 'g> {
             target: Target::new(&item.ident, &item.generics, &item.scalar, &names),
             names,
         };
-        SystemEmitter { block, model, symbols, rows, kernels, keeps_matrices: false, power, opaque }
+        SystemEmitter { block, model, symbols, rows, kernels, keeps_matrices: false, power, length, opaque }
     }
 
     /// The documentation types of the groups, named where the user has written them, so that an editor shows their pages there.
@@ -241,9 +244,9 @@ impl<'a, 'g> SystemEmitter<'a, 'g> {
 
     /// A constant of the user's struct that holds a text.
     fn constant(&self, name: &str, documentation: &str, text: &str) -> TokenStream {
-        let (name, documentation) = (format_ident!("{name}"), function::lines(documentation));
+        let (name, documentation) = (format_ident!("{name}"), format!(" {documentation}"));
         let constant = quote! {
-            #documentation
+            #[doc = #documentation]
             pub const #name: &'static ::core::primitive::str = #text;
         };
         self.declared().derived(None, constant)

@@ -51,7 +51,7 @@ impl<'g> Emitter<'_, 'g> {
 
     /// What ties sites together.
     fn sites(&self, power: &Power<'g>, target: &Target) -> TokenStream {
-        let (length, site, site_type) = (&power.length, &self.target.ident, self.target.of_type());
+        let (length, site, site_type) = (&self.length, &self.target.ident, self.target.of_type());
         let fields = self.model.parameters.iter().zip(&power.copied).map(|(parameter, field)| {
             let (name, index) = (&parameter.field, parameter.per_site.then(|| quote!([i])));
             let name = self.names.of_user(quote!(#name));
@@ -109,7 +109,7 @@ impl<'g> Emitter<'_, 'g> {
 
     /// The implementation of the trait `Clebsch` for all sites together.
     fn whole_power(&self, power: &Power<'g>, target: &Target) -> TokenStream {
-        let (name, length, order) = (&target.name, &power.length, self.model.order.number());
+        let (name, length, order) = (&target.name, &self.length, self.model.order.number());
         let places = [quote!([Q; #length]), quote!([F; #length]), quote!([Mu; #length])];
         let types = types_of_system(&places, &quote!(()), &time_type(self.formulas.is_timed()));
         let (derivation, checks) = (self.program.derivation(), self.checks_of_terms(power));

@@ -27,9 +27,12 @@ impl Emitter<'_, '_> {
     fn scheme_of_single_steps(&self) -> TokenStream {
         let carry = if self.shares_impulse() { quote!(runtime::Shared) } else { quote!(runtime::Apart) };
         if let Some(splitting) = &self.formulas.splitting {
-            let (kicks, count) = kicks_of_splitting(self.model.order.number(), splitting.has_gradient);
-            let count = size(count);
-            return quote!(runtime::Split<runtime::#kicks, #count>);
+            return match (self.model.order.number(), splitting.has_gradient) {
+                (6, true) => quote!(runtime::Split<runtime::GradientSix, 5>),
+                (6, false) => quote!(runtime::Split<runtime::PlainSix, 10>),
+                (_, true) => quote!(runtime::Split<runtime::GradientFour, 4>),
+                (_, false) => quote!(runtime::Split<runtime::PlainFour, 6>),
+            };
         }
         if self.formulas.collocation.is_some() {
             let numbers = self.numbers_of_pair();
@@ -132,15 +135,4 @@ impl Emitter<'_, '_> {
         let functions = self.written(SPLIT_KICKS, &self.scope_of_step(), &no_words);
         self.implementation("SplitKicks", &[], functions)
     }
-}
-
-/// The kicks of a splitting, and how many there are.
-fn kicks_of_splitting(order: u32, has_gradient: bool) -> (Ident, usize) {
-    let (name, count) = match (order, has_gradient) {
-        (6, true) => ("GradientSix", 5),
-        (6, false) => ("PlainSix", 10),
-        (_, true) => ("GradientFour", 4),
-        (_, false) => ("PlainFour", 6),
-    };
-    (format_ident!("{name}"), count)
 }

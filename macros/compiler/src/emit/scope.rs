@@ -150,7 +150,7 @@ impl Scope<'_, '_> {
                 self.rounded(quote!(#index as ::core::primitive::f64))
             }
             Role::Sites => {
-                let length = self.power.map(|power| &power.length);
+                let length = &self.length;
                 self.rounded(quote!(#length as ::core::primitive::f64))
             }
             Role::Multiplier => quote!(kappa #index),

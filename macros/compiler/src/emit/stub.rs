@@ -21,7 +21,12 @@ pub fn stub(declaration: &Declaration, outline: &Outline) -> TokenStream {
     let users: Vec<TokenStream> = users.chain([quote!(#ident #generics #predicates)]).collect();
     let Outline { configuration, element, input, dimension, .. } = outline;
     let names = Names::new(&outline.scalar, !configuration.1.is_empty(), &users);
-    let of_sites = |ty: TokenStream| outline.sites.as_ref().map_or(ty.clone(), |length| quote!([#ty; #length]));
+    let of_sites = |ty: TokenStream| {
+        outline.sites.as_ref().map_or(ty.clone(), |length| {
+            let length = names.of_user(quote!(#length));
+            quote!([#ty; #length])
+        })
+    };
     let [q, f, input] =
         [configuration, element, input].map(|(layout, leaves)| nested_type(layout, |k| leaf(leaves[k].0, leaves[k].1)));
     let block = Block {

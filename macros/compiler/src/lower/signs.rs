@@ -234,12 +234,7 @@ fn bracketed(code: Code) -> Code {
 
 /// Whether it is a sum that stands in brackets beside a multiplication. One term that is added stands without before signs are moved.
 fn is_bracketed(code: &Code) -> bool {
-    match code {
-        Code::Sum(constant, terms) => {
-            !constant.is_zero() || terms.len() > 1 || terms.iter().any(|(weight, _)| weight.is_negative())
-        }
-        _ => false,
-    }
+    has_terms(code) || matches!(code, Code::Sum(_, terms) if terms.iter().any(|(weight, _)| weight.is_negative()))
 }
 
 /// Whether it is written as a product, with roundings of its own.

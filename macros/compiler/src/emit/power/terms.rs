@@ -36,7 +36,7 @@ impl<'e, 'a, 'g> Terms<'e, 'a, 'g> {
 
     /// The method that goes through the terms and adds what each has for its sites.
     pub(super) fn added_gradient(&self) -> TokenStream {
-        let length = &self.power.length;
+        let length = &self.emitter.length;
         let terms = self.emitter.formulas.links.iter().enumerate().map(|(number, link)| {
             let kernel = self.emitter.program.kernel(Id::TermGradients(number));
             let outputs = kernel.outputs.chunks(self.emitter.model.configurations.len());
@@ -58,7 +58,7 @@ impl<'e, 'a, 'g> Terms<'e, 'a, 'g> {
 
     /// The method that gathers the gradient of one site from the terms that read it.
     pub(super) fn gathered_gradient(&self, stencil: &Stencil<'g>) -> TokenStream {
-        let length = &self.power.length;
+        let length = &self.emitter.length;
         let places = [self.power.places.as_slice(), &stencil.places].concat();
         let common = self.emitter.program.kernel(Id::SiteGradient);
         let index = quote!(let i0 = site as ::core::primitive::isize;);
@@ -88,12 +88,12 @@ impl<'e, 'a, 'g> Terms<'e, 'a, 'g> {
 
     /// The index `i0` of the term that has a site at a place, from that of the site; leaves where there is no such term.
     fn found(&self, own: usize, home: &Home<'g>, ranges: &[(Expr<'g>, Expr<'g>)]) -> TokenStream {
-        let length = &self.power.length;
+        let length = &self.emitter.length;
         let (Some(index), [(from, to), ..]) = (home.index, ranges) else {
             let (name, place) = (site(own), self.index_of(&self.power.places, own));
             return quote!(#place if site != #name { break 'term; });
         };
-        let [from, to, moved] = [*from, *to, index].map(|expr| linear(expr, self.power));
+        let [from, to, moved] = [*from, *to, index].map(|expr| linear(expr, length));
         let moved = if home.wraps {
             quote!(let i0 = runtime::wrapped::<#length>(#moved) as ::core::primitive::isize;)
         } else if index.as_symbol().is_some() {
@@ -130,7 +130,7 @@ impl<'e, 'a, 'g> Terms<'e, 'a, 'g> {
         leave: TokenStream,
         body: TokenStream,
     ) -> TokenStream {
-        let (length, locals) = (&self.power.length, self.scope.locals(kernel));
+        let (length, locals) = (&self.emitter.length, self.scope.locals(kernel));
         let fields = self.places_of_fields(kernel).into_iter().filter(|place| !sites.contains(place));
         let fields: BTreeSet<usize> = fields.collect();
         let indices = fields.iter().chain(sites).copied().collect::<BTreeSet<usize>>().into_iter();
@@ -182,9 +182,9 @@ impl<'e, 'a, 'g> Terms<'e, 'a, 'g> {
 
     /// The statement that computes the index of a place.
     fn index_of(&self, places: &[SiteIndex<'g>], place: usize) -> TokenStream {
-        let length = &self.power.length;
+        let length = &self.emitter.length;
         let (name, SiteIndex { index, wraps }) = (site(place), &places[place]);
-        let index = linear(*index, self.power);
+        let index = linear(*index, length);
         if *wraps {
             quote!(let #name = runtime::wrapped::<#length>(#index);)
         } else {
@@ -202,7 +202,8 @@ impl<'e, 'a, 'g> Terms<'e, 'a, 'g> {
             return quote!(for _ in 0..1 { #statement });
         }
         ranges.rev().fold(statement, |statement, (depth, (from, to))| {
-            let (index, from, to) = (format_ident!("i{depth}"), linear(*from, self.power), linear(*to, self.power));
+            let length = &self.emitter.length;
+            let (index, from, to) = (format_ident!("i{depth}"), linear(*from, length), linear(*to, length));
             quote!(for #index in #from..#to { #statement })
         })
     }
@@ -214,11 +215,11 @@ fn site(place: usize) -> Ident {
 }
 
 /// A linear expression in the indices and N, as a signed number.
-fn linear(expr: Expr<'_>, power: &Power<'_>) -> TokenStream {
+fn linear(expr: Expr<'_>, length: &Option<TokenStream>) -> TokenStream {
     // by construction: what is not linear is refused where it is declared
     let Some(Linear { constant, sites, indices }) = Linear::of(expr) else { return quote!(0) };
     let names = indices.into_iter().enumerate().map(|(depth, weight)| (weight, format!("i{depth}")));
-    let names = names.chain([(sites, format!("({} as ::core::primitive::isize)", power.length))]);
+    let names = names.chain([(sites, format!("({} as ::core::primitive::isize)", quote!(#length)))]);
     let mut terms: Vec<(i64, String)> = names.filter(|(weight, _)| *weight != 0).collect();
     if terms.is_empty() || constant != 0 {
         terms.push((constant, String::new()));
