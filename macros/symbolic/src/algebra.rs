@@ -108,7 +108,6 @@ impl Basis {
     }
 }
 
-/// The unit vectors of Rⁿ.
 pub(crate) fn unit_vectors(n: usize) -> Vec<Sparse> {
     (0..n).map(|i| vec![(i, 0, integer(1))]).collect()
 }

@@ -144,20 +144,17 @@ impl<K: Number> Matrix<K> {
         Matrix::new(shape, vec![zero(); shape.len()])
     }
 
-    /// Adds a number to the entry at (row, column).
     pub(crate) fn add_at(&mut self, (row, column): (usize, usize), value: K) {
         let entry = &mut self.entries[row * self.shape.columns + column];
         *entry = entry.add(value);
     }
 
-    /// Adds a multiple of another matrix.
     pub(crate) fn add_scaled(&mut self, other: &Matrix<K>, factor: K) {
         for (entry, other) in self.entries.iter_mut().zip(&other.entries) {
             *entry = entry.add(other.multiply(factor));
         }
     }
 
-    /// Adds a multiple of a matrix that is given by its entries.
     pub(crate) fn add_sparse(&mut self, element: &Sparse, factor: K) {
         for (i, j, value) in element {
             self.add_at((*i, *j), factor.multiply(K::from_rational(value)));

@@ -62,7 +62,6 @@ impl Graph {
     }
 }
 
-/// Expressions by their identities.
 pub(crate) fn pairs(pairs: &[(Expr<'_>, Expr<'_>)]) -> Vec<(Id, Id)> {
     pairs.iter().map(|(from, to)| (from.id, to.id)).collect()
 }

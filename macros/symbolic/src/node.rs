@@ -155,7 +155,6 @@ impl<C: Copy> NodeOf<C> {
 }
 
 impl ExprNode {
-    /// Whether all direct children have a property.
     pub(crate) fn all_children(&self, property: impl Fn(Id) -> bool) -> bool {
         let mut all = true;
         self.each_child(|child| all = all && property(child));

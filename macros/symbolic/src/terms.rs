@@ -315,7 +315,6 @@ impl Graph {
         (rows < shape.rows).then(|| (first, literal.block(first, 0, Shape::new(rows, shape.columns))))
     }
 
-    /// Whether this is the symbol of an orthogonal matrix.
     pub(crate) fn is_orthogonal(&self, id: Id) -> bool {
         self.is_rotation_or(id, Group::is_orthogonal)
     }

@@ -56,7 +56,6 @@ impl<'g> SystemFormulas<'g> {
         })
     }
 
-    /// The price of the end with its derivatives.
     pub(super) fn price_of_end(&self) -> Option<Endpoint<'g>> {
         let price = self.model.endpoint?;
         let by_time = price.differential(&[(self.model.time, self.model.graph.integer(1))]);

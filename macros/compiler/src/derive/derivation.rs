@@ -100,7 +100,6 @@ fn sites(formulas: &MechanicsFormulas<'_>, lowered: &Lowered) -> String {
     format!("A power: {length} sites, {equal}. What follows is said of one site.\n{terms}\n")
 }
 
-/// The names of the inputs.
 fn inputs(model: &System<'_>) -> String {
     model.inputs.iter().map(|leaf| leaf.name.as_str()).collect::<Vec<_>>().join(", ")
 }

@@ -7,7 +7,6 @@ use super::closed_form::{closed_form, is_solved_by_predictor};
 use super::equation::{Momentum, MomentumEquation, Solution, Sources, is_diagonal, is_kept};
 use super::{ChartBlock, exact, structure};
 
-/// The momentum equations of a substep.
 pub(super) fn equations<'g>(sources: &Sources<'_, 'g>, momentum: &Momentum<'g>) -> Vec<MomentumEquation<'g>> {
     let (model, symbols) = (sources.model, &sources.symbols);
     let is_free_rotation = |block: &ChartBlock<'g>| exact::is_free_rotation(model, block.factor);

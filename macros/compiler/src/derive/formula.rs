@@ -72,7 +72,6 @@ impl<'g> Formula<'g> {
         if value == self.value { self } else { Formula { written: Some(self.value), value, ..self } }
     }
 
-    /// The same formula in words.
     pub(super) fn in_words(self, unicode: String, latex: String) -> Formula<'g> {
         Formula { wording: Wording::Words(unicode, latex), ..self }
     }

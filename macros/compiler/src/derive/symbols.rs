@@ -113,7 +113,6 @@ impl<'g> Symbols<'g> {
         vector.graph().beside(&jacobians)
     }
 
-    /// The symbols that a model needs.
     pub(super) fn new(model: &System<'g>, discretization: Option<Discretization>) -> Symbols<'g> {
         let (graph, taken) = (model.graph, taken(model));
         let numbered = |letters: &[&'static str], role: fn(usize) -> Role, shapes: &[Shape]| -> Vec<Expr<'g>> {
@@ -178,7 +177,6 @@ pub(super) fn rows_at<'g>(vector: Expr<'g>, positions: &[usize]) -> Expr<'g> {
     }
 }
 
-/// A matrix of scalars from its columns.
 pub(super) fn of_columns<'g>(graph: &'g Graph, columns: &[Vec<Expr<'g>>]) -> Expr<'g> {
     let shape = Shape::new(columns[0].len(), columns.len());
     graph.stack(shape, shape.positions().map(|(i, j)| columns[j][i]).collect())

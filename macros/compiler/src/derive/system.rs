@@ -39,7 +39,6 @@ impl<'g> SystemFormulas<'g> {
         SystemFormulas { model, symbols, generator, momentum_map, steering, endpoint, table }
     }
 
-    /// The element of a factor in its chart.
     pub(super) fn chart_element(&self, factor: usize) -> Expr<'g> {
         self.symbols.charts[factor].element(self.model.factors[factor].group, &self.symbols.coordinates(factor))
     }

@@ -52,7 +52,6 @@ fn of_factor<'g>(model: &System<'g>, kinetic: Expr<'g>, k: usize) -> (Covector<'
     if factor.side == Side::Left { (left, right) } else { (right, left) }
 }
 
-/// The components of each factor.
 pub(super) fn components<'g>(model: &System<'g>, covectors: &[Covector<'g>]) -> Vec<Expr<'g>> {
     model.factors.iter().zip(covectors).map(|(factor, covector)| covector.components(factor.group)).collect()
 }

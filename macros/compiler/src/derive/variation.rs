@@ -128,7 +128,11 @@ impl<'g> Source<'_, 'g> {
         derivatives.push(last.differential(&at_end));
         derivatives.extend(after_by_start);
         let adjoint: Vec<_> = (0..model.factors.len()).map(|k| system.adjoint(k)).collect();
-        let together = self.carried_motions(&adjoint);
+        // how q and q⁺ move with η at q while F stays as it is: q⁺ by Ad η for each factor
+        let by_adjoint: Vec<_> = system.symbols.algebra.iter().copied().zip(adjoint.iter().copied()).collect();
+        let images = self.images_by_generator().into_iter();
+        let mut together = system.leaves_by_generator();
+        together.extend(images.map(|(image, part)| (image, part.substitute(&by_adjoint))));
         let along = |quantity: &Quantity<'g>, momentum: Expr<'g>| {
             momentum.differential(&[(quantity.symbol, quantity.direction)])
         };
@@ -154,13 +158,6 @@ impl<'g> Source<'_, 'g> {
     fn images_by_generator(&self) -> Direction<'g> {
         let images = self.system.symbols.images.iter().zip(&self.system.generator);
         images.map(|(image, part)| (*image, self.at_image(*part))).collect()
-    }
-
-    /// How q and q⁺ move with η at q while F stays as it is: q⁺ by Ad η for each factor.
-    fn carried_motions(&self, adjoint: &[Expr<'g>]) -> Direction<'g> {
-        let along: Vec<_> = self.system.symbols.algebra.iter().copied().zip(adjoint.iter().copied()).collect();
-        let images = self.images_by_generator().into_iter().map(|(image, part)| (image, part.substitute(&along)));
-        self.system.leaves_by_generator().into_iter().chain(images).collect()
     }
 
     /// How q and F move with η at q: F exp(−η) for a left action, exp(−η) F for a right one.

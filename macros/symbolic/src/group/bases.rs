@@ -4,7 +4,6 @@ use super::{Block, Group};
 use crate::algebra::{Sparse, unit_vectors};
 use crate::{Graph, Rational, Shape, integer, rational};
 
-/// The blocks of a group.
 pub(super) fn blocks(graph: &Graph, group: Group) -> Vec<Block> {
     let whole = |elements: Vec<Sparse>| vec![(group.element_shape(), elements, 0, 0)];
     let square = |n: usize, elements: Vec<Sparse>| (Shape::square(n), elements, 0, 0);

@@ -236,7 +236,6 @@ fn resolvent(z: Expr<'_>) -> Expr<'_> {
     (z.graph().identity(z.shape().rows) - z).inverse()
 }
 
-/// The quaternion with a vector and a scalar part.
 fn quaternion<'g>(vector: Expr<'g>, scalar: Expr<'g>) -> Expr<'g> {
     let shape = Shape::vector(4);
     vector.embed(shape, 0, 0) + scalar.embed(shape, 3, 0)

@@ -4,7 +4,6 @@ use super::{bounds, inputs};
 use crate::derive::{MOST_LISTED, MechanicsFormulas, Substep};
 use crate::model::{Isotropy, Order};
 
-/// What forces take away.
 pub(super) fn forces(formulas: &MechanicsFormulas<'_>) -> String {
     let model = &formulas.model;
     if model.force.is_none() {

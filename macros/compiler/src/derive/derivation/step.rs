@@ -7,10 +7,8 @@ use super::equations::{how, part};
 use crate::derive::{Collocation, MechanicsFormulas, Solution};
 use crate::model::{LeafSpace, Order};
 
-/// How sums are compensated.
 const COMPENSATED: &str = "Sums are compensated: what rounding takes off q and N is kept beside them, and added in the next step, so that errors of rounding are those of the increments q⁺ − q and N⁺ − N.\n";
 
-/// How a step goes and how accurate it is.
 pub(super) fn scheme(formulas: &MechanicsFormulas<'_>, lowered: &Lowered) -> String {
     let model = &formulas.model;
     let mut text = format!("{}\n{}", order(formulas), stagger(formulas));
@@ -146,7 +144,6 @@ fn tolerance(formulas: &MechanicsFormulas<'_>) -> String {
     )
 }
 
-/// How a step of order 16 goes.
 fn collocated(formulas: &MechanicsFormulas<'_>, collocation: &Collocation<'_>) -> String {
     let mut text = String::from(
         "Hamilton's equations on T*Q, those of the continuous Clebsch problem, are collocated at the eight nodes of Gauss and Legendre: order 16, symplectic, and \
@@ -171,7 +168,6 @@ fn collocated(formulas: &MechanicsFormulas<'_>, collocation: &Collocation<'_>) -
     text + &spaces(formulas)
 }
 
-/// How a splitting goes.
 fn split(order: Order, has_gradient: bool) -> String {
     let (kicks, kind) = match (order, has_gradient) {
         (Order::Sixth, true) => (5, "with force gradients, of order (8, 6, 6) in V, V² and V³"),

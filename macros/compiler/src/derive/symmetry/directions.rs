@@ -52,15 +52,9 @@ impl<'a, 'g> Directions<'a, 'g> {
         self.all.extend(made);
     }
 
-    /// The direction of a basis element in the family that was begun last.
-    fn direction(
-        &self,
-        index: usize,
-        momentum: Expr<'g>,
-        (leaves, factors): (Vec<Expr<'g>>, Vec<Expr<'g>>),
-        logarithms: Option<Vec<Expr<'g>>>,
-    ) -> Direction<'g> {
-        Direction { family: self.families.len() - 1, index, leaves, factors, logarithms, momentum }
+    /// The family that was begun last.
+    fn family(&self) -> usize {
+        self.families.len() - 1
     }
 
     fn basis_element(&self, group: Group, index: usize) -> Expr<'g> {
@@ -86,7 +80,8 @@ impl<'a, 'g> Directions<'a, 'g> {
             self.model.graph.zero(velocity[k].shape())
         };
         let logarithms = Some(system.in_factor(k, signed(turned)));
-        self.direction(index, momentum, (system.motion_by(&velocity), factors), logarithms)
+        let leaves = system.motion_by(&velocity);
+        Direction { family: self.family(), index, leaves, factors, logarithms, momentum }
     }
 
     /// The factor of the leaf's own group for which q ↦ gq (or qg) commutes with the action: then ξ = q⁻¹wq (or qwq⁻¹).
@@ -127,7 +122,7 @@ impl<'a, 'g> Directions<'a, 'g> {
         let momentum = group.coadjoint(element, self.system.symbols.momenta[k]).entry(index, 0);
         let still = self.model.graph.zero(self.system.symbols.logarithms[k].shape());
         let logarithms = Some(self.system.in_factor(k, still));
-        self.direction(index, momentum, (leaves, self.no_motion()), logarithms)
+        Direction { family: self.family(), index, leaves, factors: self.no_motion(), logarithms, momentum }
     }
 
     /// A direction of an offered symmetry, where its motion of q is a motion of the group: ξ_Q(q) = δq.
@@ -142,7 +137,7 @@ impl<'a, 'g> Directions<'a, 'g> {
         let velocity = self.velocity_of(&leaves)?;
         let pairs = self.system.symbols.momenta.iter().zip(&velocity);
         let momentum = self.model.graph.total(Shape::scalar(), pairs.map(|(mu, xi)| mu.dot(*xi)));
-        Some(self.direction(index, momentum, (leaves, factors), None))
+        Some(Direction { family: self.family(), index, leaves, factors, logarithms: None, momentum })
     }
 
     /// ξ with ξ_Q(q) = δq, by least squares in the entries of q; `None` where the group cannot move q so.

@@ -66,7 +66,6 @@ struct Family {
     offered: Option<usize>,
 }
 
-/// Finds the symmetries of a discrete Lagrangian.
 pub(super) fn find<'g>(
     sources: &Sources<'_, 'g>,
     lagrangian: &DiscreteLagrangian<'g>,
@@ -144,7 +143,6 @@ struct Finder<'a, 'g> {
 }
 
 impl<'g> Finder<'_, 'g> {
-    /// The momenta of combinations of directions.
     fn momenta(&self, found: &[Vec<Rational>]) -> Vec<ConservedMomentum<'g>> {
         let mut momenta: Vec<ConservedMomentum<'g>> = Vec::new();
         for combination in found {
