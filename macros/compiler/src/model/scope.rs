@@ -9,7 +9,7 @@ use super::value::Value;
 use crate::diagnostic::{Diagnostics, report};
 use crate::parse::Pattern;
 
-/// GroupNames with a meaning of their own in all closures.
+/// Names with a meaning of their own in all closures.
 const RESERVED: [&str; 4] = ["h", "t", "I", "self"];
 
 /// The names of one closure.

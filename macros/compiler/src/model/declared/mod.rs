@@ -42,10 +42,9 @@ pub(super) fn read_all(graph: &Graph, groups: &[DeclaredGroup], diagnostics: &Di
 /// Refuses a name that means something already.
 fn check_name(name: &Ident) -> Result<(), Diagnostics> {
     let text = name.unraw().to_string();
-    let is_space =
-        named_shape(&text).is_some() || ["SVector", "SMatrix", "Unit", "Quaternion"].contains(&text.as_str());
-    if is_built_in(&text) || is_space {
-        let what = if is_built_in(&text) { "group" } else { "space" };
+    let is_group = is_built_in(&text);
+    if is_group || named_shape(&text).is_some() || ["SVector", "SMatrix", "Unit", "Quaternion"].contains(&&*text) {
+        let what = if is_group { "group" } else { "space" };
         bail!(name, "`{text}` is a {what} that is built in"; help "choose another name, `My{text}`");
     }
     Ok(())

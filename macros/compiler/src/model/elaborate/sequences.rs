@@ -30,10 +30,8 @@ impl<'g> Elaborator<'_, '_, 'g> {
         let (Some(start), Some(end)) = (&range.start, &range.end) else {
             refuse!(self, range, "a range has a start and an end"; help "write `0..3`");
         };
-        if self.context.power.is_some() {
-            return self.range_of_power(range, start, end);
-        }
-        self.range_of_numbers(range, start, end)
+        let is_power = self.context.power.is_some();
+        if is_power { self.range_of_power(range, start, end) } else { self.range_of_numbers(range, start, end) }
     }
 
     /// A range whose ends are known here, written out.
