@@ -150,7 +150,8 @@ impl Diagnostics {
         self.len() == 0
     }
 
-    pub(crate) fn len(&self) -> usize {
+    /// How many there are.
+    pub fn len(&self) -> usize {
         self.found.borrow().len()
     }
 

@@ -123,6 +123,13 @@ impl<S: Clebsch, M: Method<S>> Stepper<S, M> {
         self.attempt_with(state, &self.left_of(state), u)
     }
 
+    /// The same where it has failed before, or may: one copy of the step serves all of its errors.
+    #[cold]
+    #[inline(never)]
+    pub(super) fn attempt_again(&self, state: &State<S, M>, u: &S::Input) -> Result<State<S, M>, Error> {
+        self.attempt(state, u)
+    }
+
     /// The same with the impulse at the configuration.
     #[inline(always)]
     pub(crate) fn attempt_with(&self, state: &State<S, M>, left: &Left<S, M>, u: &U<S>) -> Result<State<S, M>, Error> {
@@ -156,7 +163,7 @@ impl<S: Clebsch, M: Method<S>> Stepper<S, M> {
     #[cold]
     #[inline(never)]
     fn refused(&self, state: &State<S, M>, u: &S::Input) -> Error {
-        match self.attempt(state, u) {
+        match self.attempt_again(state, u) {
             Err(error) if S::Scalar::LANES == 1 => self.refusal(state, u, 0, error),
             // by construction an error: the same step has the same result
             _ => Error::InLane { lane: 0 },
@@ -167,8 +174,15 @@ impl<S: Clebsch, M: Method<S>> Stepper<S, M> {
     #[cold]
     #[inline(never)]
     fn refused_after(&self, start: &State<S, M>, steps: usize, known: Error) -> Error {
-        let failed = self.trajectory(*start).take(steps.saturating_add(1)).find_map(Result::err);
-        failed.unwrap_or_else(|| whole_or_lane::<S::Scalar>(0, known))
+        let (mut state, none) = (*start, S::Input::origin());
+        for _ in 0..steps {
+            match self.attempt_again(&state, &none) {
+                Ok(next) if next.is_finite() => state = next,
+                Ok(next) => return self.beyond(&next),
+                Err(_) => return self.refused(&state, &none),
+            }
+        }
+        whole_or_lane::<S::Scalar>(0, known)
     }
 
     /// The error of a step whose state is not finite in some lane.
