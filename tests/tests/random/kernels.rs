@@ -5,7 +5,7 @@ use std::collections::HashMap;
 
 use clebsch_compiler::derive::Id;
 use clebsch_compiler::lower::{Callee, Code, Kernel, MatrixOperation, MechanicsProgram, Output, Whole};
-use clebsch_symbolic::{Analytic, Expr, Matrix, Number, Rational, Shape};
+use clebsch_symbolic::{Analytic, Expr, Matrix, Number, Operation, Rational, Shape};
 use nalgebra::SMatrix;
 
 /// The numbers of all symbols of a program, by name.
@@ -130,14 +130,14 @@ impl Run<'_> {
             MatrixOperation::Product => {
                 from(&|(i, j)| (0..of[0].shape.columns).map(|k| of[0].at(i, k) * of[1].at(k, j)).sum())
             }
-            MatrixOperation::Transpose => from(&|(i, j)| of[0].at(j, i)),
-            MatrixOperation::Inverse => of[0].inverse().0,
-            MatrixOperation::Analytic(Analytic::Logarithm) => logarithm(&of[0]),
-            MatrixOperation::Analytic(function) => <f64 as Number>::analytic(*function, &of[0]),
-            MatrixOperation::Block(row, column) => from(&|(i, j)| of[0].at(row + i, column + j)),
+            MatrixOperation::Of(Operation::Transpose) => from(&|(i, j)| of[0].at(j, i)),
+            MatrixOperation::Of(Operation::Inverse) => of[0].inverse().0,
+            MatrixOperation::Of(Operation::Analytic(Analytic::Logarithm)) => logarithm(&of[0]),
+            MatrixOperation::Of(Operation::Analytic(function)) => <f64 as Number>::analytic(*function, &of[0]),
+            MatrixOperation::Of(Operation::Block(row, column)) => from(&|(i, j)| of[0].at(row + i, column + j)),
             MatrixOperation::Hadamard => from(&|(i, j)| of[0].at(i, j) * of[1].at(i, j)),
-            MatrixOperation::DiagonalMatrix => from(&|(i, j)| of[0].at(i, 0) * one((i, j))),
-            MatrixOperation::Diagonal => from(&|(i, _)| of[0].at(i, i)),
+            MatrixOperation::Of(Operation::DiagonalMatrix) => from(&|(i, j)| of[0].at(i, 0) * one((i, j))),
+            MatrixOperation::Of(Operation::Diagonal) => from(&|(i, _)| of[0].at(i, i)),
             MatrixOperation::Hat => from(&|(i, j)| match (3 + j - i) % 3 {
                 0 => 0.0,
                 1 => -of[0].at(3 - i - j, 0),

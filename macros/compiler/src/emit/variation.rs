@@ -24,7 +24,8 @@ impl Emitter<'_, '_> {
         let variational = self.target.derived(Some(quote!(runtime::Variational<#dimension>)), motions);
         let slopes = matrix(self.dimension, self.formulas.quantities.len());
         let slopes = if self.is_sensitive() { quote!((#slopes, #slopes)) } else { quote!(()) };
-        let varied = self.implementation("Varied", std::slice::from_ref(&dimension), quote!(type Slopes = #slopes;));
+        let varied =
+            self.target.implementation(Some(quote!(runtime::Varied<#dimension>)), quote!(type Slopes = #slopes;));
         let edges = self.edges();
         quote!(#variational #varied #edges)
     }
