@@ -134,35 +134,29 @@ enum Place {
 }
 
 impl Kernel {
-    /// The code of its terms and outputs, and all parts of it.
-    pub(super) fn each(&self) -> impl Iterator<Item = &Code> {
-        let outputs = self.outputs.iter().flat_map(|(_, entries)| entries);
-        self.locals.iter().chain(outputs).flat_map(Code::each)
+    /// The entries of all outputs.
+    pub(super) fn entries(&self) -> impl Iterator<Item = &Code> {
+        self.outputs.iter().flat_map(|(_, entries)| entries)
     }
 
-    /// The arguments that it reads entries of or takes as a whole, as often as they stand in it.
-    pub fn inputs(&self) -> Vec<&Input> {
-        self.each().filter_map(|code| code.input().map(|(input, _)| input)).collect()
+    /// Looks at the code of its terms and outputs, and at all parts of it.
+    pub(super) fn visit<'a>(&'a self, see: &mut dyn FnMut(&'a Code)) {
+        self.locals.iter().chain(self.entries()).for_each(|code| code.visit(see));
     }
 
-    /// The rows of arguments that it reads, with the arguments.
-    pub(super) fn rows_read(&self) -> impl Iterator<Item = (Role, usize)> {
-        let rows = |(input, shape): (&Input, Shape)| {
-            let role = input.role;
-            (input.row..input.row + shape.rows).map(move |row| (role, row))
-        };
-        self.each().filter_map(Code::input).flat_map(rows)
+    /// The arguments that it reads entries of or takes as a whole, with the shapes of these, as often as they stand in it.
+    pub fn inputs(&self) -> Vec<(&Input, Shape)> {
+        let mut inputs = Vec::new();
+        self.visit(&mut |code| inputs.extend(code.input()));
+        inputs
     }
 
     /// Which of its terms depend on an argument of a role that is wanted.
     pub fn depends_on(&self, wanted: impl Fn(Role) -> bool) -> Vec<bool> {
         let mut depends: Vec<bool> = Vec::new();
         for code in &self.locals {
-            let depends_on = |part: &Code| match part {
-                Code::Local(index) => depends[*index],
-                part => part.input().is_some_and(|(input, _)| wanted(input.role)),
-            };
-            let found = code.each().any(depends_on);
+            let mut found = code.locals().into_iter().any(|index| depends[index]);
+            code.visit(&mut |part| found |= part.input().is_some_and(|(input, _)| wanted(input.role)));
             depends.push(found);
         }
         depends
@@ -174,7 +168,7 @@ impl Kernel {
         outputs.iter().flat_map(|(_, entries)| entries).flat_map(Code::locals).for_each(|index| uses[index] += 1);
         for index in (0..self.locals.len()).rev() {
             if uses[index] > 0 {
-                self.locals[index].locals().for_each(|other| uses[other] += 1);
+                self.locals[index].locals().into_iter().for_each(|other| uses[other] += 1);
             }
         }
         uses
@@ -183,8 +177,7 @@ impl Kernel {
     /// The same without terms that no output is made of; a term that is an output and stands nowhere else is written there.
     pub(super) fn without_unused(self) -> Kernel {
         let uses = self.uses(&self.outputs);
-        let outputs = self.outputs.iter().flat_map(|(_, entries)| entries);
-        let outputs: Vec<usize> = outputs.filter_map(Code::as_local).collect();
+        let outputs: Vec<usize> = self.entries().filter_map(Code::as_local).collect();
         self.placed(|index| match uses[index] {
             0 => Place::Nowhere,
             1 if outputs.contains(&index) => Place::Inside,
@@ -201,7 +194,7 @@ impl Kernel {
         let mut depths: Vec<usize> = Vec::new();
         self.placed(|index| {
             let code = &self.locals[index];
-            let depth = 1 + code.locals().map(|other| depths[other]).max().unwrap_or(0);
+            let depth = 1 + code.locals().into_iter().map(|other| depths[other]).max().unwrap_or(0);
             let has_place = !code.needs_name() || returned.contains(&index);
             let is_inside = uses[index] == 1 && has_place && depth <= DEEPEST_EXPRESSION;
             depths.push(if is_inside { depth } else { 0 });
@@ -344,35 +337,34 @@ impl Code {
         }
     }
 
-    /// It and all its parts, each before those that it is made of.
-    pub(super) fn each(&self) -> impl Iterator<Item = &Code> {
-        let mut open = vec![self];
-        std::iter::from_fn(move || {
-            let code = open.pop()?;
-            open.extend(code.parts().into_iter().rev());
-            Some(code)
-        })
-    }
-
-    /// The codes that it is made of.
-    fn parts(&self) -> Vec<&Code> {
+    /// Looks at it and at all its parts, each before those that it is made of.
+    pub(super) fn visit<'a>(&'a self, see: &mut dyn FnMut(&'a Code)) {
+        see(self);
         match self {
-            Code::Sum(_, terms) => terms.iter().map(|(_, term)| term).collect(),
-            Code::Product(factors) => factors.iter().collect(),
-            Code::Reciprocal(x) | Code::Root(x, _) | Code::PerOnePlusCosine(x) | Code::Function(_, x) => vec![x],
-            Code::Call(_, arguments) => arguments.iter().flat_map(|(_, entries)| entries).collect(),
-            Code::Whole(whole) => whole.operands.iter().collect(),
-            Code::Read(_) | Code::Pi | Code::Number(_) => Vec::new(),
-            Code::Constant(_) | Code::Term(_) | Code::Local(_) | Code::Output(..) => Vec::new(),
+            Code::Sum(_, terms) => terms.iter().for_each(|(_, term)| term.visit(see)),
+            Code::Product(factors) => factors.iter().for_each(|factor| factor.visit(see)),
+            Code::Reciprocal(x) | Code::Root(x, _) | Code::PerOnePlusCosine(x) | Code::Function(_, x) => x.visit(see),
+            Code::Call(_, arguments) => arguments.iter().flat_map(|(_, all)| all).for_each(|entry| entry.visit(see)),
+            Code::Whole(whole) => whole.operands.iter().for_each(|operand| operand.visit(see)),
+            Code::Read(_) | Code::Pi | Code::Number(_) => {}
+            Code::Constant(_) | Code::Term(_) | Code::Local(_) | Code::Output(..) => {}
         }
     }
 
     /// The shared terms that it stands on, by their indices.
-    pub(super) fn locals(&self) -> impl Iterator<Item = usize> {
-        self.each().filter_map(|part| match part {
-            Code::Local(index) | Code::Output(index, ..) => Some(*index),
-            _ => None,
-        })
+    pub(super) fn locals(&self) -> Vec<usize> {
+        let mut locals = Vec::new();
+        self.visit(&mut |part| {
+            if let Code::Local(index) | Code::Output(index, ..) = part {
+                locals.push(*index);
+            }
+        });
+        locals
+    }
+
+    /// An operation on whole matrices.
+    pub(super) fn whole(operation: MatrixOperation, operands: Vec<Code>, shape: Shape, cost: Cost) -> Code {
+        Code::Whole(Box::new(Whole { operation, operands, shape, cost }))
     }
 
     /// The same with other codes for its shared terms.

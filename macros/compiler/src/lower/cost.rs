@@ -26,16 +26,20 @@ pub struct Cost {
 impl Kernel {
     /// The operations of this kernel.
     pub fn cost(&self) -> Cost {
-        self.each().map(Cost::of).sum()
+        let mut cost = Cost::default();
+        self.visit(&mut |code| cost = cost.plus(Cost::of(code)));
+        cost
     }
 
     /// The operations that stand in its code: one on whole matrices is one.
     pub fn length(&self) -> usize {
-        let within = |code: &Code| match code {
-            Code::Whole(whole) => whole.cost.total().saturating_sub(1),
-            _ => 0,
-        };
-        self.cost().total() - self.each().map(within).sum::<usize>()
+        let mut within = 0;
+        self.visit(&mut |code| {
+            if let Code::Whole(whole) = code {
+                within += whole.cost.total().saturating_sub(1);
+            }
+        });
+        self.cost().total() - within
     }
 }
 
@@ -70,9 +74,8 @@ impl Cost {
             }
             Code::Product(factors) => {
                 // a division takes the place of a multiplication
-                let below =
-                    Code::quotient(factors).map_or(0, |(above, below)| below.len().min(above.len() + below.len() - 1));
-                Cost::sums(0, factors.len() - 1 - below)
+                let below = factors.iter().filter(|factor| matches!(factor, Code::Reciprocal(_))).count();
+                Cost::sums(0, (factors.len() - 1).saturating_sub(below))
             }
             Code::Reciprocal(_) => Cost { divisions: 1, ..Cost::default() },
             Code::Root(..) => Cost { roots: 1, ..Cost::default() },

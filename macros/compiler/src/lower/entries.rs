@@ -1,8 +1,6 @@
 //! Grids of scalars: what expressions are lowered to, and kernels are made of.
 
-use std::rc::Rc;
-
-use clebsch_symbolic::{Shape, Table};
+use clebsch_symbolic::Shape;
 
 /// The identity of a scalar in its arena.
 #[derive(Copy, Clone, PartialEq, Eq, Hash, PartialOrd, Ord, Debug)]
@@ -15,13 +13,6 @@ pub struct Grid {
     pub shape: Shape,
     /// The entries, row by row.
     pub entries: Vec<Scalar>,
-}
-
-/// What has been lowered of the expressions of one graph, by their positions: kernels have many expressions in common.
-#[derive(Default)]
-pub struct Grids {
-    pub(super) grids: Table<usize, Rc<Grid>>,
-    pub(super) constant: Table<usize, bool>,
 }
 
 impl Grid {

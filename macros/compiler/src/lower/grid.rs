@@ -11,22 +11,16 @@ use clebsch_symbolic::{
 };
 
 use super::entries::{Grid, Scalar};
-use super::scalar::{Call, Callee, Input, Rate, Scalars};
+use super::scalar::{Callee, Input, Rate, Scalars};
 
-/// Lowers expressions to grids, remembering what it has lowered.
-pub struct Lowering<'a> {
-    /// The arena of the scalars.
-    pub scalars: &'a mut Scalars,
-}
-
-impl<'g> Lowering<'_> {
+impl<'g> Scalars {
     /// The scalars of an expression.
     pub fn grid(&mut self, expr: Expr<'g>) -> Rc<Grid> {
-        if let Some(grid) = self.scalars.lowered.grids.get(&expr.position()) {
+        if let Some(grid) = self.grids.get(&expr.position()) {
             return grid.clone();
         }
         let grid = Rc::new(self.lower(expr));
-        self.scalars.lowered.grids.insert(expr.position(), grid.clone());
+        self.grids.insert(expr.position(), grid.clone());
         grid
     }
 
@@ -34,10 +28,10 @@ impl<'g> Lowering<'_> {
         let shape = expr.shape();
         match expr.view() {
             View::Symbol(symbol) => self.symbol(&symbol),
-            View::Pi => Grid::scalar(self.scalars.pi()),
+            View::Pi => Grid::scalar(self.pi()),
             View::Sum(terms) => self.terms(expr.graph(), shape, terms),
             View::Literal(entries) => {
-                Grid { shape, entries: entries.into_iter().map(|entry| self.scalars.number(entry)).collect() }
+                Grid { shape, entries: entries.into_iter().map(|entry| self.number(entry)).collect() }
             }
             View::Stack(entries) => {
                 Grid { shape, entries: entries.into_iter().map(|entry| self.grid(entry).entries[0]).collect() }
@@ -45,19 +39,16 @@ impl<'g> Lowering<'_> {
             View::Word(word) => self.word(&word),
             View::Trace(word) => {
                 let product = self.word(&word);
-                Grid::scalar(self.scalars.total((0..product.shape.rows).map(|i| product.at(i, i))))
+                Grid::scalar(self.total((0..product.shape.rows).map(|i| product.at(i, i))))
             }
             View::Opaque(name, output, arguments) => {
-                let (name, arguments) =
-                    (name.to_string(), arguments.into_iter().map(|argument| self.grid(argument)).collect());
-                match output {
-                    0 => self.call(Callee::Value(name), arguments, 0, shape),
-                    leaf => self.call(Callee::Gradient(name), arguments, leaf - 1, shape),
-                }
+                let arguments = arguments.into_iter().map(|argument| self.grid(argument)).collect();
+                let of = if output == 0 { Callee::Value } else { Callee::Gradient };
+                self.call(of(name.to_string()), arguments, output.saturating_sub(1), shape)
             }
             View::Hadamard(a, b) => {
                 let (a, b) = (self.grid(a), self.grid(b));
-                Grid::from_fn(shape, |(i, j)| self.scalars.product([a.at(i, j), b.at(i, j)]))
+                Grid::from_fn(shape, |(i, j)| self.product([a.at(i, j), b.at(i, j)]))
             }
             View::Of(operation, a) => self.operation(operation, a, shape),
         }
@@ -82,17 +73,17 @@ impl<'g> Lowering<'_> {
                 let all: Vec<usize> = (0..a.shape.rows).collect();
                 Grid::scalar(self.determinant(&a, &all, &all))
             }
-            Operation::Function(function) => Grid::scalar(self.scalars.function(function, a.entries[0])),
+            Operation::Function(function) => Grid::scalar(self.function(function, a.entries[0])),
             Operation::Block(row, column) => Grid::from_fn(shape, |(i, j)| a.at(row + i, column + j)),
             Operation::Embed(row, column) => {
-                let zero = self.scalars.zero();
+                let zero = self.zero();
                 let inside = |i: usize, j: usize| {
                     i >= row && j >= column && i < row + a.shape.rows && j < column + a.shape.columns
                 };
                 Grid::from_fn(shape, |(i, j)| if inside(i, j) { a.at(i - row, j - column) } else { zero })
             }
             Operation::DiagonalMatrix => {
-                let zero = self.scalars.zero();
+                let zero = self.zero();
                 Grid::from_fn(shape, |(i, j)| if i == j { a.at(i, 0) } else { zero })
             }
             Operation::Diagonal => Grid::from_fn(shape, |(i, _)| a.at(i, i)),
@@ -101,36 +92,31 @@ impl<'g> Lowering<'_> {
         }
     }
 
-    fn call(&mut self, callee: Callee, arguments: Vec<Rc<Grid>>, leaf: usize, shape: Shape) -> Grid {
-        Grid { shape, entries: self.scalars.call(Call { callee, arguments }, leaf, shape) }
-    }
-
     fn symbol(&mut self, symbol: &Symbol) -> Grid {
-        let zero = self.scalars.zero();
+        let zero = self.zero();
         Grid::from_fn(symbol.shape, |(i, j)| match symbol.property {
-            Property::Symmetric => self.scalars.input(Input::of(symbol, i.min(j), i.max(j))),
+            Property::Symmetric => self.input(Input::of(symbol, i.min(j), i.max(j))),
             Property::Diagonal if i != j => zero,
-            _ => self.scalars.input(Input::of(symbol, i, j)),
+            _ => self.input(Input::of(symbol, i, j)),
         })
     }
 
     fn wedge(&mut self, basis: &Basis, a: &Grid) -> Grid {
         let shape = basis.shape;
-        let zero = self.scalars.zero();
+        let zero = self.zero();
         let mut matrix = Grid::from_fn(shape, |_| zero);
         for (k, entries) in basis.elements.iter().enumerate() {
             for (i, j, value) in entries {
-                let entry = self.scalars.scale(a.at(k, 0), value.clone());
-                matrix.entries[i * shape.columns + j] = self.scalars.total([matrix.at(*i, *j), entry]);
+                let entry = self.scale(a.at(k, 0), value.clone());
+                matrix.entries[i * shape.columns + j] = self.total([matrix.at(*i, *j), entry]);
             }
         }
         matrix
     }
 
     fn components(&mut self, basis: &Basis, a: &Grid) -> Grid {
-        let component = |entries: &Sparse| {
-            self.scalars.sum(integer(0), entries.iter().map(|(i, j, value)| (a.at(*i, *j), value.clone())))
-        };
+        let component =
+            |entries: &Sparse| self.sum(integer(0), entries.iter().map(|(i, j, value)| (a.at(*i, *j), value.clone())));
         Grid::vector(basis.elements.iter().map(component).collect())
     }
 
@@ -152,9 +138,9 @@ impl<'g> Lowering<'_> {
     fn multiply(&mut self, a: &Grid, b: &Grid) -> Grid {
         Grid::from_fn(Shape::new(a.shape.rows, b.shape.columns), |(i, j)| {
             let factors = (0..a.shape.columns).map(|k| [a.at(i, k), b.at(k, j)]);
-            let factors: Vec<_> = factors.filter(|pair| !pair.iter().any(|x| self.scalars.is_zero(*x))).collect();
-            let terms: Vec<Scalar> = factors.into_iter().map(|pair| self.scalars.product(pair)).collect();
-            self.scalars.total(terms)
+            let factors: Vec<_> = factors.filter(|pair| !pair.iter().any(|x| self.is_zero(*x))).collect();
+            let terms: Vec<Scalar> = factors.into_iter().map(|pair| self.product(pair)).collect();
+            self.total(terms)
         })
     }
 
@@ -168,14 +154,14 @@ impl<'g> Lowering<'_> {
             grids.push(self.components(&graph.basis(algebra), &matrix));
         }
         grids.push(self.gathered(shape, rest));
-        self.total(shape, &grids)
+        self.total_of(shape, &grids)
     }
 
-    fn total(&mut self, shape: Shape, grids: &[Grid]) -> Grid {
+    fn total_of(&mut self, shape: Shape, grids: &[Grid]) -> Grid {
         if let [only] = grids {
             return only.clone();
         }
-        Grid::from_fn(shape, |(i, j)| self.scalars.total(grids.iter().map(|grid| grid.at(i, j))))
+        Grid::from_fn(shape, |(i, j)| self.total(grids.iter().map(|grid| grid.at(i, j))))
     }
 
     fn gathered(&mut self, shape: Shape, terms: Vec<WordTerm<'g>>) -> Grid {
@@ -208,46 +194,45 @@ impl<'g> Lowering<'_> {
             groups.entry((varying, prefix, suffix)).or_default().push(run);
         }
         for ((varying, prefix, suffix), runs) in groups {
-            let middle = self.total(runs[0].shape, &runs);
+            let middle = self.total_of(runs[0].shape, &runs);
             let product = self.between(&prefix, middle, &suffix);
             let scale = self.monomial(&integer(1), &varying);
             grids.push(self.scaled(&product, scale));
         }
-        self.total(shape, &grids)
+        self.total_of(shape, &grids)
     }
 
     /// Whether an expression is fixed once per stepper.
     fn is_constant(&mut self, expr: Expr<'g>) -> bool {
-        let constant = &mut self.scalars.lowered.constant;
-        if let Some(known) = constant.get(&expr.position()) {
+        if let Some(known) = self.constant.get(&expr.position()) {
             return *known;
         }
         let found = expr
             .symbols()
             .into_iter()
             .all(|symbol| symbol.as_symbol().is_some_and(|data| Rate::of(data.role) == Rate::Once));
-        constant.insert(expr.position(), found);
+        self.constant.insert(expr.position(), found);
         found
     }
 
     fn monomial(&mut self, coefficient: &Rational, scalars: &[(Expr<'g>, (i64, i64))]) -> Scalar {
-        let mut factors = vec![self.scalars.number(coefficient.clone())];
+        let mut factors = vec![self.number(coefficient.clone())];
         for (base, exponent) in scalars {
             let base = self.grid(*base).entries[0];
-            factors.push(self.scalars.power(base, exponent.0, exponent.1));
+            factors.push(self.power(base, exponent.0, exponent.1));
         }
-        self.scalars.product(factors)
+        self.product(factors)
     }
 
     fn scaled(&mut self, grid: &Grid, scale: Scalar) -> Grid {
-        if self.scalars.as_number(scale).is_some_and(One::is_one) {
+        if self.as_number(scale).is_some_and(One::is_one) {
             return grid.clone();
         }
-        Grid::from_fn(grid.shape, |(i, j)| self.scalars.product([scale, grid.at(i, j)]))
+        Grid::from_fn(grid.shape, |(i, j)| self.product([scale, grid.at(i, j)]))
     }
 
     fn scaled_identity(&mut self, n: usize, scale: Scalar) -> Grid {
-        let zero = self.scalars.zero();
+        let zero = self.zero();
         Grid::from_fn(Shape::square(n), |(i, j)| if i == j { scale } else { zero })
     }
 
@@ -258,21 +243,21 @@ impl<'g> Lowering<'_> {
         if n <= 3 {
             let all: Vec<usize> = (0..n).collect();
             let determinant = self.determinant(a, &all, &all);
-            let reciprocal = self.scalars.reciprocal(determinant);
+            let reciprocal = self.reciprocal(determinant);
             return Grid::from_fn(a.shape, |(i, j)| {
                 let cofactor = self.determinant(a, &without(&all, j), &without(&all, i));
                 let sign = integer(if (i + j) % 2 == 0 { 1 } else { -1 });
-                let signed = self.scalars.scale(cofactor, sign);
-                self.scalars.product([signed, reciprocal])
+                let signed = self.scale(cofactor, sign);
+                self.product([signed, reciprocal])
             });
         }
-        let one = self.scalars.number(integer(1));
+        let one = self.number(integer(1));
         let (mut left, mut right) = (a.clone(), self.scaled_identity(n, one));
         for k in 0..n {
-            let reciprocal = self.scalars.reciprocal(left.at(k, k));
+            let reciprocal = self.reciprocal(left.at(k, k));
             for j in 0..n {
-                left.entries[k * n + j] = self.scalars.product([reciprocal, left.at(k, j)]);
-                right.entries[k * n + j] = self.scalars.product([reciprocal, right.at(k, j)]);
+                left.entries[k * n + j] = self.product([reciprocal, left.at(k, j)]);
+                right.entries[k * n + j] = self.product([reciprocal, right.at(k, j)]);
             }
             for i in (0..n).filter(|&i| i != k) {
                 let factor = left.at(i, k);
@@ -286,20 +271,20 @@ impl<'g> Lowering<'_> {
     }
 
     fn reduced(&mut self, entry: Scalar, factor: Scalar, pivot: Scalar) -> Scalar {
-        let product = self.scalars.product([factor, pivot]);
-        self.scalars.sum(integer(0), [(entry, integer(1)), (product, integer(-1))])
+        let product = self.product([factor, pivot]);
+        self.sum(integer(0), [(entry, integer(1)), (product, integer(-1))])
     }
 
     /// The determinant of some rows and columns.
     fn determinant(&mut self, a: &Grid, rows: &[usize], columns: &[usize]) -> Scalar {
-        let [column, columns @ ..] = columns else { return self.scalars.number(integer(1)) };
+        let [column, columns @ ..] = columns else { return self.number(integer(1)) };
         let mut terms = Vec::new();
         for (position, &row) in rows.iter().enumerate() {
             let minor = self.determinant(a, &without(rows, row), columns);
             let sign = integer(if position % 2 == 0 { 1 } else { -1 });
-            terms.push((self.scalars.product([a.at(row, *column), minor]), sign));
+            terms.push((self.product([a.at(row, *column), minor]), sign));
         }
-        self.scalars.sum(integer(0), terms)
+        self.sum(integer(0), terms)
     }
 
     /// prefix · middle · suffix, vectors first.

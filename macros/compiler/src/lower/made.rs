@@ -4,7 +4,7 @@ use clebsch_symbolic::{Expr, Shape};
 
 use super::form::has_quaternions;
 use super::kernel::kernel;
-use super::{Grid, Hoisted, Hoisting, Kernel, Lowering, Scalar, Scalars, matrices};
+use super::{Grid, Hoisted, Hoisting, Kernel, Scalar, Scalars, matrices};
 use crate::derive::{FormulaTable, Heat, Id, MatrixForm, SystemFormulas};
 
 /// Makes the kernels of formulas. Their order counts: it is that in which scalars are numbered.
@@ -133,7 +133,7 @@ pub(super) fn of_matrices(scalars: &mut Scalars, forms: &[MatrixForm<'_>], hoist
 
 fn output(scalars: &mut Scalars, matrix: &MatrixForm<'_>) -> Grid {
     match matrix {
-        MatrixForm::Whole(expression) => grid(scalars, *expression),
+        MatrixForm::Whole(expression) => (*scalars.grid(*expression)).clone(),
         MatrixForm::Entries(shape, parts) => Grid { shape: *shape, entries: entries(scalars, parts) },
         MatrixForm::Columns(columns) => {
             let columns: Vec<Vec<Scalar>> = columns.iter().map(|parts| entries(scalars, parts)).collect();
@@ -145,10 +145,5 @@ fn output(scalars: &mut Scalars, matrix: &MatrixForm<'_>) -> Grid {
 
 /// The entries of expressions, one after the other.
 pub(super) fn entries(scalars: &mut Scalars, expressions: &[Expr<'_>]) -> Vec<Scalar> {
-    expressions.iter().flat_map(|&expr| grid(scalars, expr).entries).collect()
-}
-
-/// The scalars of an expression.
-pub(super) fn grid(scalars: &mut Scalars, expression: Expr<'_>) -> Grid {
-    (*Lowering { scalars }.grid(expression)).clone()
+    expressions.iter().flat_map(|&expr| scalars.grid(expr).entries.clone()).collect()
 }

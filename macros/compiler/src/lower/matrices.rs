@@ -15,7 +15,7 @@ use clebsch_symbolic::{
 
 use super::grid::by_components;
 use super::signs;
-use super::{Code, Cost, Input, Kernel, MatrixOperation, Whole};
+use super::{Code, Cost, Input, Kernel, MatrixOperation};
 use blocks::{times, total};
 pub(super) use hoisting::hoisted;
 pub(crate) use hoisting::is_direction;
@@ -112,7 +112,7 @@ impl Matrices {
     fn operation(&mut self, operation: MatrixOperation, operands: Vec<Code>, shape: Shape) -> Code {
         let first = operands.first().map_or(Shape::scalar(), |operand| self.shape(operand));
         let cost = operation.cost(shape, first);
-        self.shared(Code::Whole(Box::new(Whole { operation, operands, shape, cost })))
+        self.shared(Code::whole(operation, operands, shape, cost))
     }
 
     fn shape(&self, code: &Code) -> Shape {
@@ -485,8 +485,7 @@ fn outer_product<'g>(graph: &Graph, algebra: Algebra, a: Expr<'g>) -> Option<(Ve
 
 /// Entry (i, j) of a matrix.
 fn entry(a: &Code, i: usize, j: usize) -> Code {
-    let (operation, operands) = (MatrixOperation::Entry(i, j), vec![a.clone()]);
-    Code::Whole(Box::new(Whole { operation, operands, shape: Shape::scalar(), cost: Cost::default() }))
+    Code::whole(MatrixOperation::Entry(i, j), vec![a.clone()], Shape::scalar(), Cost::default())
 }
 
 /// constant + Σ coefficient · code.
@@ -503,6 +502,5 @@ fn argument(symbol: &Symbol) -> Code {
     if symbol.shape.is_scalar() {
         return Code::Read(input);
     }
-    let (operation, operands, shape) = (MatrixOperation::Argument(input), Vec::new(), symbol.shape);
-    Code::Whole(Box::new(Whole { operation, operands, shape, cost: Cost::default() }))
+    Code::whole(MatrixOperation::Argument(input), Vec::new(), symbol.shape, Cost::default())
 }

@@ -31,9 +31,8 @@ use crate::model::features::Feature;
 use crate::model::{Isotropy, System};
 
 use entries::{Grid, Scalar};
-use grid::Lowering;
 use kernel::{Hoisted, Hoisting};
-use made::{Maker, entries, grid as grid_of, plain, stack};
+use made::{Maker, entries, plain, stack};
 use scalar::{Rate, ScalarNode, Scalars};
 
 pub use code::{Code, Kernel, MatrixOperation, Whole, is_in_brackets};
@@ -252,7 +251,7 @@ impl<'g> Maker<'_, 'g> {
 
 /// Σ with its diagonal halved.
 fn energy_coefficients(formulas: &MechanicsFormulas<'_>, scalars: &mut Scalars) -> Kernel {
-    let mut grid = grid_of(scalars, formulas.inertia);
+    let mut grid = (*scalars.grid(formulas.inertia)).clone();
     let half = clebsch_symbolic::rational(1, 2);
     for i in 0..grid.shape.rows {
         let diagonal = i * grid.shape.columns + i;

@@ -14,7 +14,7 @@ const LONGEST_NAME: usize = 48;
 pub fn constants(scalars: &Scalars, hoisted: &Hoisted) -> Vec<String> {
     let mut names: Vec<String> = Vec::new();
     for (index, (scalar, is_negative)) in hoisted.kept().enumerate() {
-        let name = Names { scalars }.value(scalar, is_negative).filter(|name| is_short(name));
+        let name = scalars.name(scalar, is_negative).filter(|name| is_short(name));
         let name = name.unwrap_or_else(|| format!("k{index}"));
         names.push(distinct(name, &names));
     }
@@ -41,21 +41,17 @@ fn distinct(name: String, names: &[String]) -> String {
 /// A factor of a sum with its sign and its other factors.
 type Term = (Rational, Factors);
 
-struct Names<'a> {
-    scalars: &'a Scalars,
-}
-
-impl Names<'_> {
+impl Scalars {
     /// The name of a value or of its negative; `None` where there is no short one.
-    fn value(&self, scalar: Scalar, is_negative: bool) -> Option<String> {
+    fn name(&self, scalar: Scalar, is_negative: bool) -> Option<String> {
         work::spend(1);
         let sign = integer(if is_negative { -1 } else { 1 });
-        let name = match self.scalars.node(scalar) {
+        let name = match self.node(scalar) {
             ScalarNode::Sum(constant, terms) => {
-                let term = |(term, weight): &(Scalar, Rational)| (weight * &sign, self.scalars.factors(*term));
-                self.sum(constant * &sign, terms.iter().map(term).collect())
+                let term = |(term, weight): &(Scalar, Rational)| (weight * &sign, self.factors(*term));
+                self.name_of_sum(constant * &sign, terms.iter().map(term).collect())
             }
-            _ => self.product(&sign, &self.scalars.factors(scalar)),
+            _ => self.name_of_product(&sign, &self.factors(scalar)),
         };
         name.filter(|name| is_short(name))
     }
@@ -70,7 +66,7 @@ impl Names<'_> {
             None => parts.push((weight, factors)),
         };
         for (weight, factors) in terms {
-            let sum = factors.iter().enumerate().find_map(|(position, (base, power))| match self.scalars.node(*base) {
+            let sum = factors.iter().enumerate().find_map(|(position, (base, power))| match self.node(*base) {
                 ScalarNode::Sum(inner, terms) if *power == 1 => Some((position, inner, terms)),
                 _ => None,
             });
@@ -85,7 +81,7 @@ impl Names<'_> {
             }
             for (term, inner) in terms {
                 let mut factors = others.clone();
-                for (base, power) in self.scalars.factors(*term) {
+                for (base, power) in self.factors(*term) {
                     add_to(&mut factors, base, power);
                 }
                 add(weight * inner, factors);
@@ -96,13 +92,13 @@ impl Names<'_> {
     }
 
     /// What all terms have in common, `of` the rest of them.
-    fn sum(&self, constant: Rational, terms: Vec<Term>) -> Option<String> {
+    fn name_of_sum(&self, constant: Rational, terms: Vec<Term>) -> Option<String> {
         let (constant, terms) = self.multiplied_out(&constant, &terms).unwrap_or((constant, terms));
         let (Some((weight, factors)), true) = (terms.first(), constant.is_zero()) else {
             return self.joined(constant, &terms);
         };
         if terms.len() == 1 {
-            return self.product(weight, factors);
+            return self.name_of_product(weight, factors);
         }
         let size = weight.abs();
         let size = if terms.iter().all(|(weight, _)| weight.abs() == size) { size } else { integer(1) };
@@ -121,7 +117,7 @@ impl Names<'_> {
         if size.is_one() && common.is_empty() {
             Some(rest)
         } else {
-            Some(format!("{}_of_{rest}", self.product(&size, &common)?))
+            Some(format!("{}_of_{rest}", self.name_of_product(&size, &common)?))
         }
     }
 
@@ -141,12 +137,12 @@ impl Names<'_> {
                 (false, true) => "_minus_",
             };
             let entry = match factors.as_slice() {
-                [(only, 1)] if weight.abs().is_one() => self.entry(*only),
+                [(only, 1)] if weight.abs().is_one() => self.name_of_entry(*only),
                 _ => None,
             };
             name += &match &entry {
                 Some((base, index)) if field.as_ref() == Some(base) => index.clone(),
-                _ => self.product(&weight.abs(), factors)?,
+                _ => self.name_of_product(&weight.abs(), factors)?,
             };
             field = entry.map(|(base, _)| base);
             if name.len() > LONGEST_NAME {
@@ -157,8 +153,8 @@ impl Names<'_> {
     }
 
     /// The field and the index of an entry of a field that has several.
-    fn entry(&self, scalar: Scalar) -> Option<(String, String)> {
-        match self.scalars.node(scalar) {
+    fn name_of_entry(&self, scalar: Scalar) -> Option<(String, String)> {
+        match self.node(scalar) {
             ScalarNode::Input(input) if input.role != Role::StepSize && !self.is_single(input) => {
                 Some((field(input), index(input)))
             }
@@ -166,7 +162,7 @@ impl Names<'_> {
         }
     }
 
-    fn product(&self, weight: &Rational, factors: &Factors) -> Option<String> {
+    fn name_of_product(&self, weight: &Rational, factors: &Factors) -> Option<String> {
         let mut words = Vec::new();
         if weight.is_negative() {
             words.push("minus".to_string());
@@ -176,17 +172,18 @@ impl Names<'_> {
         }
         let (mut sums, mut below) = (Vec::new(), Vec::new());
         for &(base, power) in factors {
-            match self.scalars.node(base) {
+            match self.node(base) {
                 ScalarNode::Reciprocal(x) => {
-                    let inner = self.scalars.factors(*x);
+                    let inner = self.factors(*x);
                     below.extend(inner.into_iter().map(|(base, inner)| (base, inner * power)));
                 }
-                ScalarNode::Sum(..) if power == 1 => sums.push(self.base(base)?),
-                _ => words.push(self.raised(base, power)?),
+                ScalarNode::Sum(..) if power == 1 => sums.push(self.name_of_base(base)?),
+                _ => words.push(self.name_of_power(base, power)?),
             }
         }
         if !below.is_empty() {
-            let names: Option<Vec<String>> = below.into_iter().map(|(base, power)| self.raised(base, power)).collect();
+            let names: Option<Vec<String>> =
+                below.into_iter().map(|(base, power)| self.name_of_power(base, power)).collect();
             words.push(format!("per_{}", names?.join("_")));
         }
         if !sums.is_empty() {
@@ -196,8 +193,8 @@ impl Names<'_> {
         Some(words.join("_"))
     }
 
-    fn raised(&self, base: Scalar, power: u32) -> Option<String> {
-        let name = self.base(base)?;
+    fn name_of_power(&self, base: Scalar, power: u32) -> Option<String> {
+        let name = self.name_of_base(base)?;
         Some(match power {
             1 => name,
             2 => format!("{name}_squared"),
@@ -207,29 +204,29 @@ impl Names<'_> {
     }
 
     /// The name of what is no product.
-    fn base(&self, scalar: Scalar) -> Option<String> {
-        match self.scalars.node(scalar) {
+    fn name_of_base(&self, scalar: Scalar) -> Option<String> {
+        match self.node(scalar) {
             ScalarNode::Input(input) if input.role == Role::StepSize => Some("h".into()),
             ScalarNode::Input(input) if self.is_single(input) => Some(field(input)),
             ScalarNode::Input(input) => Some(format!("{}_{}", field(input), index(input))),
             ScalarNode::Pi => Some("pi".into()),
-            ScalarNode::Root(x, (1, 2)) => Some(format!("root_of_{}", self.value(*x, false)?)),
+            ScalarNode::Root(x, (1, 2)) => Some(format!("root_of_{}", self.name(*x, false)?)),
             ScalarNode::Root(x, (numerator, denominator)) => {
-                Some(format!("{}_to_{numerator}_over_{denominator}", self.value(*x, false)?))
+                Some(format!("{}_to_{numerator}_over_{denominator}", self.name(*x, false)?))
             }
-            ScalarNode::Function(function, x) => Some(format!("{}_of_{}", function.name(), self.value(*x, false)?)),
+            ScalarNode::Function(function, x) => Some(format!("{}_of_{}", function.name(), self.name(*x, false)?)),
             ScalarNode::Output(call, output) => {
-                let callee = &self.scalars.call_of(*call).callee;
+                let callee = &self.call_of(*call).callee;
                 let is_ours = !matches!(callee, Callee::Value(_) | Callee::Gradient(_));
                 is_ours.then(|| format!("{callee}_{}{}", output.row, output.column))
             }
-            ScalarNode::Sum(..) | ScalarNode::Product(_) | ScalarNode::Reciprocal(_) => self.value(scalar, false),
+            ScalarNode::Sum(..) | ScalarNode::Product(_) | ScalarNode::Reciprocal(_) => self.name(scalar, false),
         }
     }
 
     /// Whether an input has no other entries that are read.
     fn is_single(&self, input: &Input) -> bool {
-        input.is_vector && input.row == 0 && !self.scalars.has_other_entries(input)
+        input.is_vector && input.row == 0 && !self.has_other_entries(input)
     }
 }
 

@@ -33,7 +33,7 @@ impl KernelTable {
             for (index, local) in kernel.locals.iter().enumerate() {
                 writeln!(f, "    t{index} = {}", self.text(local, 0))?;
             }
-            for (position, code) in kernel.outputs.iter().flat_map(|(_, entries)| entries).enumerate() {
+            for (position, code) in kernel.entries().enumerate() {
                 let target =
                     if name == "constants" { self.constant_names[position].clone() } else { position.to_string() };
                 writeln!(f, "    {target} = {}", self.text(code, 0))?;

@@ -4,10 +4,10 @@ use std::ops::AddAssign;
 use std::rc::Rc;
 
 use clebsch_symbolic::{
-    Analytic, Function, Interner, One, Rational, Role, Shape, Symbol, Zero, integer, product, work,
+    Analytic, Function, Interner, One, Rational, Role, Shape, Symbol, Table, Zero, integer, product, work,
 };
 
-use super::entries::{Grid, Grids, Scalar};
+use super::entries::{Grid, Scalar};
 
 /// Factors with their exponents.
 pub(super) type Factors = Vec<(Scalar, u32)>;
@@ -141,8 +141,10 @@ pub struct Scalars {
     nodes: Interner<ScalarNode>,
     rates: Vec<Rate>,
     calls: Interner<Call>,
-    /// The grids of expressions whose scalars are here.
-    pub(super) lowered: Grids,
+    /// The grids of expressions of one graph, by their positions: kernels have many expressions in common.
+    pub(super) grids: Table<usize, Rc<Grid>>,
+    /// Which expressions are fixed once per stepper.
+    pub(super) constant: Table<usize, bool>,
 }
 
 impl Scalars {
@@ -356,11 +358,11 @@ impl Scalars {
     }
 
     /// The entries of what a call returns.
-    pub fn call(&mut self, call: Call, leaf: usize, shape: Shape) -> Vec<Scalar> {
-        let rate = self.rate_of(call.arguments.iter().flat_map(|argument| argument.entries.iter().copied()));
-        let (index, _) = self.calls.intern(call);
+    pub fn call(&mut self, callee: Callee, arguments: Vec<Rc<Grid>>, leaf: usize, shape: Shape) -> Grid {
+        let rate = self.rate_of(arguments.iter().flat_map(|argument| argument.entries.iter().copied()));
+        let (index, _) = self.calls.intern(Call { callee, arguments });
         let entry = |(row, column)| ScalarNode::Output(CallId(index as u32), Output { leaf, row, column, shape });
-        shape.positions().map(entry).map(|node| self.intern(node, rate)).collect()
+        Grid::from_fn(shape, |place| self.intern(entry(place), rate))
     }
 
     /// The call behind an identity.

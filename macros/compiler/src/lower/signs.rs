@@ -18,7 +18,7 @@ type Signed = (bool, Code);
 pub(super) fn moved(kernel: Kernel) -> Kernel {
     let mut signs = Signs::default();
     for local in kernel.locals {
-        let (is_negative, code) = signs.split(local);
+        let (is_negative, code) = signs.split(local, true);
         if let Code::Local(place) = code {
             signs.places.push((is_negative, place));
             continue;
@@ -84,24 +84,16 @@ struct Signs {
 impl Signs {
     /// A code with its sign in it.
     fn whole(&mut self, code: Code) -> Code {
-        let (is_negative, code) = self.split(code);
+        let (is_negative, code) = self.split(code, true);
         match self.shape(&code).filter(|_| is_negative) {
-            Some(shape) => {
-                let operation = MatrixOperation::Sum(vec![integer(-1)]);
-                Code::Whole(Box::new(Whole { operation, operands: vec![code], shape, cost: Cost::default() }))
-            }
+            Some(shape) => Code::whole(MatrixOperation::Sum(vec![integer(-1)]), vec![code], shape, Cost::default()),
             None if is_negative => negative(code),
             None => code,
         }
     }
 
-    /// A code apart from its sign, written by itself.
-    fn split(&mut self, code: Code) -> Signed {
-        self.split_at(code, true)
-    }
-
-    /// The same; `is_head` where no factor is written before it that would be multiplied first.
-    fn split_at(&mut self, code: Code, is_head: bool) -> Signed {
+    /// A code apart from its sign; `is_head` where no factor is written before it that would be multiplied first.
+    fn split(&mut self, code: Code, is_head: bool) -> Signed {
         work::spend(1);
         match code {
             Code::Number(value) if value.is_negative() => (true, Code::Number(-value)),
@@ -113,7 +105,7 @@ impl Signs {
             Code::Sum(constant, terms) => self.sum(constant, terms, is_head),
             Code::Product(factors) => self.product(factors, is_head),
             Code::Reciprocal(x) => {
-                let (is_negative, x) = self.split(*x);
+                let (is_negative, x) = self.split(*x, true);
                 (is_negative, Code::Reciprocal(Box::new(x)))
             }
             Code::Whole(whole) => self.matrix(*whole),
@@ -140,7 +132,7 @@ impl Signs {
     fn weighted(&mut self, weight: Rational, term: Code, is_head: bool) -> (Rational, Code) {
         let is_head = is_head && is_exact(&weight);
         let is_bracketed = is_bracketed(&term);
-        let (is_negative, term) = self.split_at(term, is_head);
+        let (is_negative, term) = self.split(term, is_head);
         // a number times −(b c) is not the number times b, times c
         let term = if is_bracketed && is_product(&term) && !is_head { bracketed(term) } else { term };
         (if is_negative { -weight } else { weight }, term)
@@ -152,7 +144,7 @@ impl Signs {
         for factor in factors {
             let is_bracketed = is_bracketed(&factor);
             let is_head = is_head && parts.is_empty();
-            let (other, part) = self.split_at(factor, is_head);
+            let (other, part) = self.split(factor, is_head);
             is_negative ^= other;
             // a (−(b c)) is not −((a b) c), and a (−(1/b)) no quotient: they stay in their brackets
             let is_bound = is_product(&part) && !is_head || matches!(part, Code::Reciprocal(_));
@@ -181,17 +173,15 @@ impl Signs {
                     return (is_negative, parts.remove(0).1);
                 }
                 let (weights, operands) = parts.into_iter().unzip();
-                let operation = MatrixOperation::Sum(weights);
-                (is_negative, Code::Whole(Box::new(Whole { operation, operands, shape, cost })))
+                (is_negative, Code::whole(MatrixOperation::Sum(weights), operands, shape, cost))
             }
             operation => {
                 let (is_linear, mut is_negative) = (operation.is_linear(), false);
-                let code = Code::Whole(Box::new(Whole { operation, operands, shape, cost }));
-                let code = code.of(&mut |operand| {
+                let code = Code::whole(operation, operands, shape, cost).of(&mut |operand| {
                     if !is_linear {
                         return self.whole(operand);
                     }
-                    let (other, operand) = self.split(operand);
+                    let (other, operand) = self.split(operand, true);
                     is_negative ^= other;
                     operand
                 });

@@ -210,12 +210,13 @@ impl<'g> Maker<'_, 'g> {
 /// The components of the momentum and the chart coordinates that some kernels read, by their indices among those of all factors.
 fn read(formulas: &SystemFormulas<'_>, kernels: &[(Id, Kernel)]) -> (BTreeSet<usize>, BTreeSet<usize>) {
     let (mut momenta, mut coordinates) = (BTreeSet::new(), BTreeSet::new());
-    for (role, row) in kernels.iter().flat_map(|(_, kernel)| kernel.rows_read()) {
-        match role {
-            Role::Momentum(k) => momenta.insert(formulas.model.offset(k) + row),
-            Role::Chart(block) => coordinates.insert(formulas.symbols.blocks[block].offset + row),
-            _ => false,
-        };
+    for (input, shape) in kernels.iter().flat_map(|(_, kernel)| kernel.inputs()) {
+        let rows = input.row..input.row + shape.rows;
+        match input.role {
+            Role::Momentum(k) => momenta.extend(rows.map(|row| formulas.model.offset(k) + row)),
+            Role::Chart(block) => coordinates.extend(rows.map(|row| formulas.symbols.blocks[block].offset + row)),
+            _ => {}
+        }
     }
     (momenta, coordinates)
 }

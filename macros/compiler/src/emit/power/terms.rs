@@ -114,7 +114,8 @@ impl<'e, 'a, 'g> Terms<'e, 'a, 'g> {
         added: TokenStream,
     ) -> TokenStream {
         let inputs = kernel.inputs();
-        let is_read = |place: &usize| inputs.iter().any(|input| matches!(input.role, Role::At(at, _) if at == *place));
+        let is_read =
+            |place: &usize| inputs.iter().any(|(input, _)| matches!(input.role, Role::At(at, _) if at == *place));
         let sites: Vec<usize> = (0..places.len()).filter(is_read).collect();
         let added = self.reading((places, own), &sites, kernel, quote!(break 'term), added);
         quote!('term: { #found #added })
@@ -173,7 +174,7 @@ impl<'e, 'a, 'g> Terms<'e, 'a, 'g> {
         let inputs = kernel.inputs();
         let is_read = |leaf: &Leaf<'g>| {
             let role = leaf.symbol.role();
-            inputs.iter().any(|input| Some(input.role) == role)
+            inputs.iter().any(|(input, _)| Some(input.role) == role)
         };
         let of_sites = self.power.parameters.iter().filter(|parameter| parameter.per_site);
         let read = of_sites.filter(|parameter| parameter.leaves.iter().any(is_read));

@@ -8,9 +8,9 @@ use crate::lower::{Code, Kernel};
 /// one output each; and the rest.
 pub(in crate::lower) fn hoisted(kernel: Kernel) -> (Kernel, Kernel) {
     let depends = kernel.depends_on(|role| matches!(role, Role::Chart(_)) || is_direction(role));
-    let outputs = kernel.outputs.iter().flat_map(|(_, entries)| entries);
     let moving = kernel.locals.iter().zip(&depends).filter(|(_, depends)| **depends).map(|(code, _)| code);
-    let mut terms: Vec<usize> = moving.chain(outputs).flat_map(Code::locals).filter(|&index| !depends[index]).collect();
+    let mut terms: Vec<usize> =
+        moving.chain(kernel.entries()).flat_map(Code::locals).filter(|&index| !depends[index]).collect();
     terms.sort_unstable();
     terms.dedup();
     // the numbers of terms among those of their kind
