@@ -139,10 +139,8 @@ impl<'g> Expr<'g> {
         let (scale, plain) = self.factor().split();
         let scale = graph.scalar(scale);
         let plain = graph.collect(self.shape(), [plain]);
-        let value = match plain.is_identity() {
-            true => graph.integer(1),
-            false => plain.atom_of(Operation::Determinant, Shape::scalar()),
-        };
+        let is_identity = plain.is_identity();
+        let value = if is_identity { graph.integer(1) } else { plain.atom_of(Operation::Determinant, Shape::scalar()) };
         scale.powi(n as i32) * value
     }
 

@@ -411,20 +411,15 @@ impl Builder<'_, '_> {
         let (known, kind): (_, fn(usize) -> Code) = match &mut self.hoisting {
             Hoisting::Terms(_, terms) if rate == Rate::Step => (terms, Code::Term),
             Hoisting::Terms(constants, _) | Hoisting::Constants(constants) if hoisted => (constants, Code::Constant),
-            _ => return self.entry(scalar),
+            _ => match self.scalars.node(scalar) {
+                ScalarNode::Input(input) => return Code::Read(input.clone()),
+                ScalarNode::Pi => return Code::Pi,
+                ScalarNode::Sum(value, _) => return Code::Number(value.clone()),
+                // by construction: leaves are entries or have been taken out
+                node => unreachable!("a leaf that is neither read nor taken out: {node:?}"),
+            },
         };
         let (is_negative, place) = known.index(self.scalars, scalar);
         if is_negative { Code::Sum(integer(0), vec![(integer(-1), kind(place))]) } else { kind(place) }
-    }
-
-    /// What is simply read.
-    fn entry(&self, scalar: Scalar) -> Code {
-        match self.scalars.node(scalar) {
-            ScalarNode::Input(input) => Code::Read(input.clone()),
-            ScalarNode::Pi => Code::Pi,
-            ScalarNode::Sum(value, _) => Code::Number(value.clone()),
-            // by construction: leaves are entries or have been taken out
-            node => unreachable!("a leaf that is neither read nor taken out: {node:?}"),
-        }
     }
 }

@@ -25,9 +25,9 @@ impl<'a, 'g> Maker<'a, 'g> {
         Maker { system, rows, of_steps: Vec::new(), scalars, hoisted, table: Vec::new() }
     }
 
-    /// Takes in a kernel.
-    pub(super) fn add(&mut self, id: Id, kernel: Kernel) {
-        self.table.push((id, kernel));
+    /// Makes a kernel.
+    pub(super) fn add(&mut self, id: Id, kernel: impl FnOnce(&mut Scalars, &mut Hoisted) -> Kernel) {
+        self.table.push((id, kernel(&mut self.scalars, &mut self.hoisted)));
     }
 
     pub(super) fn has(&self, id: Id) -> bool {
@@ -38,7 +38,7 @@ impl<'a, 'g> Maker<'a, 'g> {
     pub(super) fn rows(&mut self, ids: impl IntoIterator<Item = Id>) {
         for id in ids {
             let kernel = self.of_row(id);
-            self.add(id, kernel);
+            self.table.push((id, kernel));
         }
     }
 
@@ -85,8 +85,7 @@ impl<'a, 'g> Maker<'a, 'g> {
 
     /// The kernel of matrices without anything taken out.
     pub(super) fn matrices(&mut self, id: Id, forms: &[MatrixForm<'g>]) {
-        let kernel = of_matrices(&mut self.scalars, forms, Hoisting::Nothing);
-        self.add(id, kernel);
+        self.add(id, |scalars, _| of_matrices(scalars, forms, Hoisting::Nothing));
     }
 }
 

@@ -28,8 +28,7 @@ pub(super) fn kernel(expressions: &[Expr<'_>]) -> Kernel {
 
 /// The same for a person to read: as few statements as there are shared terms, and matrices of blocks entry by entry.
 pub(super) fn short_kernel(expressions: &[Expr<'_>]) -> Kernel {
-    let lowering = Matrices { joins_blocks: true, ..Matrices::default() };
-    lowering.kernel(|lowering| lowering.each(expressions)).without_unused().nested()
+    short(|lowering| lowering.each(expressions))
 }
 
 /// Vectors as one.
@@ -39,22 +38,26 @@ pub(super) fn below<'g>(vectors: &[Expr<'g>]) -> Vec<Expr<'g>> {
 
 /// Numbers, one after the other in one output, for a person to read.
 pub(super) fn short_list(expressions: &[Expr<'_>]) -> Kernel {
+    short(|lowering| vec![column(expressions.iter().map(|&expr| lowering.value(expr)).collect())])
+}
+
+fn short(outputs: impl FnOnce(&mut Matrices) -> Vec<(Shape, Vec<Code>)>) -> Kernel {
     let lowering = Matrices { joins_blocks: true, ..Matrices::default() };
-    let list = |lowering: &mut Matrices| expressions.iter().map(|&expr| lowering.value(expr)).collect();
-    lowering.kernel(|lowering| vec![column(list(lowering))]).without_unused().nested()
+    lowering.kernel(outputs).without_unused().nested()
 }
 
 /// The largest entry of each expression, in one output.
 pub(super) fn largest(expressions: &[Expr<'_>]) -> Kernel {
-    let largest = |lowering: &mut Matrices, expr: Expr<'_>| {
-        let value = lowering.value(expr);
-        if expr.shape().is_scalar() {
-            return value;
-        }
-        lowering.operation(MatrixOperation::Largest, vec![value], Shape::scalar())
-    };
-    let all = |lowering: &mut Matrices| expressions.iter().map(|&expr| largest(lowering, expr)).collect();
-    Matrices::default().kernel(|lowering| vec![column(all(lowering))])
+    Matrices::default().kernel(|lowering| {
+        let largest = expressions.iter().map(|&expr| {
+            if expr.shape().is_scalar() {
+                lowering.value(expr)
+            } else {
+                lowering.of_matrix(MatrixOperation::Largest, expr, Shape::scalar())
+            }
+        });
+        vec![column(largest.collect())]
+    })
 }
 
 fn column(entries: Vec<Code>) -> (Shape, Vec<Code>) {

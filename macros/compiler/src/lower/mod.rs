@@ -39,7 +39,6 @@ pub use code::{Code, Kernel, MatrixOperation, Whole, is_in_brackets};
 pub use cost::Cost;
 pub use form::{Form, LARGEST_UNROLLED, MOST_UNKNOWNS};
 pub(crate) use matrices::is_direction;
-pub(crate) use print::sign;
 pub use program::{KernelTable, MechanicsProgram, Program, SteeredProgram, Step};
 pub use scalar::{Callee, Input, Output};
 pub use stepping::Solve;
@@ -147,13 +146,11 @@ fn too_large(model: &System<'_>, size: String) -> Diagnostic {
 impl<'g> Maker<'_, 'g> {
     /// The kernels of a system that is stepped, apart from its steps, and how the gradient of a site is gathered.
     fn system(&mut self, formulas: &MechanicsFormulas<'g>) -> Option<Stencil<'g>> {
-        let constants = self.hoisted.kernel(&mut self.scalars, Hoisting::Nothing);
-        self.add(Id::Constants, constants);
+        self.add(Id::Constants, |scalars, hoisted| hoisted.kernel(scalars, Hoisting::Nothing));
         let gathered = self.terms(formulas);
         self.rows([Id::Action, Id::MomentumMap]);
         if formulas.collocation.is_some() {
-            let map = stack(&mut self.scalars, &formulas.momentum_map, Hoisting::Nothing);
-            self.add(Id::MomentumOfStep, map);
+            self.add(Id::MomentumOfStep, |scalars, _| stack(scalars, &formulas.momentum_map, Hoisting::Nothing));
         }
         self.rows([Id::Coadjoint, Id::Legendre, Id::LegendreNext]);
         self.known_rows([Id::SynchronizedMomentum]);
@@ -201,14 +198,10 @@ impl<'g> Maker<'_, 'g> {
     fn inertia(&mut self, formulas: &MechanicsFormulas<'g>) {
         match formulas.uniform_inertia {
             None if self.scalars.keeps_matrices => self.rows([Id::Inertia]),
-            uniform => {
-                let inertia = plain(&mut self.scalars, &[uniform.unwrap_or(formulas.inertia)]);
-                self.add(Id::Inertia, inertia);
-            }
+            uniform => self.add(Id::Inertia, |scalars, _| plain(scalars, &[uniform.unwrap_or(formulas.inertia)])),
         }
         if !self.scalars.keeps_matrices {
-            let coefficients = energy_coefficients(formulas, &mut self.scalars);
-            self.add(Id::EnergyCoefficients, coefficients);
+            self.add(Id::EnergyCoefficients, |scalars, _| energy_coefficients(formulas, scalars));
         }
     }
 
@@ -217,8 +210,7 @@ impl<'g> Maker<'_, 'g> {
         let parts = [Id::Lagrangian, Id::LagrangianGradient, Id::LagrangianHessian].map(|id| self.rows.value(id));
         let parts: Vec<Expr<'_>> = parts.into_iter().flatten().flatten().copied().collect();
         if !parts.is_empty() {
-            let velocity = plain(&mut self.scalars, &parts);
-            self.add(Id::Lagrangian, velocity);
+            self.add(Id::Lagrangian, |scalars, _| plain(scalars, &parts));
         }
     }
 
@@ -226,13 +218,13 @@ impl<'g> Maker<'_, 'g> {
     fn membership(&mut self) {
         let Some(equations) = self.rows.value(Id::Membership) else { return };
         if self.scalars.keeps_matrices {
-            return self.add(Id::Membership, matrices::largest(equations));
+            return self.add(Id::Membership, |_, _| matrices::largest(equations));
         }
         let all = entries(&mut self.scalars, equations).into_iter();
         let entries: Vec<Scalar> = all.filter(|&entry| !self.scalars.is_zero(entry)).collect();
         if !entries.is_empty() {
-            let membership = kernel::kernel(&mut self.scalars, &[Grid::vector(entries)], Hoisting::Nothing);
-            self.add(Id::Membership, membership);
+            let equations = [Grid::vector(entries)];
+            self.add(Id::Membership, |scalars, _| kernel::kernel(scalars, &equations, Hoisting::Nothing));
         }
     }
 
@@ -241,11 +233,10 @@ impl<'g> Maker<'_, 'g> {
         if formulas.is_free || formulas.model.isotropy != Isotropy::Fixed {
             return;
         }
-        let kernel = match formulas.projection.as_ref().filter(|_| self.scalars.keeps_matrices) {
-            Some(projection) => stack(&mut self.scalars, projection, Hoisting::Nothing),
-            None => plain(&mut self.scalars, &[formulas.generator_matrix()]),
-        };
-        self.add(Id::Isotropy, kernel);
+        self.add(Id::Isotropy, |scalars, _| match &formulas.projection {
+            Some(projection) if scalars.keeps_matrices => stack(scalars, projection, Hoisting::Nothing),
+            _ => plain(scalars, &[formulas.generator_matrix()]),
+        });
     }
 }
 

@@ -5,8 +5,7 @@ use std::collections::BinaryHeap;
 
 use clebsch_symbolic::{Table, work};
 
-/// The index of an operation of a kernel.
-type Id = usize;
+use super::kernel::Id;
 
 /// Two factors, the lesser first.
 type Pair = (Id, Id);

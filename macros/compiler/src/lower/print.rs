@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use clebsch_symbolic::{Analytic, Operation, Rational, integer};
+use clebsch_symbolic::{Analytic, Operation, Rational, integer, joined};
 
 use super::{Callee, Code, Form, Input, Kernel, KernelTable, LARGEST_UNROLLED, MOST_UNKNOWNS, MatrixOperation};
 use super::{MechanicsProgram, Program, Solve, Whole};
@@ -125,24 +125,15 @@ impl KernelTable {
 
 /// Σ weight · term.
 fn sum<'a>(terms: impl Iterator<Item = (&'a Rational, String)>) -> String {
-    terms.fold(String::new(), |text, (weight, term)| {
-        let (sign, size) = (sign(text.is_empty(), weight.is_negative()), weight.abs());
-        text + sign + &if size == integer(1) { term } else { format!("{size}*{term}") }
-    })
+    let written = |(weight, term): (&Rational, String)| {
+        let size = weight.abs();
+        (weight.is_negative(), if size == integer(1) { term } else { format!("{size}*{term}") })
+    };
+    joined(terms.map(written), '-')
 }
 
 fn bracketed(text: String, is_bracketed: bool) -> String {
     if is_bracketed { format!("({text})") } else { text }
-}
-
-/// What stands before a term of a sum.
-pub(crate) fn sign(is_first: bool, is_negative: bool) -> &'static str {
-    match (is_first, is_negative) {
-        (true, false) => "",
-        (true, true) => "-",
-        (false, false) => " + ",
-        (false, true) => " - ",
-    }
 }
 
 /// A code with the shared terms of its kernel put in.

@@ -41,14 +41,10 @@ impl<'g> Maker<'_, 'g> {
     /// The kernels of all substeps, and of the moves that they have in common.
     pub(super) fn steps(&mut self, formulas: &MechanicsFormulas<'g>) -> Vec<Step> {
         let steps = (0..formulas.substeps.len()).map(|index| self.step(formulas, index)).collect();
-        // what serves the inverse Legendre transform alone is never stepped
-        self.table.retain(|(id, _)| match id {
-            Id::StartForce(index) | Id::MovingForce(index) | Id::EndForce(index) | Id::EndKick(index) => {
-                *index < formulas.stepped
-            }
-            Id::StartGradient(index) | Id::EndGradient(index) | Id::CoupledGradient(index) => *index < formulas.stepped,
-            Id::MomentumAfter(index) | Id::RestKick(index) => *index < formulas.stepped,
-            _ => true,
+        // the inverse Legendre transform alone is kicked and solved, and never stepped
+        self.table.retain(|(id, _)| {
+            let is_solved = id.equation().is_some() || matches!(id, Id::StartKick(_));
+            is_solved || id.substep().is_none_or(|index| index < formulas.stepped)
         });
         steps
     }
@@ -86,7 +82,7 @@ impl<'g> Maker<'_, 'g> {
         let by_increments = moves.map(|(_, kernel)| kernel.cost().total()).sum::<usize>();
         let serves = formulas.weighted().is_empty() && !formulas.turns_whole();
         if serves && displacement.cost().total() < by_increments {
-            self.add(Id::Displacement, displacement);
+            self.add(Id::Displacement, |_, _| displacement);
         }
     }
 
@@ -96,8 +92,7 @@ impl<'g> Maker<'_, 'g> {
         let slopes: Vec<_> = collocation.velocity.iter().chain(&collocation.force).copied().collect();
         self.known_rows([Id::Guess]);
         for (id, expressions) in [(Id::HamiltonEquations, &slopes), (Id::Covector, &collocation.lift)] {
-            let kernel = separate(&mut self.scalars, expressions, Hoisting::Constants(&mut self.hoisted));
-            self.add(id, kernel);
+            self.add(id, |scalars, hoisted| separate(scalars, expressions, Hoisting::Constants(hoisted)));
         }
     }
 

@@ -6,7 +6,6 @@ use super::{Hoisting, matrices};
 use crate::derive::{Choice, Id, MechanicsFormulas, StepOfChoice};
 
 impl<'g> Maker<'_, 'g> {
-    /// The kernels of variations, where they are asked for.
     pub(super) fn variations(&mut self, formulas: &MechanicsFormulas<'g>) {
         if !formulas.model.has_variations() {
             return;
@@ -16,8 +15,7 @@ impl<'g> Maker<'_, 'g> {
         let edges = formulas.substeps.iter().take(formulas.stepped).filter_map(|substep| substep.variation.as_ref());
         for (index, variation) in edges.enumerate() {
             for (id, matrices) in formulas.edge_kernels(index, variation, self.scalars.keeps_matrices) {
-                let kernel = of_matrices(&mut self.scalars, &matrices, Hoisting::Constants(&mut self.hoisted));
-                self.add(id, kernel);
+                self.add(id, |scalars, hoisted| of_matrices(scalars, &matrices, Hoisting::Constants(hoisted)));
             }
         }
     }
@@ -25,7 +23,7 @@ impl<'g> Maker<'_, 'g> {
     /// J(q, (E_j)_Q(q)), column by column; with whole matrices J(q, ξ_Q(q)).
     pub(super) fn orbit_metric(&mut self) {
         match self.rows.value(Id::OrbitMetric).filter(|_| self.scalars.keeps_matrices) {
-            Some(momenta) => self.add(Id::OrbitMetric, matrices::kernel(&matrices::below(momenta))),
+            Some(momenta) => self.add(Id::OrbitMetric, |_, _| matrices::kernel(&matrices::below(momenta))),
             None => self.matrices(Id::OrbitMetric, &[self.system.orbit_metric()]),
         }
     }
@@ -41,8 +39,7 @@ impl<'g> Maker<'_, 'g> {
         } else {
             [Id::ByInput, Id::Bend, Id::Bracket].into_iter().for_each(|id| made(self, id));
         }
-        let approach = stack(&mut self.scalars, &choice.steering.approach, Hoisting::Nothing);
-        self.add(Id::Approach, approach);
+        self.add(Id::Approach, |scalars, _| stack(scalars, &choice.steering.approach, Hoisting::Nothing));
         self.rows([Id::Price]);
         if !is_steered {
             made(self, Id::PriceExpanded);
@@ -52,7 +49,6 @@ impl<'g> Maker<'_, 'g> {
         made(self, Id::BoundsExpanded);
     }
 
-    /// The kernels of the price of the end, where there is one.
     pub(super) fn price_of_end(&mut self) {
         if let Some(endpoint) = &self.system.endpoint {
             self.matrices(Id::PriceOfEndExpanded, &self.system.endpoint_expanded(endpoint));

@@ -2,14 +2,14 @@
 
 use std::collections::BTreeSet;
 
-use clebsch_symbolic::{Expr, Role, Shape};
+use clebsch_symbolic::{Expr, Role, Shape, joined};
 use proc_macro2::{Ident, TokenStream};
 use quote::{format_ident, quote};
 
 use crate::derive::{Home, Id, SiteTerm, Stencil};
 use crate::emit::Emitter;
 use crate::emit::scope::Scope;
-use crate::lower::{Code, Kernel, sign};
+use crate::lower::{Code, Kernel};
 use crate::model::{Leaf, Linear, Power, SiteIndex};
 
 /// What the code of all terms is made of.
@@ -225,11 +225,11 @@ fn linear(expr: Expr<'_>, length: &Option<TokenStream>) -> TokenStream {
     if terms.is_empty() || constant != 0 {
         terms.push((constant, String::new()));
     }
-    let text = terms.into_iter().fold(String::new(), |text, (weight, name)| {
-        let (sign, size) = (sign(text.is_empty(), weight < 0), weight.unsigned_abs());
-        let product = if name.is_empty() { size.to_string() } else { format!("{size} * {name}") };
-        text + sign + if size == 1 && !name.is_empty() { &name } else { &product }
-    });
+    let written = |(weight, name): (i64, String)| match (weight.unsigned_abs(), name.is_empty()) {
+        (size, true) => (weight < 0, size.to_string()),
+        (1, false) => (weight < 0, name),
+        (size, false) => (weight < 0, format!("{size} * {name}")),
+    };
     // by construction: names, numbers and operators are tokens
-    text.parse().unwrap_or_default()
+    joined(terms.into_iter().map(written), '-').parse().unwrap_or_default()
 }
