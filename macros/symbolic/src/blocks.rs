@@ -4,6 +4,8 @@
 //! become products of blocks. Expressions are not kept in this form: (F − I)(F + I)⁻¹ has to stay whole until F is put in, for then it
 //! simplifies as a whole.
 
+use std::ops::Range;
+
 use num_traits::Zero;
 
 use crate::memory::Images;
@@ -49,16 +51,13 @@ impl<'g> Expr<'g> {
             ExprNode::Of(Operation::DiagonalMatrix, inner) if shape.is_scalar() => graph.expr(*inner).entry(row, 0),
             ExprNode::Of(Operation::Embed(r, c), inner) => {
                 let inner = graph.expr(*inner);
-                // where the block and the embedded matrix meet
-                let (first_row, first_column) = (row.max(*r), column.max(*c));
-                let last_row = (row + shape.rows).min(r + inner.shape().rows);
-                let last_column = (column + shape.columns).min(c + inner.shape().columns);
-                if last_row <= first_row || last_column <= first_column {
+                let rows = common((row, shape.rows), (*r, inner.shape().rows));
+                let columns = common((column, shape.columns), (*c, inner.shape().columns));
+                if rows.is_empty() || columns.is_empty() {
                     return graph.zero(shape);
                 }
-                let part = Shape::new(last_row - first_row, last_column - first_column);
-                let part = inner.block(first_row - r, first_column - c, part);
-                part.embed(shape, first_row - row, first_column - column)
+                let part = inner.block(rows.start - r, columns.start - c, Shape::new(rows.len(), columns.len()));
+                part.embed(shape, rows.start - row, columns.start - column)
             }
             ExprNode::Sum(terms) if terms.len() == 1 && terms[0].word.len() > 1 => {
                 self.block_of_word(&terms[0].word, row, column, shape)
@@ -114,6 +113,11 @@ impl<'g> Expr<'g> {
             _ => plain.atom_of(Operation::Embed(row, column), shape),
         })
     }
+}
+
+/// The indices that two ranges have in common, each from its first index and its length.
+pub(crate) fn common((a, length): (usize, usize), (b, other): (usize, usize)) -> Range<usize> {
+    a.max(b)..(a + length).min(b + other)
 }
 
 /// A matrix that is zero outside of a part of it.

@@ -2,6 +2,7 @@
 
 use num_traits::{One, Zero};
 
+use crate::blocks::common;
 use crate::node::{Analytic, ExprNode, Id, Operation, Term};
 use crate::{Expr, Graph, Group, Property, Rational, Shape};
 
@@ -239,13 +240,12 @@ impl Graph {
             }
             ExprNode::Literal(entries) => self.number(entries.iter().step_by(n + 1).cloned().sum()),
             ExprNode::Of(Operation::Embed(row, column), inner) => {
-                // the part on the diagonal of the whole
-                let (inner, first) = (self.expr(*inner), (*row).max(*column));
-                let last = (row + inner.shape().rows).min(column + inner.shape().columns);
-                match last.checked_sub(first) {
-                    Some(size) if size > 0 => inner.block(first - row, first - column, Shape::square(size)).trace(),
-                    _ => self.integer(0),
+                let inner = self.expr(*inner);
+                let diagonal = common((*row, inner.shape().rows), (*column, inner.shape().columns));
+                if diagonal.is_empty() {
+                    return self.integer(0);
                 }
+                inner.block(diagonal.start - row, diagonal.start - column, Shape::square(diagonal.len())).trace()
             }
             _ => self.intern(ExprNode::Trace(vec![letter]), Shape::scalar()),
         }

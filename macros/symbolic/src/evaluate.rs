@@ -104,7 +104,6 @@ fn stumpff(k: u8, s: f64) -> f64 {
     sum
 }
 
-/// The values of expressions.
 pub(crate) type Values<K> = Table<Id, Matrix<K>>;
 
 /// A matrix of numbers, row by row.

@@ -52,7 +52,6 @@ impl Images {
     }
 }
 
-/// The maps that have been asked for.
 pub(crate) type Maps = RefCell<Table<Map, Rc<Images>>>;
 
 impl Graph {

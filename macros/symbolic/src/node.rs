@@ -11,7 +11,6 @@ use crate::{Algebra, Expr, Fraction, Graph, Rational, Symbol};
 #[derive(Copy, Clone, PartialEq, Eq, Hash, PartialOrd, Ord, Debug)]
 pub(crate) struct Id(pub(crate) u32);
 
-/// The exponent of a scalar factor.
 pub(crate) type Exponent = Fraction;
 
 /// coefficient · Π base^exponent · word; the empty word is the identity (the number one, if scalar).

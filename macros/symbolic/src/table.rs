@@ -72,9 +72,7 @@ impl<K: Hash + Eq> Interner<K> {
             self.slots[slot] = position as u32 + 1;
         }
     }
-}
 
-impl<K> Interner<K> {
     /// The value at a position.
     pub fn value(&self, position: usize) -> &K {
         &self.values[position]

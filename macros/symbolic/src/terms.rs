@@ -4,6 +4,7 @@ use std::cmp::Ordering;
 
 use num_traits::{One, Zero};
 
+use crate::blocks::common;
 use crate::node::{Exponent, ExprNode, Id, Operation, Term};
 use crate::rational::product;
 use crate::{Expr, Graph, Group, Property, Rational, Shape, integer, work};
@@ -295,14 +296,12 @@ impl Graph {
         block: impl Fn(Expr<'g>, usize, usize, Shape) -> Expr<'g>,
     ) -> Expr<'g> {
         let (left, right) = (a.shape(), b.shape());
-        let start = column.max(row);
-        let end = (column + left.columns).min(row + right.rows);
-        if start >= end {
+        let inner = common((column, left.columns), (row, right.rows));
+        if inner.is_empty() {
             return self.zero(Shape::new(left.rows, right.columns));
         }
-        let size = end - start;
-        let a = block(a, 0, start - column, Shape::new(left.rows, size));
-        a * block(b, start - row, 0, Shape::new(size, right.columns))
+        let a = block(a, 0, inner.start - column, Shape::new(left.rows, inner.len()));
+        a * block(b, inner.start - row, 0, Shape::new(inner.len(), right.columns))
     }
 
     /// The rows of a matrix of numbers between the first and the last that are not zero, with the index of the first: none for zero,

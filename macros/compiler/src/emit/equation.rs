@@ -1,6 +1,6 @@
 //! The types of the momentum equations: closed forms, and what Newton's method needs.
 
-use clebsch_symbolic::Shape;
+use clebsch_symbolic::{Role, Shape};
 use proc_macro2::{Ident, TokenStream};
 use quote::{format_ident, quote};
 
@@ -10,7 +10,7 @@ use super::function::{self, Body, Function, Words};
 use super::functions::{EQUATION, SOLVER};
 use super::scope::{Scope, index, size};
 use crate::derive::{Id, Solution, Structure};
-use crate::lower::{Kernel, Solve, is_direction};
+use crate::lower::{Kernel, Solve};
 
 /// The type of an equation, while it is made.
 pub(super) struct EquationType<'e, 'a, 'g> {
@@ -181,6 +181,7 @@ impl<'e, 'a, 'g> EquationType<'e, 'a, 'g> {
             return (locals(), value, quote!(runtime::Sylvester::new(#factor)));
         }
         if self.emitter.keeps_matrices {
+            let is_direction = |role| matches!(role, Role::Direction(_));
             let (locals, jacobian) = scope.matrix_of(kernel, 1, "delta", is_direction);
             return (locals, value, jacobian);
         }

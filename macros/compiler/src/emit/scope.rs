@@ -121,7 +121,7 @@ impl Scope<'_, '_> {
     }
 
     fn spell_read(&self, input: &Input) -> TokenStream {
-        let index = index(input.is_vector, (input.row, input.column));
+        let index = index(input.shape.is_column(), (input.row, input.column));
         match self.place(input.role) {
             Some(Place::Leaf(name, access)) => {
                 let name = format_ident!("{name}");

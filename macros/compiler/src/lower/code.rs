@@ -134,7 +134,6 @@ enum Place {
 }
 
 impl Kernel {
-    /// The entries of all outputs.
     pub(super) fn entries(&self) -> impl Iterator<Item = &Code> {
         self.outputs.iter().flat_map(|(_, entries)| entries)
     }
@@ -273,7 +272,6 @@ impl Code {
         (!below.is_empty()).then_some((above, below))
     }
 
-    /// 1/x
     pub(super) fn reciprocal(x: Code) -> Code {
         match x.sine_squared() {
             Some(sine_squared) => Code::PerOnePlusCosine(Box::new(sine_squared)),

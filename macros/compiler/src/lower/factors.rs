@@ -122,15 +122,11 @@ impl Factored<'_> {
         let rest = without(factors, factor);
         let is_at_hand = match rest.as_slice() {
             [_] => true,
-            _ => self.operations.position(&Operation::Product(rest.clone())).is_some_and(|rest| self.is_used(rest)),
+            _ => self.operations.position(&Operation::Product(rest.clone())).is_some_and(|rest| self.uses[rest] > 0),
         };
         let before = if self.uses[product] > 1 { 0 } else { factors.len() as isize - 1 };
         let after = if is_at_hand { 0 } else { rest.len() as isize - 1 };
         before - after
-    }
-
-    fn is_used(&self, id: Id) -> bool {
-        self.uses.get(id).is_some_and(|&uses| uses > 0)
     }
 
     /// The terms with those of a choice replaced by one product.
@@ -222,7 +218,6 @@ fn numbers(terms: &[(Rational, Id)]) -> Vec<Choice> {
     choices
 }
 
-/// Adds a term to a sum.
 fn add(terms: &mut Vec<(Rational, Id)>, coefficient: Rational, term: Id) {
     match terms.iter_mut().find(|(_, other)| *other == term) {
         Some((weight, _)) => *weight += coefficient,

@@ -1,6 +1,6 @@
 //! Whether the kernels of a system are written out, entry by entry, or keep whole matrices.
 
-use clebsch_symbolic::{Expr, Group, Operation, Table, View};
+use clebsch_symbolic::{Expr, Group, Interner, Operation, View};
 
 use super::{too_large, written_out_too_large};
 use crate::derive::{MechanicsFormulas, Solution};
@@ -160,14 +160,13 @@ fn estimate(formulas: &MechanicsFormulas<'_>) -> usize {
 
 /// The multiplications in the products of some expressions, entry by entry.
 fn products(expressions: &[Expr<'_>]) -> usize {
-    let mut known: Table<usize, bool> = Table::default();
+    let mut known = Interner::default();
     let mut open: Vec<Expr<'_>> = expressions.to_vec();
     let mut count = 0;
     while let Some(expr) = open.pop() {
-        if known.contains(&expr.position()) {
+        if !known.intern(expr.position()).1 {
             continue;
         }
-        known.insert(expr.position(), true);
         let of_word = |word: &[Expr<'_>]| -> usize {
             let pairs = word.windows(2);
             pairs.map(|pair| word[0].shape().rows.min(pair[1].shape().columns) * pair[0].shape().len()).sum()

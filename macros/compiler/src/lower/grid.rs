@@ -207,10 +207,8 @@ impl<'g> Scalars {
         if let Some(known) = self.constant.get(&expr.position()) {
             return *known;
         }
-        let found = expr
-            .symbols()
-            .into_iter()
-            .all(|symbol| symbol.as_symbol().is_some_and(|data| Rate::of(data.role) == Rate::Once));
+        let is_constant = |symbol: Expr<'g>| symbol.role().is_some_and(|role| Rate::of(role) == Rate::Once);
+        let found = expr.symbols().into_iter().all(is_constant);
         self.constant.insert(expr.position(), found);
         found
     }
@@ -289,21 +287,19 @@ impl<'g> Scalars {
 
     /// prefix · middle · suffix, vectors first.
     fn between(&mut self, prefix: &[Expr<'g>], middle: Grid, suffix: &[Expr<'g>]) -> Grid {
-        let mut product = middle;
-        if suffix.last().is_some_and(|last| last.shape().columns == 1) {
+        let product = if suffix.last().is_some_and(|last| last.shape().columns == 1) {
             let vector = self.word(suffix);
-            product = self.multiply(&product, &vector);
+            self.multiply(&middle, &vector)
         } else {
-            for letter in suffix {
+            suffix.iter().fold(middle, |product, letter| {
                 let letter = self.grid(*letter);
-                product = self.multiply(&product, &letter);
-            }
-        }
-        for letter in prefix.iter().rev() {
+                self.multiply(&product, &letter)
+            })
+        };
+        prefix.iter().rev().fold(product, |product, letter| {
             let letter = self.grid(*letter);
-            product = self.multiply(&letter, &product);
-        }
-        product
+            self.multiply(&letter, &product)
+        })
     }
 }
 

@@ -141,10 +141,10 @@ impl Builder<'_, '_> {
         let id = match node {
             _ if self.is_hoisted(scalar) || self.is_entry(scalar) => self.intern(Operation::Leaf(scalar)),
             ScalarNode::Sum(constant, terms) => self.convert_sum(constant, terms),
-            ScalarNode::Product(factors) => {
-                let (coefficient, product) = self.convert_product(integer(1), &factors);
-                self.scaled(coefficient, product)
-            }
+            ScalarNode::Product(factors) => match self.convert_product(integer(1), &factors) {
+                (coefficient, product) if coefficient == integer(1) => product,
+                scaled => self.intern(Operation::Sum(integer(0), vec![scaled])),
+            },
             node => {
                 let operation = match node {
                     ScalarNode::Reciprocal(x) => Operation::Reciprocal(self.convert(x)),
@@ -164,10 +164,6 @@ impl Builder<'_, '_> {
         };
         self.known.insert(scalar, id);
         id
-    }
-
-    fn scaled(&mut self, coefficient: Rational, id: Id) -> Id {
-        if coefficient == integer(1) { id } else { self.intern(Operation::Sum(integer(0), vec![(coefficient, id)])) }
     }
 
     fn convert_sum(&mut self, mut constant: Rational, mut terms: Vec<(Scalar, Rational)>) -> Id {
@@ -322,9 +318,8 @@ impl Builder<'_, '_> {
                 names.insert(id, locals.len() - 1);
             }
         }
-        let outputs = self.outputs.clone().into_iter().map(|entry| self.reference(entry, &names));
-        let outputs = outputs.collect();
-        (locals, outputs)
+        let outputs = self.outputs.clone();
+        (locals, outputs.into_iter().map(|entry| self.reference(entry, &names)).collect())
     }
 
     /// How often each operation stands in the code, and the operations behind their operands.

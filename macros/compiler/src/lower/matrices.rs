@@ -18,7 +18,6 @@ use super::signs;
 use super::{Code, Cost, Input, Kernel, MatrixOperation};
 use blocks::{times, total};
 pub(super) use hoisting::hoisted;
-pub(crate) use hoisting::is_direction;
 use words::{Weighted, cheapest_cut, common_letter};
 
 /// One output for each expression.

@@ -38,7 +38,6 @@ use scalar::{Rate, ScalarNode, Scalars};
 pub use code::{Code, Kernel, MatrixOperation, Whole, is_in_brackets};
 pub use cost::Cost;
 pub use form::{Form, LARGEST_UNROLLED, MOST_UNKNOWNS};
-pub(crate) use matrices::is_direction;
 pub use program::{KernelTable, MechanicsProgram, Program, SteeredProgram, Step};
 pub use scalar::{Callee, Input, Output};
 pub use stepping::Solve;

@@ -226,18 +226,17 @@ impl Scalars {
 
     /// Whether an input has no other entries that are read.
     fn is_single(&self, input: &Input) -> bool {
-        input.is_vector && input.row == 0 && !self.has_other_entries(input)
+        input.shape.is_column() && input.row == 0 && !self.has_other_entries(input)
     }
 }
 
-/// The name of the field behind an input.
 fn field(input: &Input) -> String {
     let name = input.name.replace(['[', '.'], "_").replace(']', "").to_lowercase();
     if name.starts_with(|first: char| first.is_ascii_digit()) { format!("field_{name}") } else { name }
 }
 
 fn index(input: &Input) -> String {
-    if input.is_vector { input.row.to_string() } else { format!("{}{}", input.row, input.column) }
+    if input.shape.is_column() { input.row.to_string() } else { format!("{}{}", input.row, input.column) }
 }
 
 /// `half`, `two`, `three_quarters`.

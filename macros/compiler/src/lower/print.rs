@@ -42,12 +42,14 @@ impl KernelTable {
         Ok(())
     }
 
-    /// The coefficient of ξ_i ξ_j in the kinetic energy as text; `None` where it is zero.
-    pub fn energy_coefficient(&self, i: usize, j: usize) -> Option<String> {
+    /// i, j and the coefficient of ξ_i ξ_j in the kinetic energy, without those that are zero.
+    fn energy_coefficients(&self) -> Option<Vec<(usize, usize, String)>> {
         let kernel = self.find(Id::EnergyCoefficients)?;
         let (shape, entries) = &kernel.outputs[0];
-        let code = inlined(kernel, &entries[i * shape.columns + j]);
-        (code != Code::Number(integer(0))).then(|| self.text(&code, 0))
+        let upper = shape.positions().zip(entries).filter(|((i, j), _)| i <= j);
+        let coefficients = upper.map(|((i, j), entry)| (i, j, inlined(kernel, entry)));
+        let coefficients = coefficients.filter(|(_, _, code)| *code != Code::Number(integer(0)));
+        Some(coefficients.map(|(i, j, code)| (i, j, self.text(&code, 0))).collect())
     }
 
     /// The text of a code; `place` is 0 in a sum, 1 in a product, 2 below a fraction bar.
@@ -155,9 +157,9 @@ impl fmt::Display for Callee {
 }
 
 fn read(input: &Input) -> String {
-    match (input.is_scalar, input.is_vector) {
-        (true, _) => input.name.clone(),
-        (_, true) => format!("{}[{}]", input.name, input.row),
+    match input.shape {
+        shape if shape.is_scalar() => input.name.clone(),
+        shape if shape.is_column() => format!("{}[{}]", input.name, input.row),
         _ => format!("{}[{},{}]", input.name, input.row, input.column),
     }
 }
@@ -181,18 +183,12 @@ impl MechanicsProgram<'_> {
     fn told(&self) -> Lowered {
         Lowered {
             form: self.form.sentence(),
-            energy: (!self.form.keeps_matrices()).then(|| self.energy_coefficients()),
+            energy: self.energy_coefficients(),
             is_gathered: self.gathered.is_some(),
             turns_in_plane: self.turns_in_plane(),
             iterations: self.iterations(),
             costs: costs(&self.kernels()),
         }
-    }
-
-    fn energy_coefficients(&self) -> Vec<(usize, usize, String)> {
-        let dimension = self.formulas.inertia.shape().rows;
-        let places = (0..dimension).flat_map(|i| (i..dimension).map(move |j| (i, j)));
-        places.filter_map(|(i, j)| Some((i, j, self.energy_coefficient(i, j)?))).collect()
     }
 
     fn iterations(&self) -> Vec<Vec<Iteration>> {

@@ -45,18 +45,15 @@ pub struct Input {
     pub row: usize,
     /// Its column.
     pub column: usize,
-    /// Whether the input is a vector or a scalar, which have one index or none.
-    pub is_vector: bool,
-    /// Whether it is a scalar.
-    pub is_scalar: bool,
+    /// The shape of the input.
+    pub shape: Shape,
 }
 
 impl Input {
     /// An entry of a symbol.
     pub(super) fn of(symbol: &Symbol, row: usize, column: usize) -> Input {
         let Symbol { role, name, shape, .. } = symbol;
-        let (is_vector, is_scalar) = (shape.is_column(), shape.is_scalar());
-        Input { role: *role, name: name.clone(), row, column, is_vector, is_scalar }
+        Input { role: *role, name: name.clone(), row, column, shape: *shape }
     }
 }
 

@@ -185,8 +185,10 @@ impl<'g> Maker<'_, 'g> {
             let residual = [formulas.residual_by_halves(equation)];
             let residual = separate(&mut self.scalars, &residual, Hoisting::Terms(&mut constants, &mut more));
             let unknowns = equation.components.len();
-            let is_chosen = is_chosen(formulas, (&residual, predict), &linearize, unknowns);
-            is_chosen.then(|| {
+            let iteration = operations(&residual) + operations(predict) + 4 * unknowns;
+            let linearization = operations(&linearize) + 2 * unknowns * unknowns * (unknowns + 3) / 3;
+            let is_asked = solver(formulas) == Some(Solver::FixedPoint);
+            (is_asked || linearization >= RESIDUALS * iteration).then(|| {
                 (self.hoisted, terms) = (constants, more);
                 residual
             })
@@ -246,18 +248,6 @@ const MATRIX_FUNCTION: usize = 1000;
 fn serves(formulas: &MechanicsFormulas<'_>, equation: &MomentumEquation<'_>) -> bool {
     let is_asked = solver(formulas) != Some(Solver::Newton);
     is_asked && equation.is_inertial && !equation.moves && equation.coupled.is_empty()
-}
-
-/// Whether it is tried: asked for, or by the number of operations.
-fn is_chosen(
-    formulas: &MechanicsFormulas<'_>,
-    (residual, predict): (&Kernel, &Kernel),
-    linearize: &Kernel,
-    unknowns: usize,
-) -> bool {
-    let iteration = operations(residual) + operations(predict) + 4 * unknowns;
-    let linearization = operations(linearize) + 2 * unknowns * unknowns * (unknowns + 3) / 3;
-    solver(formulas) == Some(Solver::FixedPoint) || linearization >= RESIDUALS * iteration
 }
 
 fn solver(formulas: &MechanicsFormulas<'_>) -> Option<Solver> {

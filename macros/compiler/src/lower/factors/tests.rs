@@ -1,18 +1,11 @@
 use crate::lower::entries::Grid;
 use crate::lower::kernel::kernel;
 use crate::lower::{Hoisting, Input, Scalar, Scalars};
-use clebsch_symbolic::{Role, integer};
+use clebsch_symbolic::{Role, Shape, integer};
 
 /// Entries of an input.
 fn inputs<const N: usize>(scalars: &mut Scalars) -> [Scalar; N] {
-    let entry = |row| Input {
-        role: Role::Momentum(0),
-        name: "x".to_string(),
-        row,
-        column: 0,
-        is_vector: true,
-        is_scalar: false,
-    };
+    let entry = |row| Input { role: Role::Momentum(0), name: "x".to_string(), row, column: 0, shape: Shape::vector(N) };
     std::array::from_fn(|row| scalars.input(entry(row)))
 }
 

@@ -43,19 +43,15 @@ impl Builder<'_, '_> {
         let mut sums = Table::default();
         let used = self.used();
         let mut uses = vec![0_usize; self.operations.len()];
-        used.iter()
-            .for_each(|&id| self.operations.value(id).operands().into_iter().for_each(|operand| uses[operand] += 1));
-        self.outputs.iter().for_each(|&entry| uses[entry] += 1);
-        let is_used = |id: Id| uses[id] > 0;
+        let operands = used.iter().flat_map(|&id| self.operations.value(id).operands());
+        operands.chain(self.outputs.iter().copied()).for_each(|id| uses[id] += 1);
+        let separate = |(coefficient, term): &(Rational, Id)| {
+            let found = self.separated(*term).filter(|(_, product)| uses[*term] == 1 && uses[*product] > 0);
+            found.map_or((coefficient.clone(), *term), |(number, product)| (coefficient * &number, product))
+        };
         for &id in &used {
             let Operation::Sum(_, terms) = self.operations.value(id) else { continue };
-            let separated: Vec<_> = terms
-                .iter()
-                .map(|(coefficient, term)| {
-                    let found = self.separated(*term).filter(|(_, product)| uses[*term] == 1 && is_used(*product));
-                    found.map_or((coefficient.clone(), *term), |(number, product)| (coefficient * &number, product))
-                })
-                .collect();
+            let separated: Vec<_> = terms.iter().map(separate).collect();
             if separated != *terms {
                 sums.insert(id, separated);
             }
@@ -116,7 +112,7 @@ impl Builder<'_, '_> {
             _ => None,
         });
         // where the chain is what takes the time, no sum may wait longer than before
-        let delays = self.delays();
+        let delays = self.delays_in(&self.uses().1);
         let waits = self.waits(&delays);
         let delay = |terms: &[(Rational, Id)]| balance::delay(terms.iter().map(|term| delay_of_term(&delays, term)));
         let shared = sums::shared(found.collect(), |shorter, whole| !waits || delay(shorter) <= delay(whole));
@@ -131,12 +127,7 @@ impl Builder<'_, '_> {
         self.count_operations() < SIDE_BY_SIDE * longest as usize
     }
 
-    /// When each operation is done, in cycles after the arguments are there, as common processors take them.
-    fn delays(&self) -> Vec<u32> {
-        self.delays_in(&self.uses().1)
-    }
-
-    /// The same of operations that stand behind their operands.
+    /// When operations that stand behind their operands are done, in cycles after the arguments are there, as common processors take them.
     pub(super) fn delays_in(&self, order: &[Id]) -> Vec<u32> {
         let mut delays = vec![0; self.operations.len()];
         order.iter().for_each(|&id| delays[id] = self.delay(id, &delays));

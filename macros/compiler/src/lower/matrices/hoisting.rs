@@ -7,7 +7,7 @@ use crate::lower::{Code, Kernel};
 /// A kernel of an iteration as two: the terms that do not depend on the coordinates, or on a direction of them, as far as others need them,
 /// one output each; and the rest.
 pub(in crate::lower) fn hoisted(kernel: Kernel) -> (Kernel, Kernel) {
-    let depends = kernel.depends_on(|role| matches!(role, Role::Chart(_)) || is_direction(role));
+    let depends = kernel.depends_on(|role| matches!(role, Role::Chart(_) | Role::Direction(_)));
     let moving = kernel.locals.iter().zip(&depends).filter(|(_, depends)| **depends).map(|(code, _)| code);
     let mut terms: Vec<usize> =
         moving.chain(kernel.entries()).flat_map(Code::locals).filter(|&index| !depends[index]).collect();
@@ -35,9 +35,4 @@ pub(in crate::lower) fn hoisted(kernel: Kernel) -> (Kernel, Kernel) {
     prepare.outputs = terms.iter().map(|&index| (shape(index), vec![before(index)])).collect();
     rest.outputs = kernel.outputs_by(|entry| entry.with_locals(&after));
     (prepare, rest)
-}
-
-/// Whether a symbol is the direction of a derivative.
-pub(crate) fn is_direction(role: Role) -> bool {
-    matches!(role, Role::Direction(_))
 }
