@@ -1,7 +1,6 @@
 //! The operations of kernels.
 
 use std::fmt;
-use std::iter::Sum;
 
 use clebsch_symbolic::{Operation, Shape, Zero};
 
@@ -116,12 +115,6 @@ impl MatrixOperation {
             MatrixOperation::Value | MatrixOperation::Gradient(_) => Cost { calls: 1, ..Cost::default() },
             _ => Cost::default(),
         }
-    }
-}
-
-impl Sum for Cost {
-    fn sum<I: Iterator<Item = Cost>>(costs: I) -> Cost {
-        costs.fold(Cost::default(), Cost::plus)
     }
 }
 

@@ -151,11 +151,11 @@ impl Builder<'_, '_> {
                     ScalarNode::Root(x, exponent) => Operation::Root(self.convert(x), exponent),
                     ScalarNode::Function(function, x) => Operation::Function(function, self.convert(x)),
                     ScalarNode::Output(call, output) => {
-                        let call = self.scalars.call_of(call).clone();
+                        let (callee, arguments) = self.scalars.call_of(call).clone();
                         let mut entries = |grid: &Grid| grid.entries.iter().map(|entry| self.convert(*entry)).collect();
-                        let arguments = call.arguments.iter().map(|grid| (grid.shape, entries(grid))).collect();
-                        let id = self.intern(Operation::Call(call.callee.clone(), arguments));
-                        Operation::Output(id, call.callee, output)
+                        let arguments = arguments.iter().map(|grid| (grid.shape, entries(grid))).collect();
+                        let id = self.intern(Operation::Call(callee.clone(), arguments));
+                        Operation::Output(id, callee, output)
                     }
                     _ => Operation::Leaf(scalar),
                 };

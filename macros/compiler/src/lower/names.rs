@@ -216,7 +216,7 @@ impl Scalars {
             }
             ScalarNode::Function(function, x) => Some(format!("{}_of_{}", function.name(), self.name(*x, false)?)),
             ScalarNode::Output(call, output) => {
-                let callee = &self.call_of(*call).callee;
+                let (callee, _) = self.call_of(*call);
                 let is_ours = !matches!(callee, Callee::Value(_) | Callee::Gradient(_));
                 is_ours.then(|| format!("{callee}_{}{}", output.row, output.column))
             }

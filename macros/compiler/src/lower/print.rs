@@ -177,18 +177,15 @@ impl Program<'_> {
 impl MechanicsProgram<'_> {
     /// The text of `DERIVATION`.
     pub fn derivation(&self) -> String {
-        derive::derivation(&self.formulas, &self.told())
-    }
-
-    fn told(&self) -> Lowered {
-        Lowered {
+        let lowered = Lowered {
             form: self.form.sentence(),
             energy: self.energy_coefficients(),
             is_gathered: self.gathered.is_some(),
             turns_in_plane: self.turns_in_plane(),
             iterations: self.iterations(),
             costs: costs(&self.kernels()),
-        }
+        };
+        derive::derivation(&self.formulas, &lowered)
     }
 
     fn iterations(&self) -> Vec<Vec<Iteration>> {

@@ -178,11 +178,6 @@ impl<'g> Program<'g> {
             Program::Steered(program) => program.kernels(),
         }
     }
-
-    /// The operations of all kernels together.
-    pub fn cost(&self) -> Cost {
-        self.kernels().into_iter().map(|(_, kernel)| kernel.cost()).sum()
-    }
 }
 
 impl SteeredProgram<'_> {
@@ -273,7 +268,7 @@ impl MechanicsProgram<'_> {
         let increment = self.makes_increments(substep).then_some(Id::Increment);
         let moves = if self.find(Id::Displacement).is_some() { Id::Displacement } else { Id::Advance };
         let ids = solves.chain(kicks).chain(increment).chain([moves]);
-        ids.map(|id| self.kernel(id).cost()).sum()
+        ids.map(|id| self.kernel(id).cost()).fold(Cost::default(), Cost::plus)
     }
 
     /// ρ(x) and Dρ(x) of an equation; of a linear one −ρ(0) and Dρ.

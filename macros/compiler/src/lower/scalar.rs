@@ -70,15 +70,6 @@ pub enum Callee {
     Gradient(String),
 }
 
-/// A call with its arguments, entry by entry.
-#[derive(Clone, PartialEq, Eq, Hash, Debug)]
-pub struct Call {
-    /// What is called.
-    pub callee: Callee,
-    /// Its arguments.
-    pub arguments: Vec<Rc<Grid>>,
-}
-
 /// The identity of a call in its arena.
 #[derive(Copy, Clone, PartialEq, Eq, Hash, PartialOrd, Ord, Debug)]
 pub struct CallId(u32);
@@ -137,7 +128,7 @@ pub struct Scalars {
     pub keeps_matrices: bool,
     nodes: Interner<ScalarNode>,
     rates: Vec<Rate>,
-    calls: Interner<Call>,
+    calls: Interner<(Callee, Vec<Rc<Grid>>)>,
     /// The grids of expressions of one graph, by their positions: kernels have many expressions in common.
     pub(super) grids: Table<usize, Rc<Grid>>,
     /// Which expressions are fixed once per stepper.
@@ -357,13 +348,13 @@ impl Scalars {
     /// The entries of what a call returns.
     pub fn call(&mut self, callee: Callee, arguments: Vec<Rc<Grid>>, leaf: usize, shape: Shape) -> Grid {
         let rate = self.rate_of(arguments.iter().flat_map(|argument| argument.entries.iter().copied()));
-        let (index, _) = self.calls.intern(Call { callee, arguments });
+        let (index, _) = self.calls.intern((callee, arguments));
         let entry = |(row, column)| ScalarNode::Output(CallId(index as u32), Output { leaf, row, column, shape });
         Grid::from_fn(shape, |place| self.intern(entry(place), rate))
     }
 
-    /// The call behind an identity.
-    pub fn call_of(&self, id: CallId) -> &Call {
+    /// What is called, with its arguments entry by entry.
+    pub fn call_of(&self, id: CallId) -> &(Callee, Vec<Rc<Grid>>) {
         self.calls.value(id.0 as usize)
     }
 }
