@@ -51,15 +51,15 @@ impl Graph {
 
     /// The basis as literal matrices.
     pub fn basis_matrices(&self, algebra: Algebra) -> Vec<Expr<'_>> {
-        let matrix = |element: &Sparse| self.literal(algebra.shape, dense(algebra.shape, element));
+        let matrix = |element: &Sparse| self.sparse_literal(algebra.shape, element.iter().cloned());
         self.basis(algebra).elements.iter().map(matrix).collect()
     }
 }
 
 /// All entries of a matrix, row by row.
-pub(crate) fn dense(shape: Shape, element: &Sparse) -> Vec<Rational> {
+pub(crate) fn dense(shape: Shape, filled: impl IntoIterator<Item = (usize, usize, Rational)>) -> Vec<Rational> {
     let mut entries = vec![Rational::zero(); shape.len()];
-    element.iter().for_each(|(i, j, value)| entries[i * shape.columns + j] += value);
+    filled.into_iter().for_each(|(i, j, value)| entries[i * shape.columns + j] += value);
     entries
 }
 

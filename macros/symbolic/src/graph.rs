@@ -5,7 +5,7 @@ use std::rc::Rc;
 
 use num_traits::{One, Zero};
 
-use crate::algebra::Basis;
+use crate::algebra::{Basis, dense};
 use crate::group::{Block, Definition};
 use crate::identity::Evaluated;
 use crate::memory::{Images, Maps};
@@ -138,9 +138,7 @@ impl Graph {
         shape: Shape,
         entries: impl IntoIterator<Item = (usize, usize, Rational)>,
     ) -> Expr<'_> {
-        let mut dense = vec![Rational::zero(); shape.len()];
-        entries.into_iter().for_each(|(i, j, value)| dense[i * shape.columns + j] += value);
-        self.literal(shape, dense)
+        self.literal(shape, dense(shape, entries))
     }
 
     /// The matrix with a one at (row, column) and zeros elsewhere.

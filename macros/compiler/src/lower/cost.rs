@@ -32,13 +32,12 @@ impl Kernel {
 
     /// The operations that stand in its code: one on whole matrices is one.
     pub fn length(&self) -> usize {
-        let mut within = 0;
+        let mut length = 0;
         self.visit(&mut |code| {
-            if let Code::Whole(whole) = code {
-                within += whole.cost.total().saturating_sub(1);
-            }
+            let cost = Cost::of(code).total();
+            length += if matches!(code, Code::Whole(_)) { cost.min(1) } else { cost };
         });
-        self.cost().total() - within
+        length
     }
 }
 

@@ -65,11 +65,8 @@ impl<'a, 'g> Maker<'a, 'g> {
             _ => id.substep().is_some(),
         };
         let hoisting = if is_of_step { Hoisting::Constants(&mut self.hoisted) } else { Hoisting::Nothing };
-        if is_stacked(id) {
-            stack(&mut self.scalars, value, hoisting)
-        } else {
-            separate(&mut self.scalars, value, hoisting)
-        }
+        let make = if is_stacked(id) { stack } else { separate };
+        make(&mut self.scalars, value, hoisting)
     }
 
     /// Whether the kernel of a formula is matrix code in one expression or a few, which a person can read.

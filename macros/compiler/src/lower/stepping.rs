@@ -111,9 +111,8 @@ impl<'g> Maker<'_, 'g> {
             Solution::Newton | Solution::Linear | Solution::FreeRotation => Id::Predictor(index, number),
         };
         let predict = start.map(|start| self.stack(&start));
-        let mut kernels: Vec<(Id, Kernel)> = Vec::new();
-        let sine_squared = equation.sine_squared.map(|sine_squared| self.stack(&[sine_squared]));
-        kernels.extend(sine_squared.map(|kernel| (Id::SineSquared(index, number), kernel)));
+        let sine_squared = equation.sine_squared.map(|square| (Id::SineSquared(index, number), self.stack(&[square])));
+        let mut kernels: Vec<(Id, Kernel)> = sine_squared.into_iter().collect();
         let mut residual = None;
         match equation.solution {
             Solution::Explicit | Solution::ClosedForm | Solution::FreeRotation => {}

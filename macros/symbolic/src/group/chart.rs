@@ -97,8 +97,7 @@ impl Chart {
                 quaternion(x[0], -(square / (one + root))) / root
             }
             (Chart::Cayley, Group::SpecialEuclidean(n)) => {
-                let increment = turned(n);
-                blocks(increment, 2 * (resolvent(x[0].wedge(graph.algebra_of(group))) * x[1]))
+                blocks(turned(n), 2 * (resolvent(x[0].wedge(graph.algebra_of(group))) * x[1]))
             }
             (Chart::Cayley, _) => even_increment(combination(group, x)),
             (Chart::Affine, _) => combination(group, x),

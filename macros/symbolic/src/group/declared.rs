@@ -89,7 +89,7 @@ impl Graph {
     /// The span of a basis.
     pub fn span(&self, algebra: Algebra) -> Span {
         let shape = algebra.shape;
-        Span::of(self.basis(algebra).elements.iter().map(|element| dense(shape, element)).collect())
+        Span::of(self.basis(algebra).elements.iter().map(|element| dense(shape, element.iter().cloned())).collect())
     }
 }
 
