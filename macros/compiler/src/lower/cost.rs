@@ -42,7 +42,6 @@ impl Kernel {
 }
 
 impl Cost {
-    /// Additions and multiplications.
     fn sums(additions: usize, multiplications: usize) -> Cost {
         Cost { additions, multiplications, ..Cost::default() }
     }

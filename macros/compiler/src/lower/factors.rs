@@ -29,7 +29,6 @@ pub(super) fn factored(
     factored.sums
 }
 
-/// What is taken out of terms.
 enum Factor {
     /// A factor of products.
     Of(Id),
@@ -172,7 +171,6 @@ impl Factored<'_> {
         self.made(Operation::Product(factors))
     }
 
-    /// A product without one of its factors.
     fn divided(&mut self, product: Id, factor: Id) -> Id {
         match without(&self.operations.value(product).operands(), factor).as_slice() {
             [only] => *only,

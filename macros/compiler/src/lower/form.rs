@@ -115,7 +115,6 @@ fn is_body(formulas: &MechanicsFormulas<'_>) -> bool {
     })
 }
 
-/// The largest linear system that a step or a set-up solves.
 fn largest_system(formulas: &MechanicsFormulas<'_>) -> usize {
     let equations = formulas.substeps.iter().flat_map(|substep| &substep.equations);
     let solved = equations.filter(|equation| matches!(equation.solution, Solution::Newton | Solution::Linear));

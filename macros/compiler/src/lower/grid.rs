@@ -273,7 +273,6 @@ impl<'g> Scalars {
         self.sum(integer(0), [(entry, integer(1)), (product, integer(-1))])
     }
 
-    /// The determinant of some rows and columns.
     fn determinant(&mut self, a: &Grid, rows: &[usize], columns: &[usize]) -> Scalar {
         let [column, columns @ ..] = columns else { return self.number(integer(1)) };
         let mut terms = Vec::new();

@@ -74,7 +74,6 @@ pub(super) enum Operation {
 }
 
 impl Operation {
-    /// The operations that it is made of.
     pub(super) fn operands(&self) -> Vec<Id> {
         match self {
             Operation::Leaf(_) => Vec::new(),

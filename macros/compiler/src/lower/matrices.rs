@@ -154,7 +154,6 @@ impl Matrices {
         }
     }
 
-    /// An operation on one matrix.
     fn of_matrix(&mut self, operation: MatrixOperation, a: Expr<'_>, shape: Shape) -> Code {
         let a = self.value(a);
         self.operation(operation, vec![a], shape)
@@ -485,7 +484,6 @@ fn outer_product<'g>(graph: &Graph, algebra: Algebra, a: Expr<'g>) -> Option<(Ve
     (cut > 0 && is_rotations(graph, algebra)).then_some((term.word, cut))
 }
 
-/// Entry (i, j) of a matrix.
 fn entry(a: &Code, i: usize, j: usize) -> Code {
     Code::whole(MatrixOperation::Entry(i, j), vec![a.clone()], Shape::scalar(), Cost::default())
 }

@@ -101,7 +101,6 @@ impl KernelTable {
         }
     }
 
-    /// The text of an operation on whole matrices.
     fn whole(&self, whole: &Whole, place: usize) -> String {
         let operands: Vec<String> = whole.operands.iter().map(|operand| self.text(operand, 1)).collect();
         let (text, is_sum) = match &whole.operation {

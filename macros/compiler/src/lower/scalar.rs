@@ -50,7 +50,6 @@ pub struct Input {
 }
 
 impl Input {
-    /// An entry of a symbol.
     pub(super) fn of(symbol: &Symbol, row: usize, column: usize) -> Input {
         let Symbol { role, name, shape, .. } = symbol;
         Input { role: *role, name: name.clone(), row, column, shape: *shape }

@@ -314,7 +314,6 @@ fn dual(z: Expr<'_>) -> Expr<'_> {
     z.graph().stack(shape, shape.positions().map(entry).collect())
 }
 
-/// The coordinates of Z̃.
 fn dual_coordinates(x: Expr<'_>) -> Expr<'_> {
     let entries = [(5, 1), (4, -1), (3, 1), (2, 1), (1, -1), (0, 1)];
     x.graph().stack(x.shape(), entries.into_iter().map(|(k, sign)| sign * x.entry(k, 0)).collect())

@@ -15,7 +15,6 @@ pub struct Hoisted {
     kept: usize,
 }
 
-/// A value that has been met.
 #[derive(Clone, Debug)]
 struct Met {
     scalar: Scalar,
