@@ -11,6 +11,8 @@ pub(crate) type Q<S> = <S as Clebsch>::Configuration;
 pub(crate) type F<S> = <S as Clebsch>::Element;
 pub(crate) type Mu<S> = <S as Clebsch>::Momentum;
 pub(crate) type U<S> = <S as Clebsch>::Input;
+/// q, F − I, q⁺ and u: the ends of an edge, and the input of its forces.
+pub type Ends<'a, S> = (&'a Q<S>, &'a F<S>, &'a Q<S>, &'a U<S>);
 /// What no step of S changes.
 pub(crate) type C<S> = <S as Clebsch>::Constants;
 /// The coordinates that a solve finds.
@@ -257,46 +259,14 @@ pub trait Varied<const M: usize>: Parts {
 /// Substep K, differentiated: the discrete Lagrangian of an edge from q to `next` = Φ_F(q), F = I + D, with its derivatives along M directions.
 pub trait VariedSubstep<const K: usize, const M: usize, B: Method<Self> = Declared>: Substep<K, B> + Varied<M> {
     /// ℓd with both Legendre transforms.
-    fn momenta(
-        &self,
-        c: &B::Constants,
-        t: T<Self>,
-        q: &Q<Self>,
-        d: &F<Self>,
-        next: &Q<Self>,
-        u: &U<Self>,
-    ) -> Momenta<T<Self>, M>;
+    fn momenta(&self, c: &B::Constants, t: T<Self>, ends: Ends<'_, Self>) -> Momenta<T<Self>, M>;
 
     /// The same with their derivatives along the motions of both ends.
-    fn edge(
-        &self,
-        c: &B::Constants,
-        t: T<Self>,
-        q: &Q<Self>,
-        d: &F<Self>,
-        next: &Q<Self>,
-        u: &U<Self>,
-    ) -> Edge<T<Self>, M>;
+    fn edge(&self, c: &B::Constants, t: T<Self>, ends: Ends<'_, Self>) -> Edge<T<Self>, M>;
 
     /// F⁺ℓd with the derivatives of both momenta, along motions that leave F as it is and along those of q⁺ alone.
-    fn carried(
-        &self,
-        c: &B::Constants,
-        t: T<Self>,
-        q: &Q<Self>,
-        d: &F<Self>,
-        next: &Q<Self>,
-        u: &U<Self>,
-    ) -> Carried<T<Self>, M>;
+    fn carried(&self, c: &B::Constants, t: T<Self>, ends: Ends<'_, Self>) -> Carried<T<Self>, M>;
 
     /// ∂F⁻ℓd and ∂F⁺ℓd with respect to what is fixed during a step.
-    fn slopes(
-        &self,
-        c: &B::Constants,
-        t: T<Self>,
-        q: &Q<Self>,
-        d: &F<Self>,
-        next: &Q<Self>,
-        u: &U<Self>,
-    ) -> Self::Slopes;
+    fn slopes(&self, c: &B::Constants, t: T<Self>, ends: Ends<'_, Self>) -> Self::Slopes;
 }

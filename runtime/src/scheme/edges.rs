@@ -5,7 +5,7 @@ use super::great_circle::GreatCircle;
 use super::sequence::{CarryKick, InSequence};
 use super::substep::solve_before_kick;
 use super::{At, AtOf, Scheme, adjoint_pair, free_motion, kick_drift_kick};
-use crate::parts::{F, Mu, Parts, Q, Substep, U, Varied, VariedSubstep};
+use crate::parts::{Ends, F, Mu, Parts, Q, Substep, U, Varied, VariedSubstep};
 use crate::{Carried, Clebsch, Declared, Edge, Error, Method, Momenta};
 use nalgebra::SMatrix;
 
@@ -40,9 +40,6 @@ pub trait Visit<S: Clebsch, const M: usize, B: Method<S> = Declared> {
         S: VariedSubstep<K, M, B>;
 }
 
-/// q, F − I, q⁺ and u: the ends of an edge, and the input of its forces.
-pub type Ends<'a, S> = (&'a Q<S>, &'a F<S>, &'a Q<S>, &'a U<S>);
-
 /// The increment of the group element with the momentum μ at q, of q, μ and u.
 pub struct Drift<'a, S: Clebsch>(pub &'a Q<S>, pub &'a Mu<S>, pub &'a U<S>);
 
@@ -73,8 +70,7 @@ macro_rules! asked {
             where
                 S: VariedSubstep<K, M, B>,
             {
-                let (q, d, next, u) = self.0;
-                at.system.$method(at.constants, at.t, q, d, next, u)
+                at.system.$method(at.constants, at.t, self.0)
             }
         }
     )* };

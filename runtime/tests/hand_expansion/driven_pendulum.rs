@@ -280,10 +280,7 @@ const _: () = {
             &self,
             constants: &Constants,
             t: f64,
-            q: &SVector<f64, 3>,
-            d: &SMatrix<f64, 3, 3>,
-            next: &SVector<f64, 3>,
-            _u: &(),
+            (q, d, next, _u): ::clebsch::__private::Ends<'_, Self>,
         ) -> ::clebsch::Edge<f64, 3> {
             let c = 0.5 / constants.h_by_inertia;
             let (g, g_next) =
@@ -307,10 +304,7 @@ const _: () = {
             &self,
             constants: &Constants,
             t: f64,
-            q: &SVector<f64, 3>,
-            d: &SMatrix<f64, 3, 3>,
-            next: &SVector<f64, 3>,
-            _u: &(),
+            (q, d, next, _u): ::clebsch::__private::Ends<'_, Self>,
         ) -> ::clebsch::Momenta<f64, 3> {
             let (c, half_h) = (0.5 / constants.h_by_inertia, constants.half_h);
             let height = (gradient(self, t).dot(q) + gradient(self, t + constants.h).dot(next)) * half_h;
@@ -327,14 +321,11 @@ const _: () = {
             &self,
             constants: &Constants,
             t: f64,
-            q: &SVector<f64, 3>,
-            d: &SMatrix<f64, 3, 3>,
-            next: &SVector<f64, 3>,
-            u: &(),
+            (q, d, next, u): ::clebsch::__private::Ends<'_, Self>,
         ) -> ::clebsch::Carried<f64, 3> {
             let (g, g_next) =
                 (gradient(self, t) * constants.half_h, gradient(self, t + constants.h) * constants.half_h);
-            let edge = ::clebsch::__private::VariedSubstep::<0, 3>::edge(self, constants, t, q, d, next, u);
+            let edge = ::clebsch::__private::VariedSubstep::<0, 3>::edge(self, constants, t, (q, d, next, u));
             let identity = SMatrix::<f64, 3, 3>::identity();
             let adjoint = identity + d;
             ::clebsch::Carried {
@@ -347,16 +338,7 @@ const _: () = {
             }
         }
 
-        fn slopes(
-            &self,
-            _: &Constants,
-            _: f64,
-            _: &SVector<f64, 3>,
-            _: &SMatrix<f64, 3, 3>,
-            _: &SVector<f64, 3>,
-            (): &(),
-        ) {
-        }
+        fn slopes(&self, _: &Constants, _: f64, _: ::clebsch::__private::Ends<'_, Self>) {}
     }
 
     /// mass·length²

@@ -293,10 +293,7 @@ const _: () = {
             &self,
             constants: &Constants,
             _t: f64,
-            r: &SMatrix<f64, 3, 3>,
-            d: &SMatrix<f64, 3, 3>,
-            _next: &SMatrix<f64, 3, 3>,
-            _u: &(),
+            (r, d, _next, _u): ::clebsch::__private::Ends<'_, Self>,
         ) -> ::clebsch::Edge<f64, 3> {
             let (by_h, m) = (1.0 / constants.h, &constants.moment);
             let (turned, turning) = (d * self.mass_matrix, self.mass_matrix * d);
@@ -324,10 +321,7 @@ const _: () = {
             &self,
             constants: &Constants,
             _t: f64,
-            r: &SMatrix<f64, 3, 3>,
-            d: &SMatrix<f64, 3, 3>,
-            next: &SMatrix<f64, 3, 3>,
-            _u: &(),
+            (r, d, next, _u): ::clebsch::__private::Ends<'_, Self>,
         ) -> ::clebsch::Momenta<f64, 3> {
             let (by_h, m) = (1.0 / constants.h, &constants.moment);
             let turned = d * self.mass_matrix;
@@ -345,15 +339,12 @@ const _: () = {
             &self,
             constants: &Constants,
             t: f64,
-            r: &SMatrix<f64, 3, 3>,
-            d: &SMatrix<f64, 3, 3>,
-            next: &SMatrix<f64, 3, 3>,
-            u: &(),
+            (r, d, next, u): ::clebsch::__private::Ends<'_, Self>,
         ) -> ::clebsch::Carried<f64, 3> {
             let m = &constants.moment;
             let gamma = vector([r[(2, 0)], r[(2, 1)], r[(2, 2)]]);
             let gamma_next = gamma + d.tr_mul(&gamma);
-            let edge = ::clebsch::__private::VariedSubstep::<0, 3>::edge(self, constants, t, r, d, next, u);
+            let edge = ::clebsch::__private::VariedSubstep::<0, 3>::edge(self, constants, t, (r, d, next, u));
             let identity = SMatrix::<f64, 3, 3>::identity();
             let adjoint = identity + d.transpose();
             ::clebsch::Carried {
@@ -366,16 +357,7 @@ const _: () = {
             }
         }
 
-        fn slopes(
-            &self,
-            _: &Constants,
-            _: f64,
-            _: &SMatrix<f64, 3, 3>,
-            _: &SMatrix<f64, 3, 3>,
-            _: &SMatrix<f64, 3, 3>,
-            (): &(),
-        ) {
-        }
+        fn slopes(&self, _: &Constants, _: f64, _: ::clebsch::__private::Ends<'_, Self>) {}
     }
 
     /// The implicit equation h π^ = F𝒥 − 𝒥Fᵀ in the Cayley chart F = (I − Z)⁻¹(I + Z), Z = c^, c = tan(θ/2) n, cleared of

@@ -187,6 +187,7 @@ impl Block<'_> {
             "Bool" => quote!(::core::primitive::bool),
             "Option" | "Solved" | "Result" | "Error" | "Orientation" => quote!(runtime::#name),
             "Momenta" | "Edge" | "Carried" | "EndpointExpansion" => quote!(runtime::#name<T, #dimension>),
+            "Ends" => quote!(runtime::Ends<'_, Self>),
             "Square" => matrix(self.dimension, self.dimension),
             _ => return None,
         })

@@ -241,12 +241,12 @@ functions! {
     /// `VariedSubstep`: an edge, with its derivatives.
     EDGE(true) {
         /// ℓd with both Legendre transforms.
-        fn momenta(&self, c: &C, t: T, q: &Q, d: &F, next: &Q, u: &U) -> Momenta { Id::EdgeMomenta(0) } = {
+        fn momenta(&self, c: &C, t: T, (q, d, next, u): Ends) -> Momenta { Id::EdgeMomenta(0) } = {
             Locals
             runtime::Momenta { lagrangian: Number0, before: Value1, after: Value2 }
         }
         /// ℓd with both Legendre transforms and their derivatives along the motions of both ends.
-        fn edge(&self, c: &C, t: T, q: &Q, d: &F, next: &Q, u: &U) -> Edge { Id::Edge(0) } = {
+        fn edge(&self, c: &C, t: T, (q, d, next, u): Ends) -> Edge { Id::Edge(0) } = {
             Locals
             let before_by_end = Matrix4;
             runtime::Edge {
@@ -255,7 +255,7 @@ functions! {
             }
         }
         /// F⁺ℓd with the derivatives of both momenta, along motions that leave F as it is and along those of q⁺ alone.
-        fn carried(&self, c: &C, t: T, q: &Q, d: &F, next: &Q, u: &U) -> Carried { Id::Carried(0) } = {
+        fn carried(&self, c: &C, t: T, (q, d, next, u): Ends) -> Carried { Id::Carried(0) } = {
             Locals
             runtime::Carried {
                 momentum: Value0,
@@ -263,7 +263,7 @@ functions! {
             }
         }
         /// ∂F⁻ℓd and ∂F⁺ℓd with respect to what is fixed during a step.
-        fn slopes(&self, c: &C, t: T, q: &Q, d: &F, next: &Q, u: &U) -> Slopes { Id::EdgeSlopes(0) } = { Locals (Value0, Value1) }
+        fn slopes(&self, c: &C, t: T, (q, d, next, u): Ends) -> Slopes { Id::EdgeSlopes(0) } = { Locals (Value0, Value1) }
     }
 
     /// `Controlled`: the step that inputs make by themselves, from points and their costates, by its size.

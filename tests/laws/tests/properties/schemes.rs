@@ -213,16 +213,16 @@ proptest! {
         let constants = top.step_constants(H)?;
         let d = top.retraction(&eta);
         let next = Variational::advance(&top, &r, &d);
-        let edge = VariedSubstep::<0, 3>::edge(&top, &constants, 0.0, &r, &d, &next, &());
+        let edge = VariedSubstep::<0, 3>::edge(&top, &constants, 0.0, (&r, &d, &next, &()));
         prop_assert_eq!(edge, Variational::edge(&top, &constants, 0, 0.0, &r, &d, &next, &()));
-        let momenta = VariedSubstep::<0, 3>::momenta(&top, &constants, 0.0, &r, &d, &next, &());
+        let momenta = VariedSubstep::<0, 3>::momenta(&top, &constants, 0.0, (&r, &d, &next, &()));
         assert_near(&momenta.before, &edge.before, NEAR, "N");
-        let carried = VariedSubstep::<0, 3>::carried(&top, &constants, 0.0, &r, &d, &next, &());
+        let carried = VariedSubstep::<0, 3>::carried(&top, &constants, 0.0, (&r, &d, &next, &()));
         assert_near(&carried.before, &(edge.before_by_start + edge.before_by_end * carried.adjoint), 1e-10, "∂N");
-        let (before, _) = VariedSubstep::<0, 3>::slopes(&top, &constants, 0.0, &r, &d, &next, &());
+        let (before, _) = VariedSubstep::<0, 3>::slopes(&top, &constants, 0.0, (&r, &d, &next, &()));
         // N = (F𝒥 − 𝒥Fᵀ)/h less half a kick: the slope along the weight is that of the kick
         let heavier = WatchedTop { weight: top.weight + 1.0, ..top.clone() };
-        let change = VariedSubstep::<0, 3>::momenta(&heavier, &heavier.step_constants(H)?, 0.0, &r, &d, &next, &()).before - momenta.before;
+        let change = VariedSubstep::<0, 3>::momenta(&heavier, &heavier.step_constants(H)?, 0.0, (&r, &d, &next, &())).before - momenta.before;
         assert_near(&before.column(3).into_owned(), &change, 1e-9, "∂N/∂weight");
     }
 }
