@@ -34,7 +34,7 @@ pub use crate::parameters::{
     projection,
 };
 pub use crate::parts::{
-    ByBoth, ByCoordinates, ByIncrement, Ends, FreeMotion, GreatCircles, HamiltonEquations, Parts, Solved, SplitKicks,
+    ByBoth, ByCoordinates, ByIncrement, FreeMotion, GreatCircles, HamiltonEquations, Parts, Solved, SplitKicks,
     Substep, Varied, VariedSubstep,
 };
 pub use crate::power::{Constants as SiteConstants, Power, PowerConstants, wrapped};

@@ -202,4 +202,4 @@ pub use system::Clebsch;
 pub use tangent::{Sensitivity, Tangent, Variation};
 pub use time::{Clock, Time};
 pub use trajectory::Trajectory;
-pub use variational::{Carried, Differentiated, Edge, Momenta, Sensitive, Variational};
+pub use variational::{Carried, Differentiated, Edge, Ends, Momenta, Sensitive, Variational};

@@ -3,7 +3,7 @@
 //! A *scheme* is the order in which these parts are called, in [`scheme`](crate::scheme), the same for every declaration. The macro writes parts alone.
 
 use crate::sums::Sums;
-use crate::{Carried, Clebsch, Declared, Edge, Error, Method, Momenta, Space};
+use crate::{Carried, Clebsch, Declared, Edge, Ends, Error, Method, Momenta, Space};
 
 /// The values of a system S, by the letters that formulas have for them: t, q, F, μ and u.
 pub(crate) type T<S> = <S as Clebsch>::Scalar;
@@ -11,8 +11,6 @@ pub(crate) type Q<S> = <S as Clebsch>::Configuration;
 pub(crate) type F<S> = <S as Clebsch>::Element;
 pub(crate) type Mu<S> = <S as Clebsch>::Momentum;
 pub(crate) type U<S> = <S as Clebsch>::Input;
-/// q, F − I, q⁺ and u: the ends of an edge, and the input of its forces.
-pub type Ends<'a, S> = (&'a Q<S>, &'a F<S>, &'a Q<S>, &'a U<S>);
 /// What no step of S changes.
 pub(crate) type C<S> = <S as Clebsch>::Constants;
 /// The coordinates that a solve finds.

@@ -14,7 +14,6 @@ use nalgebra::{SMatrix, SVector};
 /// for a right one. An edge is given by the increment D = F − I (for translations F itself), which small steps do not cancel.
 ///
 /// Components of η are those of 𝔤 in the basis that [`group`](crate::group) documents, M of them.
-#[allow(clippy::too_many_arguments, reason = "an edge is its place and time, its ends and its input")]
 pub trait Variational<const M: usize>:
     Clebsch<Momentum = SVector<<Self as Clebsch>::Scalar, M>, Scheme: Edges<Self, M>>
 {
@@ -54,49 +53,34 @@ pub trait Variational<const M: usize>:
         Self::Scheme::visit(At::new(self, constants, t), edge, Drift(q, mu, u))
     }
 
-    /// The edge number `edge` < [`EDGES`](Self::EDGES) of a step that starts at the time `t`, from q to `next` = Φ_F(q), F = I + D, while the input of forces is `u`.
+    /// The edge k < [`EDGES`](Self::EDGES) of a step that starts at the time `t`, from q to q⁺ = Φ_F(q) while the input of forces is u.
     #[inline]
-    fn edge(
-        &self,
-        constants: &Constants<Self>,
-        edge: usize,
-        t: Self::Scalar,
-        q: &Self::Configuration,
-        d: &Self::Element,
-        next: &Self::Configuration,
-        u: &Self::Input,
-    ) -> Edge<Self::Scalar, M> {
-        Self::Scheme::visit(At::new(self, constants, t), edge, SecondDerivatives((q, d, next, u)))
+    fn edge(&self, c: &Constants<Self>, k: usize, t: Self::Scalar, ends: Ends<'_, Self>) -> Edge<Self::Scalar, M> {
+        Self::Scheme::visit(At::new(self, c, t), k, SecondDerivatives(ends))
     }
 
     /// [`edge`](Self::edge) without derivatives of the momenta.
     #[inline]
     fn momenta(
         &self,
-        constants: &Constants<Self>,
-        edge: usize,
+        c: &Constants<Self>,
+        k: usize,
         t: Self::Scalar,
-        q: &Self::Configuration,
-        d: &Self::Element,
-        next: &Self::Configuration,
-        u: &Self::Input,
+        ends: Ends<'_, Self>,
     ) -> Momenta<Self::Scalar, M> {
-        Self::Scheme::visit(At::new(self, constants, t), edge, FirstDerivatives((q, d, next, u)))
+        Self::Scheme::visit(At::new(self, c, t), k, FirstDerivatives(ends))
     }
 
     /// The derivatives of the same edge along motions of q that leave F as it is, and of q⁺ alone: nothing of the size of inertia/h cancels.
     #[inline]
     fn carried(
         &self,
-        constants: &Constants<Self>,
-        edge: usize,
+        c: &Constants<Self>,
+        k: usize,
         t: Self::Scalar,
-        q: &Self::Configuration,
-        d: &Self::Element,
-        next: &Self::Configuration,
-        u: &Self::Input,
+        ends: Ends<'_, Self>,
     ) -> Carried<Self::Scalar, M> {
-        Self::Scheme::visit(At::new(self, constants, t), edge, AtFixedElement((q, d, next, u)))
+        Self::Scheme::visit(At::new(self, c, t), k, AtFixedElement(ends))
     }
 
     /// φ(t, q), the price of the end, with its derivatives along motions of q; 0 where no `endpoint` is declared.
@@ -126,6 +110,14 @@ pub trait Differentiated<S: Clebsch, const M: usize>: Method<S, Scheme: Edges<S,
 }
 
 impl<S: Clebsch, B: Method<S, Scheme: Edges<S, M, B>>, const M: usize> Differentiated<S, M> for B {}
+
+/// q, F − I, q⁺ and u: the ends of an edge, the increment between them, and the input of its forces.
+pub type Ends<'a, S> = (
+    &'a <S as Clebsch>::Configuration,
+    &'a <S as Clebsch>::Element,
+    &'a <S as Clebsch>::Configuration,
+    &'a <S as Clebsch>::Input,
+);
 
 /// The discrete Lagrangian ℓd of an edge with its first two derivatives along the motions η of its start and η′ of its end.
 ///
@@ -194,20 +186,16 @@ pub trait Sensitive<const M: usize, const P: usize>:
     const TIME: Option<usize> = None;
 
     /// The derivatives of F⁻ℓd and of F⁺ℓd of an edge, at fixed q, F and q⁺; one column for each quantity.
-    #[allow(clippy::too_many_arguments, reason = "an edge is its place and time, its ends and its input")]
     #[inline]
     fn edge_slopes(
         &self,
-        constants: &Constants<Self>,
-        edge: usize,
+        c: &Constants<Self>,
+        k: usize,
         t: Self::Scalar,
-        q: &Self::Configuration,
-        d: &Self::Element,
-        next: &Self::Configuration,
-        u: &Self::Input,
+        ends: Ends<'_, Self>,
     ) -> BothSlopes<Self::Scalar, M, P> {
-        let slopes = Self::Scheme::visit(At::new(self, constants, t), edge, ByQuantities((q, d, next, u)));
-        let of_step = |slopes| Self::Scheme::slopes_of_step(constants, edge, slopes, (Self::STEP_SIZE, Self::TIME));
+        let slopes = Self::Scheme::visit(At::new(self, c, t), k, ByQuantities(ends));
+        let of_step = |slopes| Self::Scheme::slopes_of_step(c, k, slopes, (Self::STEP_SIZE, Self::TIME));
         (of_step(slopes.0), of_step(slopes.1))
     }
 }

@@ -5,8 +5,8 @@ use super::great_circle::GreatCircle;
 use super::sequence::{CarryKick, InSequence};
 use super::substep::solve_before_kick;
 use super::{At, AtOf, Scheme, adjoint_pair, free_motion, kick_drift_kick};
-use crate::parts::{Ends, F, Mu, Parts, Q, Substep, U, Varied, VariedSubstep};
-use crate::{Carried, Clebsch, Declared, Edge, Error, Method, Momenta};
+use crate::parts::{F, Mu, Parts, Q, Substep, U, Varied, VariedSubstep};
+use crate::{Carried, Clebsch, Declared, Edge, Ends, Error, Method, Momenta};
 use nalgebra::SMatrix;
 
 /// A scheme whose steps have edges.

@@ -107,7 +107,7 @@ fn the_action_is_critical_and_least() -> Result<(), Error> {
     let system = stepper.system();
     let constants = system.constants(h)?;
     let lagrangian = |q: &Matrix3<f64>, d: &Matrix3<f64>| {
-        system.edge(&constants, 0, 0.0, q, d, &system.advance(q, d), &()).lagrangian
+        system.edge(&constants, 0, 0.0, (q, d, &system.advance(q, d), &())).lagrangian
     };
     for pair in extremal.nodes().windows(2) {
         let [first, second] = pair else { unreachable!("windows of two") };

@@ -280,7 +280,7 @@ const _: () = {
             &self,
             constants: &Constants,
             t: f64,
-            (q, d, next, _u): ::clebsch::__private::Ends<'_, Self>,
+            (q, d, next, _u): ::clebsch::Ends<'_, Self>,
         ) -> ::clebsch::Edge<f64, 3> {
             let c = 0.5 / constants.h_by_inertia;
             let (g, g_next) =
@@ -304,7 +304,7 @@ const _: () = {
             &self,
             constants: &Constants,
             t: f64,
-            (q, d, next, _u): ::clebsch::__private::Ends<'_, Self>,
+            (q, d, next, _u): ::clebsch::Ends<'_, Self>,
         ) -> ::clebsch::Momenta<f64, 3> {
             let (c, half_h) = (0.5 / constants.h_by_inertia, constants.half_h);
             let height = (gradient(self, t).dot(q) + gradient(self, t + constants.h).dot(next)) * half_h;
@@ -321,7 +321,7 @@ const _: () = {
             &self,
             constants: &Constants,
             t: f64,
-            (q, d, next, u): ::clebsch::__private::Ends<'_, Self>,
+            (q, d, next, u): ::clebsch::Ends<'_, Self>,
         ) -> ::clebsch::Carried<f64, 3> {
             let (g, g_next) =
                 (gradient(self, t) * constants.half_h, gradient(self, t + constants.h) * constants.half_h);
@@ -338,7 +338,7 @@ const _: () = {
             }
         }
 
-        fn slopes(&self, _: &Constants, _: f64, _: ::clebsch::__private::Ends<'_, Self>) {}
+        fn slopes(&self, _: &Constants, _: f64, _: ::clebsch::Ends<'_, Self>) {}
     }
 
     /// mass·length²

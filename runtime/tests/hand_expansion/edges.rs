@@ -22,8 +22,8 @@ where
     let q = system.advance(q, &system.retraction(&start));
     let d = system.compose(&system.compose(&system.retraction(&-start), d), &system.retraction(&end));
     let next = system.advance(&q, &d);
-    let edge = system.edge(&constants, 0, 0.3, &q, &d, &next, &());
-    let momenta = system.momenta(&constants, 0, 0.3, &q, &d, &next, &());
+    let edge = system.edge(&constants, 0, 0.3, (&q, &d, &next, &()));
+    let momenta = system.momenta(&constants, 0, 0.3, (&q, &d, &next, &()));
     assert!((momenta.lagrangian - edge.lagrangian).abs() < 1e-14);
     assert_near!(momenta.before, edge.before, 1e-14);
     assert_near!(momenta.after, edge.after, 1e-14);
@@ -53,10 +53,7 @@ where
         &S::Scheme::constants(system, h).expect("a good step size"),
         0,
         0.3,
-        q,
-        d,
-        &system.advance(q, d),
-        &(),
+        (q, d, &system.advance(q, d), &()),
     );
     assert_near!(carried.before, edge.before_by_start + edge.before_by_end * carried.adjoint, 1e-13);
     assert_near!(carried.after, edge.after_by_start + edge.after_by_end * carried.adjoint, 1e-13);
@@ -67,7 +64,7 @@ fn an_edge_of_the_top_is_differentiated() -> Result<(), Error> {
     let top = top();
     let d = top.retraction(&Vector3::new(0.2, -0.3, 0.1));
     check_edge(&top, &attitude(), &d);
-    let edge = top.edge(&top.constants(0.1)?, 0, 0.0, &attitude(), &d, &top.advance(&attitude(), &d), &());
+    let edge = top.edge(&top.constants(0.1)?, 0, 0.0, (&attitude(), &d, &top.advance(&attitude(), &d), &()));
     let f = Matrix3::identity() + d;
     assert_near!(edge.before, HeavyTop::legendre(&top, 0.1, 0.0, &attitude(), &f), 1e-14);
     assert_near!(edge.after, HeavyTop::legendre_next(&top, 0.1, 0.0, &attitude(), &f), 1e-14);
@@ -79,7 +76,7 @@ fn an_edge_of_the_pendulum_is_differentiated() -> Result<(), Error> {
     let pendulum = DrivenPendulum { mass: 0.5, length: 0.7, gravity: 9.81, shake: 4.0, rate: 3.0 };
     let (q, d) = (Vector3::new(0.36, 0.48, -0.8), pendulum.retraction(&Vector3::new(0.2, -0.3, 0.1)));
     check_edge(&pendulum, &q, &d);
-    let edge = pendulum.edge(&pendulum.constants(0.1)?, 0, 0.3, &q, &d, &pendulum.advance(&q, &d), &());
+    let edge = pendulum.edge(&pendulum.constants(0.1)?, 0, 0.3, (&q, &d, &pendulum.advance(&q, &d), &()));
     let f = Matrix3::identity() + d;
     assert_near!(edge.before, pendulum.legendre(0.1, 0.3, &q, &f), 1e-14);
     assert_near!(edge.after, pendulum.legendre_next(0.1, 0.3, &q, &f), 1e-14);

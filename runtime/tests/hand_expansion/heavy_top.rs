@@ -293,7 +293,7 @@ const _: () = {
             &self,
             constants: &Constants,
             _t: f64,
-            (r, d, _next, _u): ::clebsch::__private::Ends<'_, Self>,
+            (r, d, _next, _u): ::clebsch::Ends<'_, Self>,
         ) -> ::clebsch::Edge<f64, 3> {
             let (by_h, m) = (1.0 / constants.h, &constants.moment);
             let (turned, turning) = (d * self.mass_matrix, self.mass_matrix * d);
@@ -321,7 +321,7 @@ const _: () = {
             &self,
             constants: &Constants,
             _t: f64,
-            (r, d, next, _u): ::clebsch::__private::Ends<'_, Self>,
+            (r, d, next, _u): ::clebsch::Ends<'_, Self>,
         ) -> ::clebsch::Momenta<f64, 3> {
             let (by_h, m) = (1.0 / constants.h, &constants.moment);
             let turned = d * self.mass_matrix;
@@ -339,7 +339,7 @@ const _: () = {
             &self,
             constants: &Constants,
             t: f64,
-            (r, d, next, u): ::clebsch::__private::Ends<'_, Self>,
+            (r, d, next, u): ::clebsch::Ends<'_, Self>,
         ) -> ::clebsch::Carried<f64, 3> {
             let m = &constants.moment;
             let gamma = vector([r[(2, 0)], r[(2, 1)], r[(2, 2)]]);
@@ -357,7 +357,7 @@ const _: () = {
             }
         }
 
-        fn slopes(&self, _: &Constants, _: f64, _: ::clebsch::__private::Ends<'_, Self>) {}
+        fn slopes(&self, _: &Constants, _: f64, _: ::clebsch::Ends<'_, Self>) {}
     }
 
     /// The implicit equation h π^ = F𝒥 − 𝒥Fᵀ in the Cayley chart F = (I − Z)⁻¹(I + Z), Z = c^, c = tan(θ/2) n, cleared of

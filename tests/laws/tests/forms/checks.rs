@@ -149,14 +149,14 @@ where
         near((unrolled.orbit_metric(&next) - matrices.orbit_metric(&next)).amax(), "GᵀG");
         near((unrolled.approach(&next, &rest) - matrices.approach(&next, &rest)).amax(), "the approach");
         let ends = [
-            unrolled.momenta(&before, 0, 0.0, &rest, &d, &next, &()),
-            matrices.momenta(&after, 0, 0.0, &rest, &d, &next, &()),
+            unrolled.momenta(&before, 0, 0.0, (&rest, &d, &next, &())),
+            matrices.momenta(&after, 0, 0.0, (&rest, &d, &next, &())),
         ];
         near((ends[0].lagrangian - ends[1].lagrangian).abs(), "ℓd");
         near((ends[0].before - ends[1].before).amax().max((ends[0].after - ends[1].after).amax()), "the transforms");
         let edges = [
-            unrolled.edge(&before, 0, 0.0, &rest, &d, &next, &()),
-            matrices.edge(&after, 0, 0.0, &rest, &d, &next, &()),
+            unrolled.edge(&before, 0, 0.0, (&rest, &d, &next, &())),
+            matrices.edge(&after, 0, 0.0, (&rest, &d, &next, &())),
         ];
         let [first, second] = edges.map(|e| [e.before_by_start, e.before_by_end, e.after_by_start, e.after_by_end]);
         let size = first.iter().fold(1.0_f64, |most, block| most.max(block.amax()));

@@ -113,7 +113,7 @@ fn generated_code_does_not_grow() {
         emit      = [generated],
     )]
     struct Seen<const N: usize> {}
-    assert!(Seen::<4>::GENERATED.contains("impl<const N: usize> ::clebsch::Clebsch for Seen<N>"));
+    assert!(Seen::<4>::GENERATED.contains("impl<const N: usize> runtime::Clebsch for Seen<N>"));
     assert_eq!(Seen::<4>::GENERATED, Seen::<100>::GENERATED);
     assert!(Seen::<4>::DERIVATION.starts_with("Seen\n\nA power: N sites"));
     assert_eq!(Seen::<4>::NAME, "Seen");

@@ -174,13 +174,13 @@ proptest! {
         let at = |start: f64, end: f64| -> Momenta<f64, 3> {
             let q = r * exponential(&(eta * start));
             let next = r * f * exponential(&(eta * end));
-            top.momenta(&constants, 0, 0.0, &q, &(q.transpose() * next - Matrix3::identity()), &next, &())
+            top.momenta(&constants, 0, 0.0, (&q, &(q.transpose() * next - Matrix3::identity()), &next, &()))
         };
         let carried_along = |s: f64| {
             let q = r * exponential(&(eta * s));
-            top.momenta(&constants, 0, 0.0, &q, &d, &(q * f), &())
+            top.momenta(&constants, 0, 0.0, (&q, &d, &(q * f), &()))
         };
-        let edge = top.edge(&constants, 0, 0.0, &r, &d, &(r * f), &());
+        let edge = top.edge(&constants, 0, 0.0, (&r, &d, &(r * f), &()));
         let momenta = at(0.0, 0.0);
         assert_near(&edge.before, &momenta.before, NEAR / H, "F⁻ℓd");
         assert_near(&edge.after, &momenta.after, NEAR / H, "F⁺ℓd");
@@ -196,18 +196,18 @@ proptest! {
         assert_near(&(edge.before_by_end * eta), &slope(|s| at(0.0, s).before), near, "∂F⁻ℓd/∂η′");
         assert_near(&(edge.after_by_start * eta), &slope(|s| at(s, 0.0).after), near, "∂F⁺ℓd/∂η");
         assert_near(&(edge.after_by_end * eta), &slope(|s| at(0.0, s).after), near, "∂F⁺ℓd/∂η′");
-        let carried: Carried<f64, 3> = top.carried(&constants, 0, 0.0, &r, &d, &(r * f), &());
+        let carried: Carried<f64, 3> = top.carried(&constants, 0, 0.0, (&r, &d, &(r * f), &()));
         assert_near(&carried.momentum, &edge.after, NEAR / H, "F⁺ℓd");
         assert_near(&carried.adjoint, &f.transpose(), NEAR, "Ad");
         assert_near(&(carried.before * eta), &slope(|s| carried_along(s).before), near, "∂F⁻ℓd/∂η at fixed F");
         assert_near(&(carried.after * eta), &slope(|s| carried_along(s).after), near, "∂F⁺ℓd/∂η at fixed F");
         assert_near(&carried.before_by_end, &edge.before_by_end, NEAR / H, "∂F⁻ℓd/∂η′");
         assert_near(&carried.after_by_end, &edge.after_by_end, NEAR / H, "∂F⁺ℓd/∂η′");
-        let (before, after): (SMatrix<f64, 3, 5>, _) = top.edge_slopes(&constants, 0, 0.0, &r, &d, &(r * f), &());
+        let (before, after): (SMatrix<f64, 3, 5>, _) = top.edge_slopes(&constants, 0, 0.0, (&r, &d, &(r * f), &()));
         for quantity in 0..5 {
             let of = |s: f64| {
                 let (top, h) = changed(&top, quantity, s);
-                top.momenta(&top.step_constants(h).expect("regular"), 0, 0.0, &r, &d, &(r * f), &())
+                top.momenta(&top.step_constants(h).expect("regular"), 0, 0.0, (&r, &d, &(r * f), &()))
             };
             // along h they are of the size of inertia/h²
             let near = if quantity == 4 { near / H } else { near };
@@ -235,7 +235,7 @@ proptest! {
         (w, delta, u) in (matrix::<8, 8>(1.0), vector::<6>(1.0), vector::<2>(1.0)), (by_motion, by_input) in (vector::<3>(1.0), vector::<2>(1.0)),
     ) {
         let constants = top.step_constants(H)?;
-        let edge = top.carried(&constants, 0, 0.0, &r, &(f - Matrix3::identity()), &(r * f), &());
+        let edge = top.carried(&constants, 0, 0.0, (&r, &(f - Matrix3::identity()), &(r * f), &()));
         let link = Link::new(&edge, &before, &after, &costate).expect("regular");
         // κ makes α·η′ + β·F⁺ℓd + κ·F⁻ℓd stationary
         let stationary = edge.before_by_end.transpose() * link.multiplier + link.driving + edge.after_by_end.transpose() * link.costate;

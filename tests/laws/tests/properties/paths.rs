@@ -32,7 +32,7 @@ fn is_a_motion(boundary: &Boundary<'_, WatchedTop, 3>, extremal: &Extremal<'_, W
         assert_near(&moved, next.configuration(), NEAR, "the increment");
         action += stepper
             .system()
-            .momenta(&constants, k, 0.0, node.configuration(), node.increment(), &moved, &())
+            .momenta(&constants, k, 0.0, (node.configuration(), node.increment(), &moved, &()))
             .lagrangian;
     }
     assert!((extremal.action() - action).abs() < NEAR, "{} is not {action}", extremal.action());

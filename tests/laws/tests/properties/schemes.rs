@@ -214,7 +214,7 @@ proptest! {
         let d = top.retraction(&eta);
         let next = Variational::advance(&top, &r, &d);
         let edge = VariedSubstep::<0, 3>::edge(&top, &constants, 0.0, (&r, &d, &next, &()));
-        prop_assert_eq!(edge, Variational::edge(&top, &constants, 0, 0.0, &r, &d, &next, &()));
+        prop_assert_eq!(edge, Variational::edge(&top, &constants, 0, 0.0, (&r, &d, &next, &())));
         let momenta = VariedSubstep::<0, 3>::momenta(&top, &constants, 0.0, (&r, &d, &next, &()));
         assert_near(&momenta.before, &edge.before, NEAR, "N");
         let carried = VariedSubstep::<0, 3>::carried(&top, &constants, 0.0, (&r, &d, &next, &()));
