@@ -50,7 +50,7 @@ pub use crate::sums::{Compensated, Plain, accumulate};
 pub use crate::sylvester::Sylvester;
 pub use crate::{
     Arrival, BoundsExpansion, Carried, Clebsch, Clock, Conserved, Conserves, Controlled, Declared, Edge,
-    EndpointExpansion, Error, Expansion, Method, Momenta, Scalar, Sensitive, Space, Time, Variational, group,
+    EndpointExpansion, Ends, Error, Expansion, Method, Momenta, Scalar, Sensitive, Space, Time, Variational, group,
 };
 pub use core;
 pub use core::option::Option::{self, None, Some};

@@ -1,7 +1,7 @@
-//! Deciding identities: evaluation at random points of a prime field.
+//! Deciding identities: evaluation at a random point of a prime field.
 //!
-//! Two rational expressions that agree at random points of a field with 2⁶¹ − 1 elements are equal but for a probability below
-//! degree/2⁶¹ (Schwartz and Zippel). Rotations are sampled by the Cayley map and unit vectors by stereographic projection, so
+//! Two rational expressions that agree at a random point of a field with 2⁶¹ − 1 elements are equal but for a probability below
+//! degree/2⁶¹ (Schwartz and Zippel), which is 10⁻¹⁵ where the degree is a thousand: one point decides. Rotations are sampled by the Cayley map and unit vectors by stereographic projection, so
 //! the relations of the group are part of the test. Functions that are not rational are opaque: equal arguments give equal
 //! values, and no other law of theirs is used, so an identity may be missed and is never claimed wrongly.
 
@@ -17,7 +17,6 @@ use crate::table::hash_of;
 use crate::{Expr, Group, Property, Rational, Shape, Table};
 
 pub(crate) const PRIME: u64 = (1 << 61) - 1;
-const POINTS: u64 = 3;
 
 /// An element of the field of integers modulo the prime 2⁶¹ − 1.
 #[derive(Copy, Clone, PartialEq, Eq, Debug)]
@@ -207,31 +206,18 @@ fn stereographic(shape: Shape, random: impl Fn(usize, usize) -> Residue) -> Matr
     Matrix::new(shape, numerators.map(|numerator| numerator.multiply(scale)).collect())
 }
 
-/// At how many points something is looked at: one decides but for a chance of about 10⁻¹⁴, and takes long for large matrices.
-fn points(expressions: &[Expr<'_>]) -> u64 {
-    let sizes = |expr: &Expr<'_>| expr.symbols().into_iter().map(|symbol| symbol.shape().rows).max().unwrap_or(0);
-    if expressions.iter().map(sizes).max().unwrap_or(0) > LARGE { 1 } else { POINTS }
-}
-
-/// Symbols with more rows are large.
-const LARGE: usize = 256;
-
 /// Whether the expressions are equal, pair by pair, for all values of their symbols that the properties allow.
 pub fn equal<'g>(left: &[Expr<'g>], right: &[Expr<'g>]) -> bool {
-    let agrees = |seed| {
-        let mut point = Point::new(seed);
-        left.iter().zip(right).all(|(&a, &b)| a == b || point.evaluate(a) == point.evaluate(b))
-    };
-    left.len() == right.len() && (0..points(left)).all(agrees)
+    let mut point = Point::new(0);
+    let mut agree = |a, b| a == b || point.evaluate(a) == point.evaluate(b);
+    left.len() == right.len() && left.iter().zip(right).all(|(&a, &b)| agree(a, b))
 }
 
 /// Whether the expression is zero for all values of its symbols that the properties allow, some of them fixed by `prepare`.
 pub fn vanishes_where<'g>(expr: Expr<'g>, prepare: &dyn Fn(&mut Point<'g>)) -> bool {
-    (0..POINTS).all(|seed| {
-        let mut point = Point::new(seed);
-        prepare(&mut point);
-        point.evaluate(expr).entries.iter().all(|entry| *entry == zero())
-    })
+    let mut point = Point::new(0);
+    prepare(&mut point);
+    point.evaluate(expr).entries.iter().all(|entry| *entry == zero())
 }
 
 /// Whether the expression is zero for all values of its symbols that the properties allow.
@@ -266,17 +252,15 @@ pub fn rank_where<'g>(expr: Expr<'g>, prepare: &dyn Fn(&mut Point<'g>)) -> usize
 pub fn null_space(matrix: Expr<'_>) -> Vec<Vec<Rational>> {
     let columns = matrix.shape().columns;
     let (mut rows, mut pivots): (Vec<Residue>, Vec<usize>) = (Vec::new(), Vec::new());
-    // points that add nothing to the rank: as many in a row as decide an identity
-    let mut idle = 0;
-    for seed in 0..columns as u64 + POINTS {
+    // the first point that adds nothing to the rank decides
+    for seed in 0..=columns as u64 {
         rows.extend(Point::new(seed).evaluate(matrix).entries);
         let rank = pivots.len();
         let mut reduced = Matrix::new(Shape::new(rows.len() / columns, columns), rows);
         pivots = reduced.reduce(columns).0;
         rows = reduced.entries;
         rows.truncate(pivots.len() * columns);
-        idle = if pivots.len() == rank { idle + 1 } else { 0 };
-        if idle == POINTS || pivots.len() == columns {
+        if pivots.len() == rank || pivots.len() == columns {
             break;
         }
     }

@@ -131,7 +131,7 @@ impl SystemEmitter<'_, '_> {
                     let (q, n) = x;
                     let d = &runtime::Variational::drift(self, constants, 0, t, q, n, u)?;
                     let next = &runtime::Variational::advance(self, q, d);
-                    let edge = runtime::Variational::carried(self, constants, 0, t, q, d, next, u);
+                    let edge = runtime::Variational::carried(self, constants, 0, t, (q, d, next, u));
                     let (before, after): (runtime::SMatrix<T, #m, #u>, runtime::SMatrix<T, #m, #u>) = { #locals (#before, #after) };
                     let link = runtime::Link::new(&edge, &before, &after, costate).ok_or(runtime::Error::SingularTangent { step_size: runtime::Scalar::to_f64(h) })?;
                     let (mu, kappa) = (&link.costate, &link.multiplier);
