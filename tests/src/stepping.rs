@@ -66,4 +66,4 @@ pub trait Stepping: Clebsch {
     }
 }
 
-impl<S: Clebsch + ?Sized> Stepping for S {}
+impl<S: Clebsch> Stepping for S {}
