@@ -14,9 +14,6 @@ const CONSTANTS: usize = 2048;
 /// What solvers call the momentum that they are given.
 const MOMENTUM: Error = Error::NotFinite { name: "the momentum" };
 
-/// Whether a step with other constants gives finite numbers. It runs after a failure alone: one function serves every kind of step.
-type Stepped<'a, S, M> = dyn Fn(&Constants<S, M>) -> Result<bool, Error> + 'a;
-
 impl<S: Clebsch, M: Method<S>> Stepper<S, M> {
     /// One step in each lane by itself, and the lanes in which it succeeded; in the others the state stays as it is. [`step`](Self::step) is
     /// this where all lanes succeed.
@@ -51,7 +48,7 @@ impl<S: Clebsch, M: Method<S>> Stepper<S, M> {
     #[inline(never)]
     pub(crate) fn refusal(&self, state: &State<S, M>, u: &S::Input, lane: usize, error: Error) -> Error {
         let State { time, configuration, held, left, .. } = state;
-        self.explained(lane, error, &|constants| {
+        self.explained(lane, error, |constants| {
             let at = At::new(&self.system, constants, time.now());
             let left = M::Scheme::left_after(at, configuration, &state.momentum(), left);
             let (q, mu, _) = M::Scheme::step(at, (configuration, held, &left), u)?;
@@ -74,17 +71,15 @@ impl<S: Clebsch, M: Method<S>> Stepper<S, M> {
                 Err(whole_or_lane::<S::Scalar>(lane, Error::NotFinite { name: name(&value, lane) }))
             }
             Err(_) if S::Scalar::LANES > 1 => Err(Error::InLane { lane: 0 }),
-            Err(error) => {
-                let computed = |constants: &_| Ok(compute(At::new(&self.system, constants, t))?.finite().lane(0));
-                Err(self.explained(0, error, &computed))
-            }
+            Err(error) => Err(self
+                .explained(0, error, |constants| Ok(compute(At::new(&self.system, constants, t))?.finite().lane(0)))),
         }
     }
 
     /// The error with the longest step that can be solved, where it is too long, by trying others with their constants.
     #[cold]
     #[inline(never)]
-    fn explained(&self, lane: usize, error: Error, stepped: &Stepped<'_, S, M>) -> Error {
+    fn explained(&self, lane: usize, error: Error, stepped: impl Fn(&Constants<S, M>) -> Result<bool, Error>) -> Error {
         match error {
             // the one that was given is finite
             error if error == MOMENTUM => Error::NotFinite { name: "the momentum after the kick" },
@@ -95,7 +90,7 @@ impl<S: Clebsch, M: Method<S>> Stepper<S, M> {
                     return Error::Unsolvable { solvable_fraction, step_size: Some(h), solvable_step };
                 }
                 let constants = |h: f64| M::Scheme::constants(&self.system, S::Scalar::from_f64(h));
-                let solvable_step = longest(h, solvable_fraction, &|h| stepped(&constants(h)?));
+                let solvable_step = longest(h, solvable_fraction, |h| stepped(&constants(h)?));
                 Error::Unsolvable { solvable_fraction, step_size: Some(h), solvable_step }
             }
             other => other,
@@ -135,7 +130,7 @@ impl<S: Clebsch, M: Method<S>> Stepper<S, M> {
 
 /// The longest step that `tried` solves, to [`WIDTH`], given a step `h` without a solution and the fraction of its momentum that has one.
 /// Where momenta alone count, the longest is that fraction of h. Where a potential or a force shows, the interval is halved.
-fn longest(h: f64, fraction: f64, tried: &dyn Fn(f64) -> Result<bool, Error>) -> Option<f64> {
+fn longest(h: f64, fraction: f64, tried: impl Fn(f64) -> Result<bool, Error>) -> Option<f64> {
     let (mut refused, mut edge) = (h, h * fraction);
     let mut solved: Option<f64> = None;
     for _ in 0..TRIALS {

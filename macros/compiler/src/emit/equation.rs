@@ -106,7 +106,10 @@ impl<'e, 'a, 'g> EquationType<'e, 'a, 'g> {
         self.emitter.functions(table, place, &words, |function, kernel| {
             let body = self.function(function, kernel, &words)?;
             let held = self.emitter.held_by_equation(self.solve).into_iter().map(|(name, _)| format_ident!("{name}"));
-            let reads = function.arguments.contains("self") && function.name != "orientation";
+            let reads = match function.name {
+                "prepare" => self.prepares(),
+                name => name != "orientation" && function.arguments.contains("self"),
+            };
             Some(body.after(reads.then(|| quote!(let &Self(#(#held),*) = self;))))
         })
     }

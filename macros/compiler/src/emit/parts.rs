@@ -122,23 +122,26 @@ impl Emitter<'_, '_> {
         if self.program.turns_in_plane() {
             return None;
         }
-        let mended = self.model.configurations.iter().filter_map(|leaf| {
+        let mut mended = TokenStream::new();
+        for leaf in &self.model.configurations {
             let access = &leaf.accessor;
             let (function, access) = match leaf.space {
                 LeafSpace::Group(Group::UnitQuaternions) => ("of_length_one", quote!(#access.coords)),
                 LeafSpace::Group(group) if group.is_orthogonal() => ("orthogonal", quote!(#access)),
                 LeafSpace::Unit => ("of_length_one", quote!(#access)),
-                LeafSpace::Vectors | LeafSpace::Group(_) => return None,
+                LeafSpace::Vectors | LeafSpace::Group(_) => continue,
             };
-            if self.formulas.is_compensated() {
-                let function = format_ident!("{function}_with_rest");
-                return Some(quote!((q #access, rest #access) = runtime::#function(q #access, rest #access);));
-            }
+            let with_rest = format_ident!("{function}_with_rest");
             let function = format_ident!("{function}");
-            Some(quote!(q #access = runtime::#function(q #access);))
-        });
-        let mended: Vec<TokenStream> = mended.collect();
-        (!mended.is_empty()).then(|| quote!(#(#mended)* (q, rest)))
+            mended.extend(if self.formulas.is_compensated() {
+                quote!((q #access, rest #access) = runtime::#with_rest(q #access, rest #access);)
+            } else if access.is_empty() {
+                return Some(quote!((runtime::#function(q), rest)));
+            } else {
+                quote!(q #access = runtime::#function(q #access);)
+            });
+        }
+        (!mended.is_empty()).then(|| quote!(#mended (q, rest)))
     }
 
     /// The parts of one substep: kicks, forces, solve, update.

@@ -15,7 +15,7 @@ proptest! {
         let h = (1.0 + excess) * if sign { 1.0 } else { -1.0 };
         prop_assume!(size(h) > 1.0);
         let (count, shortest) = (Cell::new(0), Cell::new(h));
-        let found = longest(h, 1.0 / size(h), &|h| {
+        let found = longest(h, 1.0 / size(h), |h| {
             count.set(count.get() + 1);
             if size(h) <= 1.0 {
                 return Ok(true);
@@ -33,7 +33,7 @@ proptest! {
 #[test]
 fn momenta_alone_take_two_trials() {
     let count = Cell::new(0);
-    let found = longest(0.3, 1e-9, &|h| {
+    let found = longest(0.3, 1e-9, |h| {
         count.set(count.get() + 1);
         if h <= 3e-10 { Ok(true) } else { unsolvable(3e-10 / h) }
     });
@@ -42,7 +42,7 @@ fn momenta_alone_take_two_trials() {
 
 #[test]
 fn what_has_no_solution_ends() {
-    assert_eq!(longest(1.0, 0.5, &|_| unsolvable(0.0)), None);
-    assert_eq!(longest(1.0, f64::NAN, &|_| Ok(false)), None);
-    assert_eq!(longest(1.0, 0.5, &|_| Err(Error::StepSize { value: 0.0 })), None);
+    assert_eq!(longest(1.0, 0.5, |_| unsolvable(0.0)), None);
+    assert_eq!(longest(1.0, f64::NAN, |_| Ok(false)), None);
+    assert_eq!(longest(1.0, 0.5, |_| Err(Error::StepSize { value: 0.0 })), None);
 }
