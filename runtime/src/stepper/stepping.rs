@@ -174,15 +174,8 @@ impl<S: Clebsch, M: Method<S>> Stepper<S, M> {
     #[cold]
     #[inline(never)]
     fn refused_after(&self, start: &State<S, M>, steps: usize, known: Error) -> Error {
-        let (mut state, none) = (*start, S::Input::origin());
-        for _ in 0..steps {
-            match self.attempt_again(&state, &none) {
-                Ok(next) if next.is_finite() => state = next,
-                Ok(next) => return self.beyond(&next),
-                Err(_) => return self.refused(&state, &none),
-            }
-        }
-        whole_or_lane::<S::Scalar>(0, known)
+        let failed = self.trajectory(*start).take(steps.saturating_add(1)).find_map(Result::err);
+        failed.unwrap_or_else(|| whole_or_lane::<S::Scalar>(0, known))
     }
 
     /// The error of a step whose state is not finite in some lane.
