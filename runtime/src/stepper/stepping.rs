@@ -60,7 +60,8 @@ impl<S: Clebsch, M: Method<S>> Stepper<S, M> {
 
     /// One step during which the input of the forces is `u`; [`step`](Self::step) is that with none, all zero.
     ///
-    /// By the discrete Lagrange–d'Alembert principle the force acts at both ends, of second order in h. Forced steps conserve momenta without force alone.
+    /// By the discrete Lagrange–d'Alembert principle the force acts at both ends, of second order in h. A forced step is not symplectic,
+    /// and conserves those momenta alone on which the force does not act.
     ///
     /// # Errors
     /// As [`step`](Self::step), and [`Error::NotFinite`] where the input is not.
