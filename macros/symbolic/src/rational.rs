@@ -122,8 +122,8 @@ impl Rational {
 
     /// The largest integer that is not above it.
     pub fn floor(&self) -> Rational {
-        self.as_fraction()
-            .map_or_else(|| Rational::from(self.long().floor()), |fraction| Rational::short(fraction.floor()))
+        // not `Ratio::floor`, which overflows next to the least machine word
+        self.parts().map_or_else(|| Rational::from(self.long().floor()), |(n, d)| integer(n.div_euclid(d)))
     }
 
     /// aⁿ; a is not zero where n is negative.

@@ -37,6 +37,7 @@ mod fraction {
     fn lowest_terms_and_order() {
         assert_eq!(rational(6, -4).parts(), Some((-3, 2)));
         assert_eq!(rational(-1, 2).floor(), integer(-1));
+        assert_eq!(rational(-i64::MAX, 4).floor(), integer(i64::MIN / 4));
         assert!(rational(1, 3) < rational(1, 2) && rational(-1, 2) < rational(-1, 3));
         assert_eq!(rational(1, 3) + rational(1, 6), rational(1, 2));
         assert_eq!(rational(2, 3) * rational(-3, 4), rational(-1, 2));
