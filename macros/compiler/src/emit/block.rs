@@ -75,7 +75,7 @@ impl Block<'_> {
 /// system, and not every body reads all of its arguments.
 pub(super) fn anonymous(items: &TokenStream) -> TokenStream {
     quote! {
-        #[allow(clippy::all, clippy::pedantic, unused)]
+        #[allow(clippy::all, clippy::pedantic, unused_imports, unused_mut, unused_parens, unused_variables, dead_code)]
         const _: () = {
             #items
         };

@@ -1,7 +1,7 @@
 //! What is generated: the functions of each trait, with the kernels that they compute and the formulas that they show.
 //!
-//! Some names in signatures stand for what they are in a system: `X` for the type of chart coordinates, `U` for that of inputs; `Receiver` for
-//! `&self`, or for the system where a method of it is stepped. [`SystemEmitter::functions`](super::SystemEmitter::functions) puts in their
+//! Some names in signatures stand for what they are in a system: `X` for the type of chart coordinates, `U` for that of inputs. `Receiver` is
+//! `&self`, or the system where a method of it is stepped. [`SystemEmitter::functions`](super::SystemEmitter::functions) puts in their
 //! tokens. Code behind `=` has more such words: `Locals` for the shared terms of the kernel, `Value0` for its first output as a vector or a
 //! matrix, `Number0` for it as a scalar.
 
@@ -109,7 +109,7 @@ functions! {
         fn advance(&self, q: &Q, Moved: &Motion) -> Q { Id::Displacement }
         /// The covector p carried along by F = I + D, at q⁺.
         fn lift(&self, q: &Q, p: &Q, d: &F) -> Q { Id::Lift }
-        fn on_space(mut q: Q, mut rest: Rest) -> (Q, Rest) { Id::Advance => }
+        fn on_space(q: Q, rest: Rest) -> (Q, Rest) { Id::Advance => }
     }
 
     /// `Substep`: kicks, forces, gradients, the solve and the update; what a declaration does not have is the trait's.

@@ -2,7 +2,7 @@
 //!
 //! `runtime` is the module of the runtime for generated code, `T` the scalar, `Q`, `F` and `Mu` the types of configurations, group elements
 //! and momenta, `C` that of the constants. Mostly that is what they are called in the expansion too. Where the user has such a name, or
-//! the scalar is a type parameter, other tokens are put in for them at the end; until then names of the user are raw identifiers.
+//! the scalar is a type parameter, other tokens are put in for them at the end. Until then names of the user are raw identifiers.
 
 use std::collections::BTreeSet;
 

@@ -47,8 +47,8 @@ impl Emitter<'_, '_> {
         })
     }
 
-    /// The type of the chart coordinates of all factors, with the weights of those that are given up to a factor, and their pattern; F − I where a
-    /// motion gives that at once.
+    /// The type of the chart coordinates of all factors, and their pattern; F − I where a motion gives that at once. Weights stand with
+    /// coordinates that are given up to a factor.
     fn coordinates(&self) -> [TokenStream; 2] {
         let count = size(self.formulas.weighted().len());
         if self.formulas.turns_whole() {
@@ -141,7 +141,7 @@ impl Emitter<'_, '_> {
                 quote!(q #access = runtime::#function(q #access);)
             });
         }
-        (!mended.is_empty()).then(|| quote!(#mended (q, rest)))
+        (!mended.is_empty()).then(|| quote!(let (mut q, mut rest) = (q, rest); #mended (q, rest)))
     }
 
     /// The parts of one substep: kicks, forces, solve, update.
