@@ -1,8 +1,8 @@
 //! Fixed endpoints: the extremal of the action from one configuration to another in a given number of steps.
 //!
-//! The unknowns are the motions of the vertices of a path along their orbits, which the dynamics q_{k+1} = Φ_{F_k}(q_k) always holds on. So the
-//! problem on all of the space and the problem on the orbit have one answer, of which only the part of momenta that motions can have is
-//! determined, and no extremal is abnormal. As every vertex is an unknown, no single shot has to hit the target.
+//! The unknowns are the motions of the vertices of a path along their orbits, on which the dynamics q_{k+1} = Φ_{F_k}(q_k) always stays. So the
+//! problem on all of the space has the answer of the problem on the orbit, and no extremal is abnormal. Of momenta it determines the
+//! component that motions can have. As every vertex is an unknown, no single shot has to hit the target.
 
 mod end;
 mod extremal;

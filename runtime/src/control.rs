@@ -94,8 +94,8 @@ impl<S: Controlled<D, U, C, Scalar: Real>, const D: usize, const U: usize, const
     /// The number of steps is that of `plan`. The inputs, costates and multipliers that its stages hold are the guess: none of
     /// [`stage`](Self::stage), an earlier solution, or inputs from elsewhere. They need neither lead to the target nor keep the bounds.
     ///
-    /// Work: two or three linearisations where the system is linear and its price quadratic, four to eight from a good guess, ten to forty
-    /// with bounds or from standing still; at most 400 in each of up to six attempts. Each is linear in the number of stages. Where the guess
+    /// Work: two or three linearisations where the system is linear and its price quadratic, four to eight from a good guess. With bounds, or
+    /// from standing still, ten to forty; at most 400 in each of up to six attempts. Each is linear in the number of stages. Where the guess
     /// does not lead to the target, the gap is priced and inputs are varied. What is found then is a local minimum, and need not be the best one.
     ///
     /// # Errors

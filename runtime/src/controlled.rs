@@ -11,8 +11,9 @@ use num_traits::Zero;
 /// `controls` or `dynamics`, where x is the configuration, and for one with `effort`, where x is a state (q, N) and f the forced step.
 ///
 /// # Coordinates
-/// Small changes of a place are written as δ of D components: for a configuration, the motion η of the group that moves q to Φ_{exp η}(q);
-/// for a state, (η, ν) with N + ν. Second derivatives are those along s ↦ Φ_{exp sη}(q).
+/// Small changes of a place are written as δ of D components: for a configuration, the motion η of the group that moves q to Φ_{exp η}(q),
+/// which is q exp η or (exp η) q for a group that acts on itself; for a state, (η, ν) with N + ν. Second derivatives are those along
+/// s ↦ Φ_{exp sη}(q).
 pub trait Controlled<const D: usize, const U: usize, const C: usize>: Sized {
     /// The scalar.
     type Scalar: Scalar;
@@ -64,7 +65,7 @@ pub trait Controlled<const D: usize, const U: usize, const C: usize>: Sized {
     /// x⁺ = f(t, h, x, u)
     ///
     /// # Errors
-    /// Those of a step, as in [`expand`](Self::expand) and [`price_of_time`](Self::price_of_time).
+    /// Those of a step.
     fn follow(
         &self,
         constants: &Self::Constants,
@@ -83,6 +84,9 @@ pub trait Controlled<const D: usize, const U: usize, const C: usize>: Sized {
     ) -> Self::Scalar;
 
     /// The step with its derivatives, and the second derivatives of ℓ + λ·f, λ the costate at x⁺.
+    ///
+    /// # Errors
+    /// Those of a step.
     fn expand(
         &self,
         constants: &Self::Constants,
@@ -93,6 +97,9 @@ pub trait Controlled<const D: usize, const U: usize, const C: usize>: Sized {
     ) -> Result<Expansion<Self::Place, Self::Scalar, D, U>, Error>;
 
     /// d/dh (ℓ + λ·f) for a step that starts at the time t = t₀ + kh, which moves with h.
+    ///
+    /// # Errors
+    /// Those of a step.
     fn price_of_time(
         &self,
         constants: &Self::Constants,
@@ -122,6 +129,7 @@ pub trait Controlled<const D: usize, const U: usize, const C: usize>: Sized {
     fn endpoint_expanded(&self, t: Self::Scalar, x: &Self::Place) -> EndpointExpansion<Self::Scalar, D>;
 
     /// What separates x from a target: with the motions G: η ↦ η_Q(q), residual Gᵀ(q* − q) and slope GᵀG; for momenta N* − N and I.
+    /// A small change δ with slope·δ = residual goes there.
     fn arrival(&self, x: &Self::Place, target: &Self::Place) -> Arrival<Self::Scalar, D>;
 
     /// The small change δ that moves x to y, to first order; the shortest where several do.

@@ -41,7 +41,7 @@ pub trait VelocityEquation<T: Scalar, const M: usize> {
 }
 
 /// The Legendre–Fenchel transform of ℓ: μ·ξ − ℓ(ξ) at the velocity ξ with ∂ℓ/∂ξ(ξ) = μ, the largest such value for a convex ℓ. Of several
-/// velocities the one is taken that is reached from rest as the momentum grows from ∂ℓ/∂ξ(0) to μ; the Newton steps and the bounds on their
+/// velocities the one is taken that is reached from rest as the momentum grows from ∂ℓ/∂ξ(0) to μ. Newton steps and the bounds on their
 /// work are those of [`solve`]. Since ξ is stationary, its error enters the value squared. +∞ where no velocity is found, NaN where μ or the
 /// Lagrangian at rest is not finite.
 pub fn legendre_fenchel<T: Scalar, const M: usize>(equation: &impl VelocityEquation<T, M>, mu: &SVector<T, M>) -> T {

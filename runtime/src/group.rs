@@ -2,6 +2,12 @@
 //!
 //! These types hold nothing: `F: SO<3>` in a declaration is a 3×3 matrix. An editor shows this page, with the components of a momentum.
 //!
+//! | group | of | page |
+//! |---|---|---|
+//! | turns | rotations of space; of space and time; of complex vectors; unit quaternions | [`SO`], [`U`], [`SU`] |
+//! | motions | of points by adding, turning, scaling and shearing | [`Translation`], [`SE`], [`Sim`], [`Aff`], [`Heisenberg`] |
+//! | linear maps | all of them; those that keep the volume; those that keep a symplectic form | [`GL`], [`SL`], [`Sp`] |
+//!
 //! A group of one's own is declared by its equation or by a basis of its Lie algebra, and needs no type.
 //!
 //! # Conventions
@@ -14,7 +20,8 @@
 //!   have the unit of a discrete Lagrangian, J·s; those along a translation have J·s per unit of length.
 //! * An action is *left* if Φ_gh = Φ_g Φ_h, as in `F * q`; then momenta are spatial. It is *right* if Φ_gh = Φ_h Φ_g, as in
 //!   `q * F`; then momenta are those of the body frame. Ad*_F is (Ad_F)*, without an inverse inside.
-//! * A velocity ξ, the argument of a `lagrangian`, has the coordinates of ξ = Σ ξ_i E_i; m·ξ = ⟨M, ξ⟩ is twice a quadratic kinetic energy.
+//! * A velocity ξ, the argument of a `lagrangian`, has the coordinates of ξ = Σ ξ_i E_i; m·ξ = ⟨M, ξ⟩ is twice
+//!   the kinetic energy of a Lagrangian that is quadratic in ξ.
 
 use core::convert::Infallible;
 

@@ -1,8 +1,8 @@
 //! The implicit equation of a step: ρ(ξ; μ) = 0 for the chart coordinates ξ of the group element F, given the momentum μ.
 //!
 //! [`solve`] first tries full Newton steps from the predictor, one to four linearisations for usual step sizes. Where these do not contract
-//! cleanly, it follows the path from the identity with bounded work, until that arrives or turns back: then no solution is connected to the
-//! identity. [`solve_linear_equation`] does without iteration where ρ is affine in ξ.
+//! cleanly, it follows the path from the identity with bounded work, until that arrives or turns back. In the latter case no solution is
+//! connected to the identity. [`solve_linear_equation`] does without iteration where ρ is affine in ξ.
 //!
 //! Solves are inlined once, in the part of the step that calls them: the result of a call lies in memory, for which small steps would wait.
 
@@ -142,8 +142,8 @@ fn allowed(most: u32, limit: Option<u32>, spent: u32) -> u32 {
 /// The solution ξ of ρ(ξ; `target`) = 0 that is connected to ξ = 0, in each lane as for a single number; NaN in lanes without one.
 ///
 /// Accuracy: the correction that Newton's method would make next is below [`Equation::tolerance`] of ξ, a quarter of a unit in its last
-/// place by default, or the residual is round-off: always the latter where Newton's method alone does not decide. Work: at most 12 linearisations,
-/// then at most [`LINEARIZATIONS`] more (ten to two hundred in practice); in all not more than [`Equation::limit`].
+/// place by default, or the residual is round-off. It is always the latter where Newton's method alone does not decide. Work: at most 12
+/// linearisations, then at most [`LINEARIZATIONS`] more (ten to two hundred in practice); in all not more than [`Equation::limit`].
 ///
 /// # Errors
 /// Where no lane has a solution: [`Error::Unsolvable`] where no solution is connected to the identity, with the largest fraction of `target` for which there is

@@ -15,7 +15,7 @@ const TERMS: i64 = 40;
 const ITERATIONS: u32 = 40;
 
 /// The principal logarithm, whose eigenvalues have imaginary parts between −π and π. NaN where A is not finite, is singular or has an
-/// eigenvalue on the negative real axis, or one that only round-off keeps from it: then square roots have lost half of the digits. For an
+/// eigenvalue on the negative real axis. So it is where only round-off keeps one off it: square roots have lost half of the digits. For an
 /// angle θ near π the error grows like ε/(π − θ), for so ill-conditioned is the logarithm there.
 pub fn logarithm<T: Scalar, const N: usize>(a: &SMatrix<T, N, N>) -> SMatrix<T, N, N> {
     function(a, |a| {

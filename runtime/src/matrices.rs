@@ -1,4 +1,4 @@
-//! Operations that nalgebra does not have, for generated code that works on matrices: straight loops over constant bounds, on the
+//! Operations that nalgebra does not have, for generated code that works on matrices. They are straight loops over constant bounds, on the
 //! stack, without a panic, for lanes and numbers with derivatives as well.
 
 use crate::linear::rows;

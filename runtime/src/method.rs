@@ -70,7 +70,8 @@ pub trait Method<S: Clebsch>: Sized {
     fn legendre_next(system: &S, h: S::Scalar, t: S::Scalar, q: &S::Configuration, f: &S::Element) -> S::Momentum;
 
     /// By how much the momentum of a state is ahead of that of its configuration, as [`Clebsch::stagger`]. 0 as provided.
-    fn stagger(_system: &S, _h: S::Scalar, _t: S::Scalar, _q: &S::Configuration) -> S::Momentum {
+    #[allow(unused_variables, reason = "provided methods take what others need")]
+    fn stagger(system: &S, h: S::Scalar, t: S::Scalar, q: &S::Configuration) -> S::Momentum {
         S::Momentum::origin()
     }
 

@@ -50,9 +50,10 @@ pub fn check_unit<T: Scalar, const N: usize>(name: &'static str, vector: &SVecto
     })
 }
 
-/// The inverse of an inertia, such as the Hessian Σ of the kinetic energy. [`Error::SingularKineticEnergy`] for a matrix whose condition
-/// number ‖|Σ⁻¹||Σ|‖_∞ (Skeel's, which does not see the scaling of the rows and is 1 for every diagonal matrix) reaches 1/(N ε): its inverse
-/// would have no correct digit.
+/// The inverse of an inertia, such as the Hessian Σ of the kinetic energy.
+///
+/// [`Error::SingularKineticEnergy`] where Skeel's condition number ‖|Σ⁻¹||Σ|‖_∞ reaches 1/(N ε): the inverse would have no correct digit.
+/// That number does not see the scaling of the rows, and is 1 for every diagonal matrix.
 pub fn invert<T: Scalar, const N: usize>(matrix: &SMatrix<T, N, N>) -> Result<SMatrix<T, N, N>, Error> {
     let mut inverse = *matrix;
     for lane in 0..T::LANES {

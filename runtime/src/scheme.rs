@@ -1,5 +1,15 @@
 //! Schemes: the order in which the parts of a step are called, the same for every declaration.
 //!
+//! ```text
+//! KickDriftKick   half kick, drift, half kick; or drift, kick where the step is of first order
+//! AdjointPair     half a step, and half a step of its adjoint
+//! Composed        steps of several sizes, of order 4, 6 and 8
+//! Split           exact drifts and kicks in turn
+//! FreeMotion      one exact motion
+//! Collocated      Hamilton's equations at the nodes of Gauss and Legendre, of order 16
+//! GreatCircle     points on large spheres in (q, w)
+//! Sites           equal sites, one after the other
+//! ```
 //! A method names its scheme, [`Method::Scheme`](crate::Method), and the system implements the parts that this scheme calls, [`crate::parts`].
 
 /// Of a scheme with one set of constants.

@@ -1,6 +1,7 @@
 //! Points on spheres in (q, w), where the momentum is M = wqᵀ − qwᵀ: a step in n numbers in place of n(n − 1)/2.
 //!
-//! w is the velocity times the inertia, perpendicular to q. Each kick takes its rounding along q off: else q·w and |q| err exponentially.
+//! w is the velocity times the inertia, perpendicular to q. Each kick takes off what rounding has left
+//! of it along q. Otherwise the errors of q·w and of |q| grow exponentially.
 
 use crate::matrices::skew_times;
 use crate::{Error, Mask, Scalar};

@@ -64,7 +64,7 @@ impl<S: Clebsch, M: Method<S>> Stepper<S, M> {
         self.kinetic_energy(state) + self.system.potential(state.time.now(), &state.configuration)
     }
 
-    /// Kinetic energy N·ξ − ℓ(q, ξ) at the velocity with N = ∂ℓ/∂ξ: ½ N·Σ⁻¹N for a quadratic ℓ with the Hessian Σ; +∞ where there is none.
+    /// Kinetic energy N·ξ − ℓ(q, ξ) at the velocity with N = ∂ℓ/∂ξ: ½ N·Σ⁻¹N for a quadratic ℓ with the Hessian Σ; +∞ where no velocity has it.
     #[inline]
     pub fn kinetic_energy(&self, state: &State<S, M>) -> S::Scalar {
         let constants = M::Scheme::whole(&self.constants);

@@ -1,7 +1,7 @@
 //! Deciding identities: evaluation at a random point of a prime field.
 //!
-//! Two rational expressions that agree at a random point of a field with 2⁶¹ − 1 elements are equal but for a probability below
-//! degree/2⁶¹ (Schwartz and Zippel), which is 10⁻¹⁵ where the degree is a thousand: one point decides. Rotations are sampled by the Cayley map and unit vectors by stereographic projection, so
+//! Two rational expressions that agree at a random point of a field with 2⁶¹ − 1 elements are equal. The probability of an error is
+//! below degree/2⁶¹ (Schwartz and Zippel), 10⁻¹⁵ for a degree of a thousand: one point decides. Rotations are sampled by the Cayley map and unit vectors by stereographic projection, so
 //! the relations of the group are part of the test. Functions that are not rational are opaque: equal arguments give equal
 //! values, and no other law of theirs is used, so an identity may be missed and is never claimed wrongly.
 

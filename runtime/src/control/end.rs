@@ -115,7 +115,7 @@ impl<T: Real, const D: usize> Equilibrated<T, D> {
         self.count_above(T::from_f64(UNITS) * T::EPSILON)
     }
 
-    /// The number of negative eigenvalues of the Hessian on plans that keep the target, by Sylvester's law of inertia: those of all Q_uu and
+    /// The number of negative eigenvalues of the Hessian on plans that keep the target, by Sylvester's law of inertia. It is that of all Q_uu and
     /// of −Γ, less the number of conditions. Directions without curvature on plans that arrive, as those of a symmetry, do not count.
     pub fn index(&self, negative: usize, rank: usize) -> usize {
         (negative + self.count_above(T::EPSILON.powf(T::from_ratio(1, 3)))).saturating_sub(rank)

@@ -68,8 +68,8 @@ impl<S: Controlled<D, U, C, Scalar: Real>, const D: usize, const U: usize, const
         ref input: SVector<S::Scalar, U>;
         /// The costate p_k = ∂V/∂x at x_k, V the least price from there on: a covector of the small changes of x_k.
         ref costate: SVector<S::Scalar, D>;
-        /// The matrix K of optimal feedback: where x_k is found changed by δ, the optimal plan from there to the same target begins with u_k
-        /// + Kδ + O(δ²). Near the end, where not all of the target can be reached any more, what can be is. Shape U×D.
+        /// The matrix K of optimal feedback, of shape U×D: where x_k is found changed by δ, the optimal plan from there to the same target
+        /// begins with u_k + Kδ + O(δ²). Near the end, where not all of the target can be reached any more, what can be is.
         ref gain: SMatrix<S::Scalar, U, D>;
         /// The multipliers z ≥ 0 of the bounds a ≤ 0: by how much the least price falls where a bound is relaxed by one unit.
         ref multipliers: SVector<S::Scalar, C>;

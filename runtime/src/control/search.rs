@@ -1,8 +1,8 @@
 //! How much of a correction is made: as much as makes an augmented Lagrangian smaller, or comes nearer to the target than ever. And the way
 //! down from a saddle, where no gradient leads: along a direction in which the price curves down.
 //!
-//! The correction makes J − μ Σ ln s + ν⁺·g + ½ g·Rg + z⁺·(a + s) smallest in its quadratic model, g = −e the gap, with the multipliers
-//! ν⁺ and z⁺ that come next and the Hessian that the backward sweep had: its slope is known, and near a solution full steps pass.
+//! The correction makes J − μ Σ ln s + ν⁺·g + ½ g·Rg + z⁺·(a + s) smallest in its quadratic model, g = −e the gap. The multipliers ν⁺ and
+//! z⁺ are those that come next, the Hessian that of the backward sweep. So its slope is known, and near a solution full steps pass.
 //!
 //! A negative eigenvalue of one Q_uu, counted with all curvature as it is, is one of the Hessian L Δ Lᵀ of the augmented Lagrangian: the input
 //! of that stage changed along its eigenvector, and those that follow by their gains, is the column of L⁻ᵀ.

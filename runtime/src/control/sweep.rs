@@ -7,8 +7,10 @@
 //! ```
 //! and δν is what closes the gap: Γ δν = V_ν. The inertia of the problem is that of all Q_uu less that of Γ.
 //!
-//! Sources: Jacobson and Mayne, *Differential Dynamic Programming* (1970); for the multipliers of the target Bryson and Ho, *Applied Optimal
-//! Control* (1975), section 6.3; for the bounds Rao, Wright and Rawlings, *Application of interior-point methods to model predictive control* (1998).
+//! Sources:
+//! * Jacobson and Mayne, *Differential Dynamic Programming* (1970);
+//! * for the multipliers of the target Bryson and Ho, *Applied Optimal Control* (1975), section 6.3;
+//! * for the bounds Rao, Wright and Rawlings, *Application of interior-point methods to model predictive control* (1998).
 
 use super::end::PlanEnd;
 use super::quadratic::{Fall, Policy, Value};

@@ -7,7 +7,8 @@ use core::fmt::{self, Debug, Formatter};
 
 /// A [`Stepper`] with a state and room for the next one, for states so large that handing each on by value takes longer than the step itself.
 ///
-/// It makes the steps of [`Stepper::step`], to the last bit; where one fails the state is what it was. Keep small states in a `Stepper`: in registers.
+/// It makes the steps of [`Stepper::step`], to the last bit; where one fails the state is what it was. A `Stepper` suits small states, which it
+/// hands on in registers.
 ///
 /// An integrator is where it is put: on the stack, in a struct of yours, or on the heap, by `Box::new(stepper.integrator(state))`, which allocates once.
 ///

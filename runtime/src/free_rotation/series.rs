@@ -1,7 +1,7 @@
 //! The coefficients of x_i d_i and of τ²/4 ℘(τ/2), and how far each number of them reaches.
 //!
-//! d = f(X) is a function of X = J⁻¹. Sums and products of such functions are formed of their values on one principal axis, or of the coefficients
-//! of c₀ + c₁X + c₂X², to which X³ = e₁X² − e₂X + e₃ reduces. The latter need no axes, which have no derivatives where two moments are equal.
+//! d = f(X) is a function of X = J⁻¹. Sums and products of such functions are formed of their values on one principal axis, or of the
+//! coefficients of c₀ + c₁X + c₂X², as X³ = e₁X² − e₂X + e₃. The latter need no axes, which have no derivatives where two moments are equal.
 
 use crate::space::larger;
 use crate::{Real, Scalar};

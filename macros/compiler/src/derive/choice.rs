@@ -1,5 +1,5 @@
-//! Price, bounds and the price of the end, each with its derivatives, and what the kernels of a choice of inputs compute: matrices over the
-//! motions of a configuration and the entries of the input.
+//! Price, bounds and the price of the end, each with its derivatives. The kernels of a choice of inputs compute matrices over the motions
+//! of a configuration and the entries of the input.
 
 use clebsch_symbolic::{Expr, Shape};
 

@@ -160,8 +160,8 @@ impl<'g> SystemFormulas<'g> {
         impulse.iter().any(|component| !identity::vanishes(*component)).then_some(impulse)
     }
 
-    /// J(q, μ_Q(q))/c for each factor, where it leaves the momenta J(q, p) of motions as they are: then it is the orthogonal projection to
-    /// them, for ξ ↦ ξ_Q(q) and p ↦ J(q, p) are transposes of each other. c is 1 on spheres, and |E_i|² where matrices are multiplied.
+    /// J(q, μ_Q(q))/c for each factor, where it leaves the momenta J(q, p) of motions as they are. It is the orthogonal projection to
+    /// them then, as ξ ↦ ξ_Q(q) and p ↦ J(q, p) are transposes. c is 1 on spheres, and |E_i|² where matrices are multiplied.
     pub(super) fn projection(&self) -> Option<Vec<Expr<'g>>> {
         let (momenta, momentum_map) = (&self.symbols.momenta, &self.momentum_map);
         let projection = self.momenta_of(self.motion_by(momenta));

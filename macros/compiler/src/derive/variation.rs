@@ -18,8 +18,8 @@ pub struct EdgeDerivatives<'g> {
     /// ∂F⁻ℓd/∂η η for the motion Φ_{exp η} of q, ∂F⁻ℓd/∂η′ η′ and ∂F⁺ℓd/∂η′ η′ for that of q⁺. Where forces act ∂F⁺ℓd/∂η η follows, else
     /// that is −(∂F⁻ℓd/∂η′)ᵀ.
     pub derivatives: Vec<Expr<'g>>,
-    /// η′, ∂F⁻ℓd η and ∂F⁺ℓd η for the motions η of q that carry q⁺ along, by η′ = Ad_F η for a left action and Ad_{F⁻¹} η for a right one,
-    /// and leave F as it is. Where the cost does not couple only potentials and forces are left of the derivatives.
+    /// η′, ∂F⁻ℓd η and ∂F⁺ℓd η for the motions η of q that leave F as it is. They carry q⁺ along, by η′ = Ad_F η for a left action and
+    /// η′ = Ad_{F⁻¹} η for a right one. Where the cost does not couple only potentials and forces are left of the derivatives.
     pub carried: [Expr<'g>; 3],
     /// What a choice of inputs needs, where there is one.
     pub bend: Option<Bend<'g>>,

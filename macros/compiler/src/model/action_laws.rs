@@ -30,7 +30,7 @@ pub(super) fn check(action: &Action, diagnostics: &Diagnostics) -> Option<Vec<(S
     let sides: Vec<_> = (0..action.factors.len()).map(|factor| action.side(factor, diagnostics)).collect();
     action.factors_commute(diagnostics);
     let sides: Vec<(Option<Side>, bool)> = sides.into_iter().collect::<Option<_>>()?;
-    // a factor on which both laws hold takes the side of the others, else left; so does one that moves nothing, which has none
+    // a factor on which both laws hold takes the side of the others, else left; so does one that moves nothing
     let is_of = |side| sides.iter().any(|(found, _)| *found == Some(side));
     let open = if is_of(Side::Right) && !is_of(Side::Left) { Side::Right } else { Side::Left };
     let laws = sides.iter().map(|&(side, moves)| (side.unwrap_or(open), moves));

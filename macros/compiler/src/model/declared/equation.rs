@@ -193,8 +193,8 @@ impl<'g> GroupEquation<'_, 'g> {
     }
 }
 
-/// A basis of all x of the given length with ⟨row, x⟩ = 0: an entry that those before do not determine is one in one vector of the
-/// basis and zero in the others.
+/// A basis of all x of the given length with ⟨row, x⟩ = 0. Each entry that those before do not determine is one in a vector of its own,
+/// and zero in the others.
 pub(super) fn kernel(rows: &[Vec<Rational>], length: usize) -> Vec<Vec<Rational>> {
     // a pivot is determined by the entries behind it, so entries are taken from the last to the first
     let mut reversed: Vec<Vec<Rational>> = rows.iter().map(|row| row.iter().rev().cloned().collect()).collect();
