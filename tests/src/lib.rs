@@ -2,11 +2,6 @@
 
 #![allow(missing_docs)]
 
-/// The code of the README, compiled and run.
-#[cfg(doctest)]
-#[doc = include_str!("../../README.md")]
-pub struct Readme;
-
 /// The structs of the folder `fixtures/accept`.
 pub mod fixtures {
     macro_rules! fixtures {
