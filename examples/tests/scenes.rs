@@ -359,3 +359,17 @@ fn the_map_of_the_edge_holds_its_claims() {
     let errors = refusal("extremes", &["--section", "nothing"]);
     assert!(errors.contains("step-sizes"), "{errors}");
 }
+
+/// Every picture of the book's concepts is drawn again, and its claims hold.
+#[test]
+fn the_pictures_of_the_concepts_are_drawn() {
+    let folder = file("concepts");
+    let output = run("figures", &[text(&folder)]);
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let book = Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/book/src/concepts");
+    for page in std::fs::read_dir(&book).expect("the concepts of the book") {
+        let picture = page.expect("a file").path().with_extension("svg");
+        let name = picture.file_name().expect("a name");
+        assert!(picture.is_file() && folder.join(name).is_file(), "no picture {}", name.display());
+    }
+}

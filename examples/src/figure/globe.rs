@@ -1,7 +1,7 @@
 //! A path on the unit sphere, seen from far away: equal aspect, the far side paler than the near one.
 
 use super::canvas::{Area, Drawn};
-use super::theme::{FRAME, GRID, INK, PAPER, PIECES, along, blend, pieces, px, stroke, text, write};
+use super::theme::{FRAME, GRID, INK, PAPER, blend, coloured, px, stroke, text, write};
 use plotters::prelude::Circle;
 use plotters::style::text_anchor::{HPos, VPos};
 use plotters::style::{Color, RGBColor};
@@ -43,7 +43,7 @@ pub struct Globe<'a> {
 pub struct Track<'a> {
     /// Unit vectors in the order of time.
     pub points: &'a [[f64; 3]],
-    /// Its colour; [`along`] time where there is none.
+    /// Its colour; [`along`](super::along) time where there is none.
     pub colour: Option<RGBColor>,
     /// Width of the line, pixels.
     pub width: f64,
@@ -101,8 +101,7 @@ impl Globe<'_> {
 
 impl Track<'_> {
     fn draw_side(&self, area: &Area<'_>, eye: &Eye, side: Side) -> Drawn {
-        for (index, piece) in pieces(self.points).enumerate() {
-            let colour = self.colour.unwrap_or_else(|| along(index as f64 / (PIECES - 1) as f64));
+        for (colour, piece) in coloured(self.points, self.colour) {
             for visible in eye.visible(piece, side) {
                 stroke(area, eye.project_all(&piece[visible]), side.tint(colour, 0.68), self.width)?;
             }
@@ -186,10 +185,10 @@ impl Eye {
 fn graticule() -> Vec<Vec<[f64; 3]>> {
     let parallels = (-2..=2)
         .map(|i| f64::from(i) * PI / 6.0)
-        .map(|latitude: f64| (0..=96).map(|j| point(latitude, f64::from(j) * TAU / 96.0)).collect::<Vec<_>>());
+        .map(|latitude: f64| (0..=48).map(|j| point(latitude, f64::from(j) * TAU / 48.0)).collect::<Vec<_>>());
     let meridians = (0..12)
         .map(|i| f64::from(i) * TAU / 12.0)
-        .map(|longitude| (-30..=30).map(|j| point(f64::from(j) * PI / 60.0, longitude)).collect::<Vec<_>>());
+        .map(|longitude| (-15..=15).map(|j| point(f64::from(j) * PI / 30.0, longitude)).collect::<Vec<_>>());
     parallels.chain(meridians).collect()
 }
 

@@ -1,7 +1,7 @@
 //! Paths in the plane, seen from above: equal aspect.
 
 use super::canvas::{Area, Drawn};
-use super::theme::{FRAME, GRID, INK, PIECES, SOFT_INK, along, px, stroke, text, write};
+use super::theme::{FRAME, GRID, INK, SOFT_INK, coloured, px, stroke, text, write};
 use plotters::prelude::Circle;
 use plotters::style::text_anchor::{HPos, VPos};
 use plotters::style::{Color, RGBColor};
@@ -24,7 +24,7 @@ pub struct Path<'a> {
     pub label: &'a str,
     /// (x, y) in the order of time.
     pub points: &'a [(f64, f64)],
-    /// Its colour; [`along`] time where there is none.
+    /// Its colour; [`along`](super::along) time where there is none.
     pub colour: Option<RGBColor>,
     /// Width of the line, pixels.
     pub width: f64,
@@ -99,8 +99,7 @@ impl Plane<'_> {
 
 impl Path<'_> {
     fn draw(&self, area: &Area<'_>, map: &Map) -> Drawn {
-        for (index, piece) in super::theme::pieces(self.points).enumerate() {
-            let colour = self.colour.unwrap_or_else(|| along(index as f64 / (PIECES - 1) as f64));
+        for (colour, piece) in coloured(self.points, self.colour) {
             stroke(area, piece.iter().map(|point| map.project(*point)).collect(), colour, self.width)?;
         }
         Ok(())

@@ -60,6 +60,15 @@ pub fn pieces<T>(points: &[T]) -> impl Iterator<Item = &[T]> {
     (0..points.len()).step_by(length).map(move |start| &points[start..(start + length + 1).min(points.len())])
 }
 
+/// A path in the pieces that it is drawn in, each with its colour: one piece where the path has a colour, else [`along`] time.
+pub(super) fn coloured<T>(points: &[T], colour: Option<RGBColor>) -> Vec<(RGBColor, &[T])> {
+    if let Some(colour) = colour {
+        return vec![(colour, points)];
+    }
+    let fraction = |index: usize| index as f64 / (PIECES - 1) as f64;
+    pieces(points).enumerate().map(|(index, piece)| (along(fraction(index)), piece)).collect()
+}
+
 /// `to` in the share `share`, `from` in the rest.
 pub(super) fn blend(from: RGBColor, to: RGBColor, share: f64) -> RGBColor {
     let mix = |a: u8, b: u8| (f64::from(a) + (f64::from(b) - f64::from(a)) * share).round() as u8;
