@@ -11,6 +11,37 @@ use num_traits::{One, Zero};
 /// An inertia without an inverse.
 const SINGULAR: Error = Error::SingularKineticEnergy { condition: f64::INFINITY };
 
+/// A constant of the user's crate that a closure reads.
+#[diagnostic::on_unimplemented(
+    message = "a constant that a closure reads is an `f64` or an `f32`, not `{Self}`",
+    label = "this is neither",
+    note = "write `const NAME: f64 = …;`, or read a vector or a matrix from a field, as in `self.center`"
+)]
+pub trait Constant {
+    /// The same number.
+    fn to_f64(self) -> f64;
+}
+
+impl Constant for f64 {
+    #[inline(always)]
+    fn to_f64(self) -> f64 {
+        self
+    }
+}
+
+impl Constant for f32 {
+    #[inline(always)]
+    fn to_f64(self) -> f64 {
+        self.into()
+    }
+}
+
+/// A constant in the precision of a system.
+#[inline(always)]
+pub fn constant<T: Scalar>(value: impl Constant) -> T {
+    T::from_f64(value.to_f64())
+}
+
 /// [`Error::NotFinite`] with the name of the field if a number in it is NaN or infinite.
 pub fn check_finite<T: Scalar>(name: &'static str, value: &impl Space<T>) -> Result<(), Error> {
     if value.is_finite() { Ok(()) } else { Err(Error::NotFinite { name }) }

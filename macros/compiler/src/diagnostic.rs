@@ -31,6 +31,9 @@ impl<T: ToTokens + ?Sized> From<&T> for Location {
     }
 }
 
+/// Why something of the language is refused.
+pub(crate) const LATER: &str = "it belongs to the language and comes with a later version of clebsch";
+
 /// An error at a place: its message, then help and notes, each a text with what it formats.
 macro_rules! error {
     ($place:expr, $message:literal $(, $given:expr)* $(; $line:ident $text:literal $(, $also:expr)*)*) => {
@@ -90,7 +93,7 @@ impl Diagnostic {
     /// Says that something is part of the language, but not of this version, and what to write instead.
     pub fn later(place: impl Into<Location>, what: impl fmt::Display, help: Option<&str>) -> Diagnostic {
         let error = Diagnostic::new(place, format!("{what} is not supported yet")).maybe_help(help);
-        error.note("it belongs to the language and comes with a later version of clebsch")
+        error.note(LATER)
     }
 }
 

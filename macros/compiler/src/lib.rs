@@ -52,7 +52,7 @@ fn integrator(item: TokenStream) -> Result<TokenStream, Diagnostics> {
 
 /// What stands beside errors; `None` where the types cannot be read.
 fn stub(item: TokenStream) -> Option<TokenStream> {
-    let (graph, declaration) = (Graph::new(), parse::parse(item).ok()?);
+    let (graph, declaration) = (Graph::new(), parse::parse_with_errors(item)?);
     let outline = work::within(WORK, || model::outline(&graph, &declaration));
     Some(emit::stub(&declaration, &outline.ok()??))
 }

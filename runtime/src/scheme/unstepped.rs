@@ -7,7 +7,7 @@ use crate::{Clebsch, Error, Method};
 /// No scheme: of a declaration with an error, so that nothing else is reported. It is never called.
 pub struct Unstepped;
 
-impl<S: Clebsch, M: Method<S, Constants = ()>> Scheme<S, M> for Unstepped {
+impl<S: Clebsch, M: Method<S>> Scheme<S, M> for Unstepped {
     type Left = ();
 
     momentum_is_held!(M);

@@ -179,12 +179,13 @@ fn check_rank<'g>(system: &SystemFormulas<'g>, energy: Expr<'g>) -> Result<(), D
         return Ok(());
     }
     let (place, name, shape) = (model.spans.kinetic.place, &model.factors[0].name, Shape::vector(dimension));
+    let mass = &model.spans.mass;
     for leaf in model.configurations.iter().filter(|leaf| rank > 0 && leaf.shape == shape) {
         if identity::vanishes(inertia * leaf.symbol) {
             let axis = &leaf.name;
             bail!(place, "the cost does not fix the rotation about `{axis}`";
                 note "its Hessian at {name} = I has rank {rank} of {dimension}: the cost is unchanged by rotations about {axis}";
-                help "use the chord of the group: `self.mass * ({name} - I).norm_squared() / (4 * h)`, which has the same motion");
+                help "use the chord of the group: `{mass} * ({name} - I).norm_squared() / (4 * h)`, which has the same motion");
         }
     }
     let is_lost = |j: &usize| rank > 0 && identity::vanishes(inertia.block(0, *j, shape));
@@ -195,7 +196,7 @@ fn check_rank<'g>(system: &SystemFormulas<'g>, energy: Expr<'g>) -> Result<(), D
             note "its Hessian at the identity {why}"; help "add a term such as `({name} - I).norm_squared() / (2 * h)`");
     }
     bail!(place, "the cost does not depend on {}", directions.join(" and ");
-        help "add the chord of the group, as in `… + self.inertia * ({name} - I).norm_squared() / (4 * h)`";
+        help "add the chord of the group, as in `… + {mass} * ({name} - I).norm_squared() / (4 * h)`";
         note "its Hessian at the identity {why}");
 }
 

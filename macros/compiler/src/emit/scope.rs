@@ -192,7 +192,7 @@ impl Scope<'_, '_> {
     fn constant_of_crate(&self, index: usize) -> TokenStream {
         let path = &self.model.constants[index].path;
         let path = self.names.of_user(quote!(#path));
-        if self.is_generic() { self.rounded(quote!(#path)) } else { quote!(#path) }
+        quote!(runtime::constant::<T>(#path))
     }
 
     /// A number in the precision of the scalar.

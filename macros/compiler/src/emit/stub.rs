@@ -40,7 +40,9 @@ pub fn stub(declaration: &Declaration, outline: &Outline) -> TokenStream {
         names,
     };
     let (controlled, system) = (controlled(&block, declaration, outline), system(&block, declaration, outline));
-    anonymous(&block.named(&quote!(type C = (); #controlled #system)))
+    // an alias has to use its parameter
+    let constants = if block.is_generic() { quote!(::core::marker::PhantomData<T>) } else { quote!(()) };
+    anonymous(&block.named(&quote!(type C = #constants; #controlled #system)))
 }
 
 /// Functions of a table, none of which is ever called.

@@ -7,7 +7,7 @@ use syn::{Generics, Type};
 use super::scope::check_reserved;
 use super::shapes::{const_generic, plain};
 use crate::diagnostic::{Diagnostic, Diagnostics, error, refuse, report};
-use crate::parse::{Argument, Declaration, Pattern, spell, spell_type};
+use crate::parse::{Argument, Declaration, Kinetic, Pattern, spell, spell_type};
 
 /// The two arguments of the action: the group element and the configuration, with their types. Those of a power are those of one site.
 #[derive(Copy, Clone)]
@@ -20,6 +20,8 @@ pub(super) struct TypedArguments<'d> {
     pub sites: Option<&'d Ident>,
     /// The input, as the closure that introduces it calls it.
     pub input: Option<&'d Pattern>,
+    /// The velocity, as the Lagrangian calls it.
+    pub velocity: Option<&'d Pattern>,
     pub diagnostics: &'d Diagnostics,
 }
 
@@ -54,8 +56,12 @@ pub(super) fn of_action<'d>(declaration: &'d Declaration, diagnostics: &'d Diagn
     let space = typed(configuration, "Unit<Vector3>", "the space of configurations");
     let (element, configuration) = (&element.pattern, &configuration.pattern);
     let input = declaration.input().map(|argument| &argument.pattern);
-    let types =
-        TypedArguments { element, group: group?, configuration, space: space?, sites: None, input, diagnostics };
+    let velocity = match &declaration.kinetic {
+        Kinetic::Lagrangian(lagrangian) => lagrangian.arguments.last().map(|argument| &argument.pattern),
+        _ => None,
+    };
+    let (group, space) = (group?, space?);
+    let types = TypedArguments { element, group, configuration, space, sites: None, input, velocity, diagnostics };
     diagnostics.take(types.of_site(&declaration.generics))
 }
 

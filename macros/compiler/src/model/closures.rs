@@ -67,10 +67,11 @@ impl<'g> Closures<'_, '_, 'g> {
             scalar(self.context, closure, self.arguments.scope_of(closure, COST), "a discrete Lagrangian is a scalar")?;
         let factors = self.typed.factors.as_deref()?;
         for Factor { name, group, .. } in factors.iter().filter(|factor| !cost.depends_on(factor.symbol)) {
+            let mass = parse::mass(&self.declaration.fields, None);
             let example = if group.is_translation() {
-                format!("self.mass * {name}.norm_squared() / (2 * h)")
+                format!("{mass} * {name}.norm_squared() / (2 * h)")
             } else {
-                format!("self.mass * ({name} - I).norm_squared() / (4 * h)")
+                format!("{mass} * ({name} - I).norm_squared() / (4 * h)")
             };
             report!(self.context.diagnostics, tail(&closure.body), "the cost does not depend on `{name}`";
                 help "add the kinetic energy of `{name}`, as in `{example}`";
@@ -98,8 +99,9 @@ impl<'g> Closures<'_, '_, 'g> {
         let unmoved = |(velocity, _): &(&Expr<'g>, &Factor<'g>)| !energy.depends_on(**velocity);
         if let Some((velocity, factor)) = velocities.iter().zip(factors).find(unmoved) {
             let of = if factors.len() > 1 { format!(" of `{}`", factor.name) } else { String::new() };
+            let inertia = parse::mass(&self.declaration.fields, Some(velocity.shape().rows));
             refuse!(diagnostics, tail(&closure.body), "the lagrangian does not depend on the velocity `{velocity}`{of}";
-                help "add the kinetic energy, as in `{velocity}.dot(&(self.inertia * {velocity})) / 2`");
+                help "add the kinetic energy, as in `{velocity}.dot(&({inertia} * {velocity})) / 2`");
         }
         let discretization = chosen_discretization(graph, self.declaration, factors);
         Some(Kinetic::Lagrangian { energy, velocities, name: pattern.spell(), discretization })

@@ -53,7 +53,7 @@ use self::sites::Sites;
 use self::space::Space;
 use self::typed::{ActedSystem, Arguments, Typed};
 use crate::diagnostic::Diagnostics;
-use crate::parse::{Declaration, Potential};
+use crate::parse::{self, Declaration, Potential};
 
 /// The model of a declaration.
 pub fn model<'g>(graph: &'g Graph, declaration: &Declaration) -> Result<Model<'g>, Diagnostics> {
@@ -128,6 +128,7 @@ pub fn model<'g>(graph: &'g Graph, declaration: &Declaration) -> Result<Model<'g
             action: closures::written(&declaration.action),
             kinetic: closures::written(declaration.kinetic.closure()),
             order: dials.order.as_ref().map(|order| order.span),
+            mass: parse::mass(&declaration.fields, None),
         },
     };
     let kinetic = match formulas.mover {

@@ -98,6 +98,15 @@ impl<'d> Matched<'d> {
         {
             taken[last] = Some(Slot::Velocity);
         }
+        // a velocity before the other arguments is in another order
+        let is_new = |position: &usize| taken[*position].is_none() && !names.is_known(&arguments[*position].pattern);
+        let new: Vec<usize> = (0..untyped).filter(is_new).collect();
+        if let &[only] = new.as_slice()
+            && slots.contains(&Slot::Velocity)
+            && !taken.contains(&Some(Slot::Velocity))
+        {
+            taken[only] = Some(Slot::Velocity);
+        }
         let introduces = |argument: &Argument| argument.ty.is_some() || arguments.len() == slots.len();
         if slots.contains(&Slot::Offered) && arguments.first().is_some_and(introduces) {
             taken[0] = Some(Slot::Offered);
@@ -169,10 +178,20 @@ impl<'d> Matched<'d> {
         }
     }
 
+    /// What to write where the potential reads the velocity, if this is its pattern in the Lagrangian.
+    fn of_velocity(&self) -> Option<(&'d Pattern, String)> {
+        let velocity = self.names.velocity.filter(|_| self.slots == POTENTIAL)?;
+        let name = velocity.spell();
+        Some((velocity, format!("a force may depend on the velocity: write `force = |{name}| …`")))
+    }
+
     /// The error for an argument that the action does not know.
     fn unknown(&self, position: usize) -> Diagnostic {
         let Argument { pattern, .. } = &self.closure.arguments[position];
         let (name, key) = (pattern.spell(), &self.closure.key);
+        if let Some((_, help)) = self.of_velocity().filter(|(velocity, _)| velocity.matches(pattern)) {
+            return error!(pattern.place(), "the {key} cannot depend on the velocity `{name}`"; help "{help}");
+        }
         let error = if self.names.is_known(pattern) {
             error!(pattern.place(), "the {key} cannot depend on `{name}`")
         } else {
@@ -246,7 +265,10 @@ impl<'d> Matched<'d> {
             };
             names.into_iter().map(move |name| (name, help.clone()))
         });
-        missing.collect()
+        let of_velocity = self.of_velocity().into_iter().flat_map(|(velocity, help)| {
+            velocity.names().into_iter().map(move |ident| (ident.unraw().to_string(), help.clone()))
+        });
+        missing.chain(of_velocity).collect()
     }
 
     /// What the closure may depend on.

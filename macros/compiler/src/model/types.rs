@@ -371,6 +371,8 @@ pub struct Spans {
     pub kinetic: Written,
     /// The order's, where it is written.
     pub order: Option<Span>,
+    /// A mass, as messages show it: `self.mass`, or a field of the user's.
+    pub mass: String,
 }
 
 /// An expression as the user wrote it.

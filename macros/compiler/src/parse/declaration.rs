@@ -11,7 +11,7 @@ use super::spelling::{joined, spell, spell_type, tokens};
 use super::{
     Argument, Choice, Closure, DeclaredGroup, DeclaredMethod, Definition, Field, Opaque, combinations, control, methods,
 };
-use crate::diagnostic::{Diagnostic, Diagnostics, error};
+use crate::diagnostic::{Diagnostic, error};
 
 /// What the user declared: the struct, the closures and the dials, as written.
 #[derive(Clone)]
@@ -109,8 +109,9 @@ impl Kinetic {
     }
 }
 
-/// Puts the declaration together, or says what is missing or too much.
-pub(super) fn assemble(input: &DeriveInput, mut keys: Keys, fields: Vec<Field>) -> Result<Declaration, Diagnostics> {
+/// Puts the declaration together, and says what is missing or too much; `None` without a readable action. A kinetic energy that is missing is
+/// the action's closure, which nothing reads: the declaration has an error.
+pub(super) fn assemble(input: &DeriveInput, mut keys: Keys, fields: Vec<Field>) -> Option<Declaration> {
     let diagnostics = keys.diagnostics;
     combinations::check(&keys);
     let (kinetic, control) = control::read(&mut keys);
@@ -120,18 +121,16 @@ pub(super) fn assemble(input: &DeriveInput, mut keys: Keys, fields: Vec<Field>) 
     if !keys.was_given("action") && !keys.was_given("dynamics") && !nothing_readable {
         diagnostics.push(missing_action(&input.ident, keys.is_empty()));
     } else if !nothing_readable && !moved_by_inputs && !keys.was_given("cost") && !keys.was_given("lagrangian") {
-        diagnostics.push(missing_kinetic(&input.ident));
+        diagnostics.push(missing_kinetic(&input.ident, &fields));
     }
     control::check_endpoint(&keys, control.as_ref());
     let [action, force, force_on, endpoint] =
         ["action", "force", "force_on", "endpoint"].map(|name| keys.closures.remove(name));
     let Keys { potential, symmetries, groups, dials, methods, .. } = keys;
     let methods = methods::checked(&input.ident, methods, diagnostics);
-    // by construction: what is missing has an error
-    let (true, Some(action), Some(kinetic)) = (diagnostics.is_empty(), action, kinetic) else {
-        return Err(diagnostics.clone());
-    };
-    Ok(Declaration {
+    let action = action?;
+    let kinetic = kinetic.unwrap_or_else(|| Kinetic::Lagrangian(action.clone()));
+    Some(Declaration {
         ident: input.ident.clone(),
         generics: input.generics.clone(),
         fields,
@@ -161,9 +160,10 @@ fn missing_action(ident: &Ident, nothing_given: bool) -> Diagnostic {
         note "the action declares the group and the configurations by its two typed arguments")
 }
 
-fn missing_kinetic(ident: &Ident) -> Diagnostic {
+fn missing_kinetic(ident: &Ident, fields: &[Field]) -> Diagnostic {
+    let inertia = super::mass(fields, Some(3));
     error!(ident, "`{ident}` has neither a cost nor a lagrangian";
-        help "write `lagrangian = |omega| omega.dot(&(self.inertia * omega)) / 2`, or a `cost = |h, F| …`";
+        help "write `lagrangian = |omega| omega.dot(&({inertia} * omega)) / 2`, or a `cost = |h, F| …`";
         note "without kinetic energy nothing says how a momentum moves the configuration")
 }
 

@@ -6,6 +6,7 @@ use syn::punctuated::Punctuated;
 use syn::{Index, Member, Token, Type};
 
 use super::dials::{Promise, Word};
+use super::spell_type;
 use crate::diagnostic::{Diagnostic, Diagnostics, Location, error, nearest, report};
 
 /// A field of the user's struct.
@@ -31,6 +32,30 @@ pub(crate) fn member_name(member: &Member) -> String {
         Member::Named(ident) => ident.unraw().to_string(),
         Member::Unnamed(index) => index.index.to_string(),
     }
+}
+
+/// Names of inertias contain one of these words.
+const INERTIAS: [&str; 2] = ["inertia", "moment"];
+
+/// The mass that messages show: `self.name` of the first field that is called one, `self.mass` where there is none. With a size, the inertia,
+/// a square matrix of that size.
+pub(crate) fn mass(fields: &[Field], size: Option<usize>) -> String {
+    let fits = |ty: &Type| {
+        let text = spell_type(ty);
+        let name = text.rsplit("::").next().unwrap_or_default();
+        match size {
+            None => name.chars().all(char::is_alphanumeric),
+            Some(n) => name.starts_with(&format!("Matrix{n}")) || text.ends_with(&format!(", {n}, {n}>")),
+        }
+    };
+    let is_mass = |field: &&Field| {
+        let name = field.name().to_lowercase();
+        // the mass matrix of a cost, ½tr(J)I − J, is no inertia
+        let is_mass = size.is_none() && name.contains("mass");
+        fits(&field.ty) && (is_mass || INERTIAS.iter().any(|word| name.contains(word)))
+    };
+    let usual = if size.is_some() { "inertia" } else { "mass" };
+    format!("self.{}", fields.iter().find(is_mass).map_or(usual.to_string(), Field::name))
 }
 
 /// Reads a field and its `#[clebsch(…)]`.

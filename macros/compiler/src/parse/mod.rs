@@ -20,7 +20,7 @@ pub use control::Choice;
 pub use declaration::{Declaration, Kinetic, Potential};
 pub use dials::*;
 pub use field::Field;
-pub(crate) use field::member_name;
+pub(crate) use field::{mass, member_name};
 pub use groups::{DeclaredGroup, Definition};
 pub use keys::{Located, keys_as_markdown};
 pub use methods::DeclaredMethod;
@@ -34,7 +34,22 @@ use syn::{Data, DeriveInput};
 use crate::diagnostic::{Diagnostic, Diagnostics, Location, error};
 
 /// Reads the item that carries `#[derive(Clebsch)]`.
+///
+/// # Errors
+/// Everything that is wrong with its form, each error at its place.
 pub fn parse(item: TokenStream) -> Result<Declaration, Diagnostics> {
+    let (declaration, diagnostics) = read(item)?;
+    // by construction: a declaration without errors is there
+    declaration.filter(|_| diagnostics.is_empty()).ok_or(diagnostics)
+}
+
+/// As much of a declaration with errors as its types are read from.
+pub(crate) fn parse_with_errors(item: TokenStream) -> Option<Declaration> {
+    read(item).ok()?.0
+}
+
+/// The declaration, as far as it can be read, and what is wrong with it.
+fn read(item: TokenStream) -> Result<(Option<Declaration>, Diagnostics), Diagnostics> {
     bounds::check(&item)?;
     let input: DeriveInput = syn::parse2(item).map_err(Diagnostic::from)?;
     let fields = match &input.data {
@@ -46,7 +61,8 @@ pub fn parse(item: TokenStream) -> Result<Declaration, Diagnostics> {
     let keys = attribute::read(&input, &diagnostics);
     let fields = fields.iter().enumerate();
     let fields = fields.map(|(position, field)| field::read(position, field, &diagnostics)).collect();
-    declaration::assemble(&input, keys, fields)
+    let declaration = declaration::assemble(&input, keys, fields);
+    Ok((declaration, diagnostics))
 }
 
 fn no_struct(place: Location, what: &str) -> Diagnostics {

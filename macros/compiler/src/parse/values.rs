@@ -83,7 +83,11 @@ impl Reader<'_, '_> {
     /// `[a, b]`, of the words for what is emitted.
     pub fn words(self, dial: &mut Emit) -> Result<(), Diagnostic> {
         if !self.stream.peek(syn::token::Bracket) {
-            return Err(self.expected(self.stream, "a list"));
+            let word = self.stream.fork().call(Ident::parse_any).map(|word| word.to_string());
+            let meant = word.ok().and_then(|word| nearest(&word, EMITTED.iter().map(|(known, _)| *known)));
+            let example = meant.map_or(self.example.to_string(), |word| format!("[{word}]"));
+            bail!(self.stream.span(), "the value of `{}` has to be a list", self.name;
+                help "write `{} = {example}`", self.name);
         }
         let list = bracket(self.stream)?;
         let words: Punctuated<Ident, Token![,]> = Punctuated::parse_terminated_with(&list, Ident::parse_any)?;

@@ -23,12 +23,9 @@ impl<'g> Elaborator<'_, '_, 'g> {
                     note "parts are counted from 0"),
             },
             (Member::Unnamed(Index { index, span }), other) => {
-                let help = format!("write `{}[{index}]`", parenthesized(&field.base));
                 let (base, is) = (spell(&field.base), other.describe());
-                self.refuse(
-                    error!(*span, "`{base}` is {is} and has no part `.{index}`")
-                        .maybe_help(matches!(other, Value::Array(_)).then_some(help)),
-                )
+                let error = error!(*span, "`{base}` is {is} and has no part `.{index}`");
+                self.refuse(error.maybe_help(instead_of_part(&parenthesized(&field.base), *index as usize, &other)))
             }
             (Member::Named(name), Value::Quaternion(q)) => self.coordinate(field, q, name),
             (Member::Named(name), base) => {
@@ -120,6 +117,22 @@ impl<'g> Elaborator<'_, '_, 'g> {
             _ => refuse!(self, syntax, "the index {number} is out of range";
                 note "{of} are counted from 0 to {}", length - 1),
         }
+    }
+}
+
+/// What to write in place of `base.index`, where the base has that entry.
+fn instead_of_part(base: &str, index: usize, value: &Value) -> Option<String> {
+    match value {
+        Value::Array(_) => Some(format!("write `{base}[{index}]`")),
+        Value::Matrix(expr) if expr.shape().is_column() && !expr.shape().is_scalar() => {
+            let component = COMPONENTS.get(index).map(|name| format!("`{base}.{name}` or "));
+            let component = component.unwrap_or_default();
+            (index < expr.shape().rows).then(|| format!("write {component}`{base}[{index}]`"))
+        }
+        Value::Matrix(expr) if !expr.shape().is_scalar() => {
+            Some(format!("write `{base}[(i, j)]` for an entry, counted from 0"))
+        }
+        _ => None,
     }
 }
 

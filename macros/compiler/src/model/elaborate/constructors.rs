@@ -171,7 +171,10 @@ impl<'g> Elaborator<'_, '_, 'g> {
         let is_method = METHODS.iter().any(|(method, ..)| *method == name);
         self.refuse(match call.args.first().filter(|_| is_method) {
             Some(first) => error.help(format!("write `{}.{name}()`", parenthesized(strip(first)))),
-            None => error.help("write its formula here").note("a macro cannot look into functions"),
+            None => {
+                let error = error.help("write its formula here").maybe_help(self.opaque());
+                error.note("a macro cannot look into functions")
+            }
         })
     }
 

@@ -60,12 +60,14 @@ pub(super) fn point_moved(link: &ExprBinary, left: Expr, right: Expr) -> Diagnos
 }
 
 /// A product whose inner dimensions differ.
-pub(super) fn no_product(link: &ExprBinary, left: Expr, right: Expr) -> Diagnostic {
+pub(super) fn no_product(link: &ExprBinary, left: Expr, right: Expr, meant: Option<String>) -> Diagnostic {
     let (a, b) = (parenthesized(&link.left), parenthesized(&link.right));
     let (left, right) = (left.shape(), right.shape());
     let (first, second) = (spell(&link.left), spell(&link.right));
     let error = error!(link, "`{first}` is {left} and `{second}` is {right}: they cannot be multiplied");
-    let error = if left == right && left.is_column() {
+    let error = if let Some(meant) = meant {
+        error.help(format!("is `{meant}` meant?"))
+    } else if left == right && left.is_column() {
         error.help(format!("write `{a}.dot(&{b})` for the scalar product, `{a}.cross(&{b})` for the cross product"))
     } else if left.is_column() && right.is_square() && right.rows == left.rows {
         error.help(format!("write the matrix first: `{b} * {a}`"))
@@ -84,7 +86,9 @@ impl<'g> Elaborator<'_, '_, 'g> {
     pub(super) fn refused(&mut self, syntax: &Syntax) -> Option<Value<'g>> {
         let (place, what, help) = describe(syntax);
         let error = error!(place, "{what} cannot stand in the {}", self.key);
+        let is_branch = matches!(syntax, Syntax::If(_) | Syntax::Match(_));
         let error = error.maybe_help(Some(help).filter(|help| !help.is_empty()));
+        let error = error.maybe_help(self.opaque().filter(|_| is_branch));
         self.refuse(error.note("a closure is one formula: it is differentiated, not run"))
     }
 }

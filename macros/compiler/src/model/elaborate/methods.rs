@@ -6,15 +6,16 @@ use syn::{Expr as Syntax, ExprMethodCall, Ident};
 use super::access::{is_self, strip};
 use super::tables::{Binary, METHODS, NEEDLESS, REFUSED, Rule, SYNONYMS, Unary};
 use super::{Elaborator, Growth, Value, open_identity};
-use crate::diagnostic::{Diagnostic, error, meant, refuse};
+use crate::diagnostic::{Diagnostic, LATER, error, meant, refuse};
 use crate::parse::{listed, parenthesized, shortened, spell};
 
 impl<'g> Elaborator<'_, '_, 'g> {
     pub(super) fn method_call(&mut self, call: &ExprMethodCall) -> Option<Value<'g>> {
         let name = call.method.to_string();
         if is_self(&call.receiver) {
-            let what = format!("the method `{name}` of the struct in a formula");
-            return self.refuse(Diagnostic::later(&call.method, what, Some("write its formula here")));
+            let error = error!(&call.method, "the method `{name}` of the struct in a formula is not supported yet";
+                help "write its formula here");
+            return self.refuse(error.maybe_help(self.opaque()).note(LATER));
         }
         let receiver = self.elaborate(&call.receiver);
         if let Some(Value::Quaternion(q)) = receiver {
@@ -48,8 +49,9 @@ impl<'g> Elaborator<'_, '_, 'g> {
         }
         let receiver = parenthesized(&call.receiver);
         if let Some((_, reason, help)) = REFUSED.iter().find(|(method, ..)| *method == name) {
-            refuse!(self, method, "`{name}` {reason}, so no {} can use it", self.key;
+            let error = error!(method, "`{name}` {reason}, so no {} can use it", self.key;
                 help "{}", help.replace('…', &receiver));
+            return self.refuse(error.maybe_help(self.opaque()));
         }
         let error = error!(method, "unknown method `{name}` in the {}", self.key);
         if NEEDLESS.contains(&name) {

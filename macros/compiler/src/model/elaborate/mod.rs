@@ -126,6 +126,12 @@ impl<'e, 'c, 'g> Elaborator<'e, 'c, 'g> {
         None
     }
 
+    /// The potential need not be a formula: the way out where one is hard to write.
+    fn opaque(&self) -> Option<&'static str> {
+        let is_free = self.key == "potential" && self.context.power.is_none();
+        is_free.then_some("or give two methods of the struct, `potential = opaque(Self::value, Self::gradient)`")
+    }
+
     /// The value of an expression; `None` if it has an error, which is then reported.
     pub fn elaborate(&mut self, syntax: &Syntax) -> Option<Value<'g>> {
         self.work += 1;

@@ -69,6 +69,9 @@ impl<'g> Elaborator<'_, '_, 'g> {
         let missing = self.scope.missing.iter().find(|(known, _)| known == name).map(|(_, help)| help.clone());
         self.refuse(match missing.or_else(|| self.similar(name, names())) {
             Some(help) => error.help(help),
+            None if name.chars().all(char::is_uppercase) => error
+                .help(format!("if it is a constant, write `self::{name}`, or its path"))
+                .note("a single letter is taken for an argument, a longer name in capitals for a constant"),
             None => error.note(format!("known here are {}", listed(names().chain(["I", "self"])))),
         })
     }

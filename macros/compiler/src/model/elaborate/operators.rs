@@ -1,6 +1,6 @@
 //! The operators `+ - * / %`, unary minus, and the shapes that they need.
 
-use clebsch_symbolic::{Expr, Group, Rational, integer};
+use clebsch_symbolic::{Expr, Group, Rational, Role, integer};
 use syn::{BinOp, Expr as Syntax, ExprBinary, ExprUnary, UnOp};
 
 use super::errors::{no_product, point_moved, unequal_shapes, verb};
@@ -125,11 +125,36 @@ impl<'g> Elaborator<'_, '_, 'g> {
         let (l, r) = (left.shape(), right.shape());
         if !l.is_scalar() && !r.is_scalar() && l.columns != r.rows {
             let is_point = r.is_column() && self.group_of(left).and_then(Group::linear_part) == Some(r.rows);
-            return self.refuse(if is_point { point_moved(at, left, right) } else { no_product(at, left, right) });
+            if is_point {
+                return self.refuse(point_moved(at, left, right));
+            }
+            let meant = self.meant_group(at, left, right);
+            return self.refuse(no_product(at, left, right, meant));
         }
         let product = self.grow(at, &[left, right], Growth::Product, || left * right)?;
         self.note_product(left, right, product);
         Some(Value::Matrix(product))
+    }
+
+    /// The argument of the action with the group that it most likely has, where the groups of two do not fit each other, or one does not fit a
+    /// vector: `R: SO<3>`.
+    fn meant_group(&self, at: &ExprBinary, left: Expr<'g>, right: Expr<'g>) -> Option<String> {
+        let argument = |expr: Expr<'g>, syntax: &Syntax| {
+            let Syntax::Path(path) = syntax else { return None };
+            Some((path.path.get_ident()?.to_string(), expr.as_symbol()?.role, self.group_of(expr)?))
+        };
+        match (argument(left, &at.left), argument(right, &at.right)) {
+            (Some((_, Role::Element(_), group)), Some((other, Role::Configuration(_), _)))
+            | (Some((other, Role::Configuration(_), _)), Some((_, Role::Element(_), group))) => {
+                Some(format!("{other}: {}", group.name(self.graph())))
+            }
+            (Some((element, Role::Element(_), group)), None) if right.shape().is_column() => {
+                let acts =
+                    matches!(group, Group::SpecialOrthogonal(_) | Group::GeneralLinear(_) | Group::SpecialLinear(_));
+                acts.then(|| format!("{element}: {}<{}>", group.symbol().0, right.shape().rows))
+            }
+            _ => None,
+        }
     }
 
     fn quotient(&mut self, at: &ExprBinary, left: Value<'g>, right: Value<'g>) -> Option<Value<'g>> {

@@ -2,8 +2,8 @@
 
 use super::Feature::{self, *};
 use super::Row;
+use crate::diagnostic::LATER;
 
-const LATER: &str = "it belongs to the language and comes with a later version of clebsch";
 const ALL_SITES: &str = "write a number in place of the const generic: then all sites are written out";
 const NO_EXACT: &str = "leave the key out, or write `discretization = moser_veselov`";
 const NO_SUM: &str = "leave out `summation`";
