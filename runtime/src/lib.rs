@@ -74,7 +74,7 @@
 //! # Where dials end
 //!
 //! Every dial has an end, such as h|ω| = 1 for `discretization = moser_veselov`. Beyond it a step is [`Error::Unsolvable`], which gives the longest
-//! one, or energies grow. `docs/extremes.md` of the repository has the table of all dials, measured.
+//! one, or energies grow. `docs/book/src/evidence/extremes.md` of the repository has the table of all dials, measured.
 //!
 //! A step ends after at most 12 linearisations by Newton's method (with `solver = fixed_point` 32 residuals before them), and where these do not decide
 //! after [`implicit::LINEARIZATIONS`] more along the path from the identity, whose last point may take four more, or 64 sweeps with `order = 16`.
