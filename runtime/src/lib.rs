@@ -107,6 +107,7 @@
 //! With `std`, sines, exponentials, logarithms, powers and the like are those of the platform's mathematical library. They differ in their last place from one
 //! platform, and from one release of it, to another, and so does every step whose declaration or discretization has such functions in it. Steps without them,
 //! such as those of tops by a cost with (F − I), stay the same.
+#![cfg_attr(docsrs, feature(doc_cfg))]
 #![no_std]
 #![forbid(unsafe_code)]
 #![warn(missing_docs)]
