@@ -366,6 +366,11 @@ fn the_pictures_of_the_concepts_are_drawn() {
     let folder = file("concepts");
     let output = run("figures", &[text(&folder)]);
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let report = String::from_utf8_lossy(&output.stdout);
+    let page = include_str!("../../docs/book/src/concepts/optimal-control.md");
+    for price in ["9.615", "20.750"] {
+        assert!(report.contains(price) && page.contains(price), "{price} is not in {report}");
+    }
     let book = Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/book/src/concepts");
     for page in std::fs::read_dir(&book).expect("the concepts of the book") {
         let picture = page.expect("a file").path().with_extension("svg");
