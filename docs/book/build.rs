@@ -11,6 +11,8 @@ fn main() -> io::Result<()> {
     let mut pages = Vec::new();
     collect(&root, &mut pages)?;
     pages.push(book.join("../../README.md"));
+    // pages of the book include its sections
+    pages.push(book.join("../../macros/reference.md"));
     pages.sort();
 
     let modules: String = pages.iter().map(|page| module(&root, page)).collect();
@@ -33,8 +35,8 @@ fn collect(folder: &Path, pages: &mut Vec<PathBuf>) -> io::Result<()> {
 
 /// A module with the name of its page, `concepts_exact_drift` for `concepts/exact-drift.md`: failing code is named by it.
 fn module(root: &Path, page: &Path) -> String {
-    let name =
-        page.strip_prefix(root).map_or("readme".to_owned(), |path| path.with_extension("").display().to_string());
+    let of_book = page.strip_prefix(root).ok().map(|path| path.with_extension("").display().to_string());
+    let name = of_book.or_else(|| Some(page.file_stem()?.display().to_string())).unwrap_or_default();
     let name: String = name.chars().map(|letter| if letter.is_ascii_alphanumeric() { letter } else { '_' }).collect();
     format!("#[doc = include_str!({:?})]\npub mod {} {{}}\n", page.display().to_string(), name.to_lowercase())
 }

@@ -2,7 +2,7 @@
 
 use proc_macro::TokenStream;
 
-/// Derives the integrator of a mechanical system from the closures in `#[clebsch(…)]`; see the crate `clebsch`.
+#[doc = include_str!("../reference.md")]
 #[proc_macro_derive(Clebsch, attributes(clebsch))]
 pub fn derive_clebsch(item: TokenStream) -> TokenStream {
     clebsch_compiler::expand(item.into()).into()

@@ -15,6 +15,7 @@ pub mod lower;
 mod methods;
 pub mod model;
 pub mod parse;
+mod reference;
 
 use proc_macro2::TokenStream;
 
@@ -27,6 +28,7 @@ use crate::diagnostic::Diagnostics;
 use crate::lower::Program;
 pub use crate::methods::MethodProgram;
 use crate::parse::Declaration;
+pub use crate::reference::reference;
 
 /// The integrator of the item that carries `#[derive(Clebsch)]`, or the errors of its declaration.
 ///

@@ -1,4 +1,4 @@
-//! Which features of a declaration do not go together: one table, used by every refusal and printed in `docs/features.md`.
+//! Which features of a declaration do not go together: one table, used by every refusal and printed in the reference.
 //!
 //! A stage says which features it has found and where; [`refusals`] looks the combinations up. A rule for a new feature is a row.
 
@@ -123,8 +123,29 @@ fn filled(text: &str, refused: &str, beside: &str, name: &str) -> String {
     text.replace("{refused}", refused).replace("{beside}", beside).replace("{name}", name)
 }
 
+/// What a key and its values do not go with: a line for each of them, in the order of the table.
+pub(crate) fn refused_with(key: &str) -> Vec<String> {
+    let mut refused: Vec<(&str, Vec<&str>)> = Vec::new();
+    for (_, one, other) in combinations() {
+        for (own, beside) in [(one, other), (other, one)] {
+            if !own.belongs_to(key) || beside.belongs_to(key) {
+                continue;
+            }
+            let known = refused.iter().position(|(feature, _)| *feature == own.words()).unwrap_or(refused.len());
+            if known == refused.len() {
+                refused.push((own.words(), Vec::new()));
+            }
+            let others = &mut refused[known].1;
+            if !others.contains(&beside.words()) {
+                others.push(beside.words());
+            }
+        }
+    }
+    refused.into_iter().map(|(own, others)| format!("{own}: not with {}", others.join("; "))).collect()
+}
+
 /// The table of what does not go together in Markdown.
-pub fn features_as_markdown() -> String {
+pub(crate) fn features_as_markdown() -> String {
     let head = "| what | does not go with | why | what to write |\n|---|---|---|---|\n";
     ROWS.iter().map(markdown_row).fold(head.to_string(), |table, row| table + &row)
 }
@@ -135,10 +156,16 @@ fn markdown_row(row: &Row) -> String {
     let fill = |text: &str, name: &str| {
         filled(text, &either(row.refused, "the former"), &either(row.beside, "the latter"), name)
     };
-    let why = fill(if row.why.is_empty() { row.message } else { row.why }, "…");
+    let why = without_tags(&fill(if row.why.is_empty() { row.message } else { row.why }, "…"));
     // help gives the name of a velocity; a bar would end a cell
     let help = fill(row.help, "omega").replace('|', "\\|");
     format!("| {refused} | {beside} | {why} | {help} |\n")
+}
+
+/// Angles outside of code begin a tag of HTML in Markdown.
+fn without_tags(text: &str) -> String {
+    let part = |(position, part): (usize, &str)| if position % 2 == 0 { part.replace('<', "\\<") } else { part.into() };
+    text.split('`').enumerate().map(part).collect::<Vec<_>>().join("`")
 }
 
 /// Few features by their words, else what stands for them.

@@ -57,27 +57,42 @@ struct Maker {
     of_two: Option<fn(usize, usize) -> Group>,
     /// Whether n is even.
     even: bool,
+    /// What its elements are, and its dimension, for the docs.
+    about: [&'static str; 2],
 }
 
 /// All groups that are built in.
 #[rustfmt::skip]
 const GROUPS: [Maker; 11] = [
-    Maker { of_two: Some(Group::PseudoOrthogonal), ..maker("SO", 2, Group::SpecialOrthogonal) },
-    maker("SE",          2, Group::SpecialEuclidean),
-    maker("Translation", 1, Group::Translation),
-    maker("GL",          1, Group::GeneralLinear),
-    maker("SL",          2, Group::SpecialLinear),
-    Maker { even: true, ..maker("Sp", 2, Group::Symplectic) },
-    maker("U",           1, Group::Unitary),
+    Maker { of_two: Some(Group::PseudoOrthogonal), ..maker("SO", 2, Group::SpecialOrthogonal,
+        ["rotations, FᵀF = I and det F = 1; `SO<P, Q>`: FᵀηF = η with η = diag(1, …, −1, …)", "N(N − 1)/2, N = P + Q"]) },
+    maker("SE",          2, Group::SpecialEuclidean, ["rigid motions x ↦ R x + a, as matrices (R a; 0 1)", "N(N + 1)/2"]),
+    maker("Translation", 1, Group::Translation, ["vectors under addition; the identity is 0", "N"]),
+    maker("GL",          1, Group::GeneralLinear, ["invertible matrices", "N²"]),
+    maker("SL",          2, Group::SpecialLinear, ["det F = 1", "N² − 1"]),
+    Maker { even: true, ..maker("Sp", 2, Group::Symplectic, ["FᵀΩF = Ω with Ω = (0 I; −I 0); N is even", "N(N + 1)/2"]) },
+    maker("U",           1, Group::Unitary, ["unitary matrices A + iB, as real matrices (A −B; B A)", "N²"]),
     // SU(2) is made of quaternions, the others of real matrices
-    maker("SU",          2, |n| if n == 2 { Group::UnitQuaternions } else { Group::SpecialUnitary(n) }),
-    maker("Heisenberg",  1, Group::Heisenberg),
-    maker("Aff",         1, Group::Affine),
-    maker("Sim",         2, Group::Similarity),
+    maker("SU",          2, |n| if n == 2 { Group::UnitQuaternions } else { Group::SpecialUnitary(n) },
+        ["`SU<2>`: unit quaternions; else unitary matrices of determinant 1, as of `U<N>`", "N² − 1"]),
+    maker("Heisenberg",  1, Group::Heisenberg, ["matrices (1 xᵀ z; 0 I y; 0 0 1)", "2N + 1"]),
+    maker("Aff",         1, Group::Affine, ["affine maps x ↦ A x + a with det A > 0, as matrices (A a; 0 1)", "N² + N"]),
+    maker("Sim",         2, Group::Similarity, ["similarities x ↦ s R x + a with s > 0, as matrices (sR a; 0 1)", "N(N + 1)/2 + 1"]),
 ];
 
-const fn maker(name: &'static str, least: usize, make: fn(usize) -> Group) -> Maker {
-    Maker { name, least, make, of_two: None, even: false }
+const fn maker(name: &'static str, least: usize, make: fn(usize) -> Group, about: [&'static str; 2]) -> Maker {
+    Maker { name, least, make, of_two: None, even: false, about }
+}
+
+/// The table of the groups that are built in, in Markdown.
+pub(crate) fn groups_as_markdown() -> String {
+    let head = "| group | elements | dimension |\n|---|---|---|\n";
+    let row = |maker: &Maker| {
+        let Maker { name, of_two, about: [elements, dimension], .. } = maker;
+        let of_two = if of_two.is_some() { format!(", `{name}<P, Q>`") } else { String::new() };
+        format!("| `{name}<N>`{of_two} | {elements} | {dimension} |\n")
+    };
+    GROUPS.iter().map(row).fold(head.to_string(), |table, row| table + &row)
 }
 
 /// The largest dimension of a group whose elements are found by an equation: formulas are looked at in all of its directions.
@@ -117,7 +132,7 @@ pub(super) fn known_group(ty: &Type, names: GroupNames) -> Result<Group, Diagnos
 }
 
 fn built_in(ty: &Type, maker: &Maker, sizes: &[&GenericArgument], names: GroupNames) -> Result<Group, Diagnostic> {
-    let Maker { name, least, make, of_two, even } = maker;
+    let Maker { name, least, make, of_two, even, .. } = maker;
     let text = spell_type(ty);
     let size = |argument: &GenericArgument| size_argument(argument, names.generics);
     let n = match (sizes, of_two) {

@@ -33,12 +33,15 @@ mod value;
 
 pub use crate::parse::dials::*;
 pub use crate::parse::{Located, Opaque};
-pub use features::features_as_markdown;
+pub(crate) use elaborate::functions_as_markdown;
+pub(crate) use features::{features_as_markdown, refused_with};
+pub(crate) use groups::groups_as_markdown;
 pub use groups::is_large;
 pub use layout::{Access, Layout, Part};
 pub use outline::{Nested, Outline, outline};
 pub use power::{Linear, Range, SiteIndex, Term};
 pub(crate) use shapes::IN_LOOPS;
+pub(crate) use slots::arguments_of;
 pub use types::*;
 
 use std::rc::Rc;

@@ -33,6 +33,42 @@ pub(super) const PRICE: &[Slot] = &[Slot::Time, Slot::Step, Slot::Configuration,
 pub(super) const BOUNDS: &[Slot] = &[Slot::Time, Slot::Configuration, Slot::Chosen];
 pub(super) const SYMMETRY: &[Slot] = &[Slot::Offered, Slot::Configuration, Slot::Element];
 
+/// The arguments of the closure of each key.
+const ARGUMENTS: [(&str, &[Slot]); 11] = [
+    ("cost", COST),
+    ("lagrangian", LAGRANGIAN),
+    ("potential", POTENTIAL),
+    ("symmetry", SYMMETRY),
+    ("force", FORCE),
+    ("force_on", FORCE),
+    ("controls", CONTROLS),
+    ("dynamics", DYNAMICS),
+    ("effort", PRICE),
+    ("bounds", BOUNDS),
+    ("endpoint", POTENTIAL),
+];
+
+/// The arguments that the closure of a key may take, in their order, as the docs say it; `None` for a key without.
+pub(crate) fn arguments_of(key: &str) -> Option<String> {
+    if key == "action" {
+        return Some("a new name with its group (group element), a new name with its type (configuration)".to_string());
+    }
+    let (_, slots) = ARGUMENTS.iter().find(|(name, _)| *name == key)?;
+    let name = |slot: &Slot| match slot {
+        Slot::Time => "`t` (time)",
+        Slot::Step => "`h` (step)",
+        Slot::Configuration => "the configuration",
+        Slot::Element => "the group element",
+        Slot::Velocity => "a new name (velocity)",
+        Slot::Offered => "a new name with its group (symmetry)",
+        Slot::Input => "a new name with its type (input)",
+        Slot::Chosen => "the input",
+    };
+    let also =
+        if key == "cost" { "; with `controls` and `dynamics` the input in place of the group element" } else { "" };
+    Some(format!("{}{also}", joined(slots.iter().map(name))))
+}
+
 impl<'d> TypedArguments<'d> {
     /// The pattern and the meaning of a slot; a velocity and the element of a symmetry are introduced by their closures.
     fn names(&self, slot: Slot) -> (String, &'static str) {

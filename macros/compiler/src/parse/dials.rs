@@ -38,6 +38,8 @@ impl Dials {
 pub(super) trait Word: Copy + PartialEq + 'static {
     /// The words with their values.
     const WORDS: &'static [(&'static str, Self)];
+    /// The meaning of each, as the docs say it.
+    const MEANINGS: &'static [&'static str];
 
     fn word(self) -> &'static str {
         // by construction: every value has a word
@@ -45,17 +47,26 @@ pub(super) trait Word: Copy + PartialEq + 'static {
     }
 }
 
-/// Values of a dial, each with the word by which it is read and printed.
+/// Values that are written in a declaration, each with its meaning.
+pub(super) type Meanings = Vec<(String, &'static str)>;
+
+/// The words of a dial, each with its meaning.
+pub(super) fn meanings<T: Word>() -> Meanings {
+    T::WORDS.iter().zip(T::MEANINGS).map(|((word, _), meaning)| (word.to_string(), meaning.trim_start())).collect()
+}
+
+/// Values of a dial, each with its meaning and the word by which it is read and printed.
 macro_rules! words {
-    ($(#[$about:meta])* $dial:ident { $($(#[$meaning:meta])* $value:ident $word:literal,)+ }) => {
+    ($(#[$about:meta])* $dial:ident { $(#[doc = $meaning:literal] $value:ident $word:literal,)+ }) => {
         $(#[$about])*
         #[derive(Copy, Clone, PartialEq, Eq, Debug)]
         pub enum $dial {
-            $($(#[$meaning])* $value,)+
+            $(#[doc = $meaning] $value,)+
         }
 
         impl Word for $dial {
             const WORDS: &'static [(&'static str, $dial)] = &[$(($word, $dial::$value)),+];
+            const MEANINGS: &'static [&'static str] = &[$($meaning),+];
         }
 
         impl fmt::Display for $dial {
@@ -69,15 +80,15 @@ macro_rules! words {
 words! {
     /// How the velocity of a step is made from its group element.
     Discretization {
-        /// ξ = 2(F − I)(F + I)⁻¹/h, projected to the algebra where it leaves it.
+        /// ξ = 2(F − I)(F + I)⁻¹/h, projected to the Lie algebra if it leaves it. A step cannot turn by π.
         Cayley "cayley",
         /// ξ = log(F)/h.
         Exponential "exponential",
-        /// ξ = P(F − I)/h with the orthogonal projection P to the algebra.
+        /// ξ = P(F − I)/h with the orthogonal projection P to the Lie algebra.
         Projection "projection",
-        /// (F − I)/h in ½tr(ξ 𝕄 ξᵀ).
+        /// (F − I)/h for ξ in the form ½tr(ξ 𝕄 ξᵀ) of the kinetic energy. On SO(3) it ends near h|ω| = 1.
         MoserVeselov "moser_veselov",
-        /// The discrete Lagrangian is the action of the free motion, which a step without a potential makes exactly.
+        /// The discrete Lagrangian is the action of the free motion. A step without a potential has no error in h.
         Exact "exact",
     }
 }
@@ -95,9 +106,9 @@ words! {
 words! {
     /// How an implicit momentum equation is solved first.
     Solver {
-        /// By Newton's method.
+        /// Newton's method.
         Newton "newton",
-        /// By x ← x − s·h·Σ⁻¹ρ(x), and by Newton's method where that does not contract.
+        /// x ← x − s·h·Σ⁻¹ρ(x), then Newton's method where that does not contract.
         FixedPoint "fixed_point",
     }
 }
@@ -105,9 +116,9 @@ words! {
 words! {
     /// How a step adds to q and N.
     Summation {
-        /// As numbers are added.
+        /// Floating-point addition.
         Plain "plain",
-        /// What rounding takes off is kept, and added in the next step.
+        /// Kahan's summation: the rounding error of a step is added in the next one.
         Compensated "compensated",
     }
 }
@@ -115,9 +126,9 @@ words! {
 words! {
     /// How a step is written as code.
     CodeForm {
-        /// Entry by entry, in straight lines.
+        /// Entry by entry, without loops.
         Unrolled "unrolled",
-        /// With whole matrices, in loops.
+        /// Operations on matrices, for large groups.
         Matrices "matrices",
     }
 }
@@ -125,9 +136,9 @@ words! {
 words! {
     /// What becomes of motions of the group that move no configuration.
     Isotropy {
-        /// They are no motions: a momentum has to annihilate them.
+        /// They are no motions: `state()` refuses a momentum along them.
         Fixed "fixed",
-        /// They are motions too: any momentum is one.
+        /// They are motions: `state()` takes any momentum.
         Free "free",
     }
 }
@@ -135,11 +146,11 @@ words! {
 words! {
     /// A promise about the values of a field, which the stepper checks and simplification uses.
     Promise {
-        /// Aᵀ = A.
+        /// A square matrix with Aᵀ = A.
         Symmetric "symmetric",
-        /// Zero off the diagonal.
+        /// A square matrix with zeros off its diagonal.
         Diagonal "diagonal",
-        /// |v| = 1.
+        /// A vector of length one.
         Unit "unit",
     }
 }
@@ -161,9 +172,23 @@ pub enum Order {
     Sixteenth = 16,
 }
 
-const ORDERS: [Order; 6] = [Order::First, Order::Second, Order::Fourth, Order::Sixth, Order::Eighth, Order::Sixteenth];
+/// All orders, and how a step of each is made.
+#[rustfmt::skip]
+const ORDERS: [(Order, &str); 6] = [
+    (Order::First, "Drift, then kick: h·V at the end of the step."),
+    (Order::Second, "Half kick, drift, half kick: h·V/2 at each end. Time-symmetric, with one gradient a step."),
+    (Order::Fourth, "Composed of 5 steps of order 2, or a splitting where the drift is exact."),
+    (Order::Sixth, "Composed of 9 steps of order 2, or a splitting where the drift is exact."),
+    (Order::Eighth, "Composed of 17 steps of order 2."),
+    (Order::Sixteenth, "Collocation of Hamilton's equations at the eight nodes of Gauss and Legendre."),
+];
 
 impl Order {
+    /// The orders, each with its meaning.
+    pub(super) fn meanings() -> Meanings {
+        ORDERS.iter().map(|(order, meaning)| (order.to_string(), *meaning)).collect()
+    }
+
     /// The exponent of h in the error at a fixed time.
     pub fn number(self) -> u32 {
         self as u32
@@ -195,22 +220,33 @@ pub struct Emit {
     pub momentum: bool,
 }
 
-/// Whether something is emitted.
-type EmittedPart = fn(&mut Emit) -> &mut bool;
+/// A word of `emit`.
+#[derive(Copy, Clone)]
+pub(super) struct Emitted {
+    /// Whether it is asked for.
+    pub part: fn(&mut Emit) -> &mut bool,
+    about: &'static str,
+}
 
-/// What may be emitted beside the integrator, and where it is asked for.
-pub(super) const EMITTED: [(&str, EmittedPart); 5] = [
-    ("generated", |emit| &mut emit.generated),
-    ("latex", |emit| &mut emit.latex),
-    ("tangent", |emit| &mut emit.tangent),
-    ("boundary", |emit| &mut emit.boundary),
-    ("momentum", |emit| &mut emit.momentum),
+/// The words of `emit`: where each is noted, and what it gives.
+#[rustfmt::skip]
+pub(super) const EMITTED: [(&str, Emitted); 5] = [
+    ("generated", Emitted { part: |emit| &mut emit.generated, about: "The constant `GENERATED`, the generated code as text." }),
+    ("latex",     Emitted { part: |emit| &mut emit.latex,     about: "The constant `DERIVATION_LATEX`, the formulas in LaTeX." }),
+    ("tangent",   Emitted { part: |emit| &mut emit.tangent,   about: "The methods `step_tangent` and `step_sensitivity`, the derivatives of a step." }),
+    ("boundary",  Emitted { part: |emit| &mut emit.boundary,  about: "The method `boundary()`, the path of least action between two configurations." }),
+    ("momentum",  Emitted { part: |emit| &mut emit.momentum,  about: "Steps of the momentum alone: the configuration is `()`." }),
 ];
+
+/// The words of `emit`, each with its meaning.
+pub(super) fn emitted_meanings() -> Meanings {
+    EMITTED.iter().map(|(word, emitted)| (word.to_string(), emitted.about)).collect()
+}
 
 impl Emit {
     /// The list of words that asks for it; `None` for nothing.
     pub(super) fn text(mut self) -> Option<String> {
-        let words = joined(EMITTED.iter().filter(|(_, part)| *part(&mut self)).map(|(word, _)| word));
+        let words = joined(EMITTED.iter().filter(|(_, emitted)| *(emitted.part)(&mut self)).map(|(word, _)| word));
         (!words.is_empty()).then(|| format!("[{words}]"))
     }
 
@@ -225,7 +261,7 @@ impl Reader<'_, '_> {
     pub fn order(self, dial: &mut Option<Located<Order>>) -> Result<(), Diagnostic> {
         let value = |literal: &LitInt| {
             let number: u32 = literal.base10_parse().ok()?;
-            ORDERS.iter().find(|order| order.number() == number).copied()
+            ORDERS.iter().find(|(order, _)| order.number() == number).map(|(order, _)| *order)
         };
         self.number(dial, value, |place, written| {
             error!(place, "there is no step of order {written}";

@@ -5,7 +5,7 @@ use syn::ext::IdentExt;
 use syn::punctuated::Punctuated;
 use syn::{Index, Member, Token, Type};
 
-use super::dials::{Promise, Word};
+use super::dials::{Promise, Word, meanings};
 use super::spell_type;
 use crate::diagnostic::{Diagnostic, Diagnostics, Location, error, nearest, report};
 
@@ -83,6 +83,14 @@ pub(super) fn read(position: usize, field: &syn::Field, diagnostics: &Diagnostic
         }
     }
     Field { member, ty: field.ty.clone(), promise }
+}
+
+/// The promises on fields in Markdown.
+pub(crate) fn promises_as_markdown() -> String {
+    let head = "| attribute | promises |\n|---|---|\n";
+    let rows = meanings::<Promise>().into_iter();
+    let row = |(word, meaning)| format!("| `#[clebsch({word})]` | {} |\n", str::replace(meaning, "|", "\\|"));
+    rows.map(row).fold(head.to_string(), |table, row| table + &row)
 }
 
 fn unknown(name: &Ident) -> Diagnostic {

@@ -1,13 +1,14 @@
-//! The keys of `#[clebsch(…)]`: one table says how each is read, its default and what it belongs to.
-
-#[cfg(test)]
-mod tests;
+//! The keys of `#[clebsch(…)]`: one table says how each is read, its default, what it needs, and what the docs say.
 
 use std::collections::BTreeMap;
 
 use proc_macro2::{Ident, Span};
 
-use super::dials::Dials;
+use super::dials::{
+    ChartChoice, CodeForm, Dials, Discretization, Isotropy, Meanings, Order, Solver, Summation, emitted_meanings,
+    meanings,
+};
+use super::spelling::listed;
 use super::values::Reader;
 use super::{Closure, DeclaredGroup, Potential};
 use crate::diagnostic::{Diagnostic, Diagnostics};
@@ -37,8 +38,10 @@ pub(super) struct Key {
     pub example: &'static str,
     /// What holds where it is left out.
     pub default: &'static str,
-    /// What it belongs to.
-    pub of: &'static str,
+    /// What a declaration needs beside it.
+    pub needs: &'static str,
+    /// What it says, for the docs.
+    pub about: &'static str,
     /// Whether a method takes it too.
     pub of_method: bool,
 }
@@ -52,59 +55,89 @@ pub(super) enum Kind {
     Potential,
     /// A closure, or a list of them.
     Symmetry,
-    /// Anything else: how it is read; and how it prints and where it is, if it was given.
-    Dial(fn(&mut Dials, Reader) -> Result<(), Diagnostic>, fn(&Dials) -> Option<Located<String>>),
+    /// Anything else: how it is read; how it prints and where it is, if it was given; and the values that it chooses from, with meanings.
+    Dial(fn(&mut Dials, Reader) -> Result<(), Diagnostic>, fn(&Dials) -> Option<Located<String>>, fn() -> Meanings),
     /// Part of the language, but not of this version.
     Later,
 }
 
 use Kind::{Dial, Later, Symmetry};
 
-const MECHANICS: &str = "mechanics";
-const STEERED: &str = "inputs that move the configuration";
-const CHOICE: &str = "inputs that are chosen";
-const ALL: &str = "every declaration";
-const ITERATED: &str = "implicit momentum equations";
+const MECHANICS: &str = "`cost` or `lagrangian`";
+const PRICE: &str = "`cost`, the price of an input";
+const CHOICE: &str = "`controls`, `dynamics` or `effort`";
+const ITERATED: &str = "an implicit momentum equation";
 
-/// All keys: the name, how the value is read, an example, the default, and what the key belongs to.
+/// All keys: the name, how the value is read, an example, the default, what the key needs, and what it says.
 #[rustfmt::skip]
 pub(super) const KEYS: [Key; 27] = [
-    key("action", Kind::Closure, "|F: SO<3>, R: SO<3>| …", "", "every declaration but `dynamics`"),
-    key("cost", Kind::Closure, "|h, F| …", "", "mechanics, or the price of a step of inputs"),
-    key("lagrangian", Kind::Closure, "|omega| …", "", MECHANICS),
-    key("potential", Kind::Potential, "|q| …", "none", MECHANICS),
-    key("symmetry", Symmetry, "|S: SO<3>, q, F| (S * q, S * F * S.transpose())", "found", MECHANICS),
-    key("force", Kind::Closure, "|omega, torque: Vector3| torque - self.damping * omega", "none", MECHANICS),
-    key("force_on", Kind::Closure, "|x, thrust: Vector3| thrust", "none", MECHANICS),
-    key("controls", Kind::Closure, "|u: Vector2| vector![u.x, u.y, 0]", "", STEERED),
-    key("dynamics", Kind::Closure, "|h, x: Vector2, u: Vector1| x + h * vector![x.y, u.x]", "", STEERED),
-    key("effort", Kind::Closure, "|h, torque| h * torque.norm_squared() / 2", "nothing is chosen", "forces with an input"),
-    key("bounds", Kind::Closure, "|u| [u.x <= 1, -1 <= u.x]", "none", CHOICE),
-    key("endpoint", Kind::Closure, "|q| …", "none", "inputs that are chosen, and `emit = [boundary]`"),
-    dial("order", Dial(|dials, value| value.order(&mut dials.order), |dials| text(&dials.order)), "2", "2", MECHANICS),
-    dial("discretization", Dial(|dials, value| value.word(&mut dials.discretization), |dials| text(&dials.discretization)), "cayley", "`cayley` where that map stays in the group, else `exponential`", "a `lagrangian`, and `controls`"),
-    dial("chart", Dial(|dials, value| value.word(&mut dials.chart), |dials| text(&dials.chart)), "exponential", "by the discretization and the group", MECHANICS),
-    dial("solver", Dial(|dials, value| value.word(&mut dials.solver), |dials| text(&dials.solver)), "fixed_point", "what takes fewer operations", ITERATED),
-    dial("iterations", Dial(|dials, value| value.count(&mut dials.iterations), |dials| text(&dials.iterations)), "4", "until round-off", ITERATED),
-    dial("tolerance", Dial(|dials, value| value.part(&mut dials.tolerance), |dials| dials.tolerance.as_ref().map(|part| part.to(format!("{:e}", part.value)))), "1e-8", "round-off", ITERATED),
-    dial("summation", Dial(|dials, value| value.word(&mut dials.summation), |dials| text(&dials.summation)), "compensated", "`plain`", MECHANICS),
-    dial("code", Dial(|dials, value| value.word(&mut dials.code), |dials| text(&dials.code)), "matrices", "by the size", ALL),
-    key("isotropy", Dial(|dials, value| value.word(&mut dials.isotropy), |dials| text(&dials.isotropy)), "free", "`fixed`", MECHANICS),
-    key("emit", Dial(|dials, value| value.words(&mut dials.emit), |dials| dials.emit.text().map(somewhere)), "[generated]", "`[]`", ALL),
-    key("scalar", Dial(|dials, value| value.ident(&mut dials.scalar), |dials| dials.scalar.as_ref().map(Ident::to_string).map(somewhere)), "f64", "`f64`", "structs without fields"),
-    key("crate", Dial(|dials, value| value.path(&mut dials.krate), |dials| dials.krate.as_ref().map(super::spelling::tokens).map(somewhere)), "::clebsch", "`::clebsch`", ALL),
-    key("constraint", Later, "…", "", ""),
-    key("discrete_constraint", Later, "…", "", ""),
-    key("space", Later, "…", "", ""),
+    key("action", Kind::Closure, "|F: SO<3>, R: SO<3>| …", "required, or `dynamics`", "",
+        "The type of the first argument is the group, that of the second the space of configurations. The value is the moved configuration. Whether the action is left or right is found."),
+    key("cost", Kind::Closure, "|h, F| …", "required, or `lagrangian`", "",
+        "The kinetic part of the discrete Lagrangian of one step, in J·s. The macro subtracts h·V. With `controls` or `dynamics` it is the price of the input of one step."),
+    key("lagrangian", Kind::Closure, "|omega| …", "required, or `cost`", "",
+        "The Lagrangian ℓ(q, ξ), most often the kinetic energy, in joules. The macro discretises it. The last argument is a new name for ξ, the velocity in the basis of the group."),
+    key("potential", Kind::Potential, "|q| …", "none", MECHANICS,
+        "The potential energy V(q), in joules. Where no formula exists, `opaque(Self::value, Self::gradient)` names two methods of the struct. `opaque(t, …)` is for methods that take the time first."),
+    key("symmetry", Symmetry, "|S: SO<3>, q, F| (S * q, S * F * S.transpose())", "found", MECHANICS,
+        "A symmetry that lies outside the declared group, such as rotations of a system of translations. The value is the pair of the moved configuration and the group element of the moved step. The macro checks it and adds its momentum to the conserved ones. `[closure, closure]` offers several."),
+    key("force", Kind::Closure, "|omega, torque: Vector3| torque - self.damping * omega", "none", MECHANICS,
+        "A force that is no gradient, in the components of the momentum. A last argument with a type is an input, which each step is given or which `effort` chooses."),
+    key("force_on", Kind::Closure, "|x, thrust: Vector3| thrust", "none", MECHANICS,
+        "A force as a covector of the configuration, in its shape. It takes the same arguments as `force`."),
+    key("controls", Kind::Closure, "|u: Vector2| vector![u.x, u.y, 0]", "", PRICE,
+        "The velocity that an input gives, in the basis of the group. It moves the configuration directly, without mass or momentum."),
+    key("dynamics", Kind::Closure, "|h, x: Vector2, u: Vector1| x + h * vector![x.y, u.x]", "", PRICE,
+        "The next configuration, by any map of a vector space. It replaces `action`. Its two typed arguments are the configuration and the input."),
+    key("effort", Kind::Closure, "|h, torque| h * torque.norm_squared() / 2", "nothing is chosen", "`force` or `force_on` with an input",
+        "The price of the input of one step. Plans make the sum of these prices least."),
+    key("bounds", Kind::Closure, "|u| [u.x <= 1, -1 <= u.x]", "none", CHOICE,
+        "Inequalities between scalars, with `<=` or `>=`, that hold in every step of a plan."),
+    key("endpoint", Kind::Closure, "|q| …", "none", "`controls`, `dynamics`, `effort` or `emit = [boundary]`",
+        "The price of the end of a plan, or of a path of least action with a free end. It is added to the prices of all steps."),
+    dial("order", Dial(|dials, value| value.order(&mut dials.order), |dials| text(&dials.order), Order::meanings), "2", "2", MECHANICS,
+        "The order of accuracy: the error at a fixed time shrinks like this power of h."),
+    dial("discretization", Dial(|dials, value| value.word(&mut dials.discretization), |dials| text(&dials.discretization), meanings::<Discretization>), "cayley", "`cayley` where that map stays in the group, else `exponential`", "`lagrangian` or `controls`",
+        "How the velocity ξ of a step belongs to its group element F. `controls` take `cayley` and `exponential`."),
+    dial("chart", Dial(|dials, value| value.word(&mut dials.chart), |dials| text(&dials.chart), meanings::<ChartChoice>), "exponential", "chosen by discretization and group", MECHANICS,
+        "The coordinates in which a step looks for its group element F."),
+    dial("solver", Dial(|dials, value| value.word(&mut dials.solver), |dials| text(&dials.solver), meanings::<Solver>), "fixed_point", "the one with fewer operations", ITERATED,
+        "How a step starts to solve its momentum equation ρ(x) = 0."),
+    dial("iterations", Dial(|dials, value| value.count(&mut dials.iterations), |dials| text(&dials.iterations), Vec::new), "4", "the limits of the solver", ITERATED,
+        "The most iterations for each momentum equation, a whole number above zero. A step that needs more is `Error::NotConverged`, in bounded time."),
+    dial("tolerance", Dial(|dials, value| value.part(&mut dials.tolerance), |dials| dials.tolerance.as_ref().map(|part| part.to(format!("{:e}", part.value))), Vec::new), "1e-8", "round-off", ITERATED,
+        "An iteration ends before a correction below this fraction of the step, a number between 0 and 1. The step is then no longer symplectic, and energies drift."),
+    dial("summation", Dial(|dials, value| value.word(&mut dials.summation), |dials| text(&dials.summation), meanings::<Summation>), "compensated", "`plain`", MECHANICS,
+        "How a step adds its increments to configuration and momentum."),
+    dial("code", Dial(|dials, value| value.word(&mut dials.code), |dials| text(&dials.code), meanings::<CodeForm>), "matrices", "chosen by the size", "",
+        "How the code of a step is written."),
+    key("isotropy", Dial(|dials, value| value.word(&mut dials.isotropy), |dials| text(&dials.isotropy), meanings::<Isotropy>), "free", "`fixed`", MECHANICS,
+        "Motions of the group that move no configuration, such as turns about a point on a sphere."),
+    key("emit", Dial(|dials, value| value.words(&mut dials.emit), |dials| dials.emit.text().map(somewhere), emitted_meanings), "[generated]", "`[]`", "",
+        "Further items that the macro derives, a list of words."),
+    key("scalar", Dial(|dials, value| value.ident(&mut dials.scalar), |dials| dials.scalar.as_ref().map(Ident::to_string).map(somewhere), Vec::new), "f64", "`f64`", "a struct whose closures read no field",
+        "The scalar type: `f64`, `f32` or a type parameter of the struct. Fields and spaces that name a scalar decide it otherwise."),
+    key("crate", Dial(|dials, value| value.path(&mut dials.krate), |dials| dials.krate.as_ref().map(super::spelling::tokens).map(somewhere), Vec::new), "::clebsch", "`::clebsch`", "",
+        "The path of this crate, for a dependency that is renamed or re-exported."),
+    later("constraint"),
+    later("discrete_constraint"),
+    later("space"),
 ];
 
-const fn key(name: &'static str, kind: Kind, example: &'static str, default: &'static str, of: &'static str) -> Key {
-    Key { name, kind, example, default, of, of_method: false }
+type Text = &'static str;
+
+const fn key(name: Text, kind: Kind, example: Text, default: Text, needs: Text, about: Text) -> Key {
+    Key { name, kind, example, default, needs, about, of_method: false }
 }
 
 /// A dial of a method.
-const fn dial(name: &'static str, kind: Kind, example: &'static str, default: &'static str, of: &'static str) -> Key {
-    Key { name, kind, example, default, of, of_method: true }
+const fn dial(name: Text, kind: Kind, example: Text, default: Text, needs: Text, about: Text) -> Key {
+    Key { name, kind, example, default, needs, about, of_method: true }
+}
+
+/// A key of a later version.
+const fn later(name: Text) -> Key {
+    key(name, Later, "…", "", "", "")
 }
 
 /// A value as it is written, where it was given.
@@ -121,13 +154,18 @@ impl Key {
     pub fn comes_later(&self) -> bool {
         matches!(self.kind, Kind::Later)
     }
+
+    /// The values that it chooses from, each with its meaning; none where it takes others.
+    fn values(&self) -> Meanings {
+        if let Dial(_, _, values) = self.kind { values() } else { Vec::new() }
+    }
 }
 
 impl Dials {
     /// The dials that were given, with their values as they are written, in the order of the table.
     pub(crate) fn given(&self) -> impl Iterator<Item = (&'static str, Located<String>)> {
         KEYS.iter().filter_map(|key| match key.kind {
-            Kind::Dial(_, given) => Some((key.name, given(self)?)),
+            Kind::Dial(_, given, _) => Some((key.name, given(self)?)),
             _ => None,
         })
     }
@@ -189,24 +227,32 @@ impl<'d> Keys<'d> {
     }
 }
 
-/// The table of all keys in Markdown.
-pub fn keys_as_markdown() -> String {
-    let head = "| key | an example | default | of |\n|---|---|---|---|\n";
-    let rows = KEYS.iter().filter(|key| !key.comes_later()).map(markdown_row);
-    let table = rows.fold(head.to_string(), |table, row| table + &row);
-    let dials: Vec<String> = KEYS.iter().filter(|key| key.of_method).map(|key| format!("`{}`", key.name)).collect();
-    format!(
-        "{table}
-`method NAME = (dial = value, …)` declares a further way to step the same system. `NAME` is a unit struct of yours. There may be any number of methods.
-The dials of a method are {}. One that a method does not name has its default, whatever the declaration says.
-`emit = [tangent]` and `[boundary]` serve every method whose steps can be differentiated. `effort` is of the steps with the declared dials.
-",
-        dials.join(", ")
-    )
+/// The table of all keys in Markdown, then a section for each. `arguments` are those of a closure, `refused` what a key does not go with.
+pub(crate) fn keys_as_markdown(
+    arguments: impl Fn(&str) -> Option<String>,
+    refused: impl Fn(&str) -> Vec<String>,
+) -> String {
+    let keys = || KEYS.iter().filter(|key| !key.comes_later());
+    let head = "| key | example | default | needs |\n|---|---|---|---|\n";
+    let table = keys().map(markdown_row).fold(head.to_string(), |table, row| table + &row);
+    let sections = keys().map(|key| {
+        let values = key.values().into_iter().map(|(word, meaning)| format!("* `{word}`: {meaning}\n"));
+        let arguments = arguments(key.name).map(|names| format!("* arguments: {names}\n"));
+        let refused = refused(key.name).into_iter().map(|line| format!("* {line}\n"));
+        let lines: String = values.chain(arguments).chain(refused).collect();
+        let gap = if lines.is_empty() { "" } else { "\n" };
+        format!("\n## `{}`\n\n{}\n{gap}{lines}", key.name, key.about)
+    });
+    table + &sections.collect::<String>()
+}
+
+/// The names of the dials that a method takes.
+pub(crate) fn dials_of_method() -> String {
+    listed(KEYS.iter().filter(|key| key.of_method).map(|key| key.name))
 }
 
 fn markdown_row(key: &Key) -> String {
-    let Key { name, example, default, of, .. } = key;
+    let Key { name, example, default, needs, .. } = key;
     // a bar would end a cell
-    format!("| `{name}` | `{name} = {}` | {default} | {of} |\n", example.replace('|', "\\|"))
+    format!("| [`{name}`](#{name}) | `{name} = {}` | {default} | {needs} |\n", example.replace('|', "\\|"))
 }

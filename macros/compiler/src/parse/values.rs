@@ -27,7 +27,7 @@ pub(super) fn read(name: &Ident, key: &Key, stream: ParseStream, keys: &mut Keys
         }
         Kind::Potential => keys.potential = reader.closure(stream)?.map(Potential::Closure),
         Kind::Symmetry => keys.symmetries = reader.closures()?,
-        Kind::Dial(read, _) => read(&mut keys.dials, reader)?,
+        Kind::Dial(read, ..) => read(&mut keys.dials, reader)?,
         // by construction: keys that come later have no value read
         Kind::Later => {}
     }
@@ -94,8 +94,8 @@ impl Reader<'_, '_> {
         for word in &words {
             if word == "connection" {
                 self.diagnostics.push(Diagnostic::later(word, "`connection` as `emit`", None));
-            } else if let Some(part) = self.choose(word, &EMITTED) {
-                *part(dial) = true;
+            } else if let Some(emitted) = self.choose(word, &EMITTED) {
+                *(emitted.part)(dial) = true;
             }
         }
         Ok(())

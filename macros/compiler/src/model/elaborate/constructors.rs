@@ -17,17 +17,17 @@ use crate::parse::{listed, parenthesized, spell};
 type Constructor =
     (usize, fn(Shape) -> bool, for<'g> fn(&mut Elaborator<'_, '_, 'g>, &ExprCall, Shape) -> Option<Value<'g>>);
 
-/// Constructors by name, beside `new`, which has one argument for each entry.
+/// Constructors by name, with what each gives, beside `new`, which has one argument for each entry.
 #[rustfmt::skip]
-const CONSTRUCTORS: [(&str, Constructor); 8] = [
-    ("zeros",         (0, |_| true, |this, _, shape| Some(Value::Matrix(this.graph().zero(shape))))),
-    ("identity",      (0, |shape| shape.is_square(), |this, _, shape| Some(Value::Matrix(this.graph().identity(shape.rows))))),
-    ("from_diagonal", (1, |shape| shape.is_square(), |this, call, shape| this.diagonal(call, shape))),
-    ("from_columns",  (1, |_| true, |this, call, shape| this.joined(call, shape, Shape::new(shape.rows, 1), shape.columns))),
-    ("from_rows",     (1, |_| true, |this, call, shape| this.joined(call, shape, Shape::new(1, shape.columns), shape.rows))),
-    ("x",             (0, |shape| shape.is_column(), |this, _, shape| Some(Value::Matrix(this.graph().unit(shape, 0, 0))))),
-    ("y",             (0, |shape| shape.is_column() && shape.rows > 1, |this, _, shape| Some(Value::Matrix(this.graph().unit(shape, 1, 0))))),
-    ("z",             (0, |shape| shape.is_column() && shape.rows > 2, |this, _, shape| Some(Value::Matrix(this.graph().unit(shape, 2, 0))))),
+pub(super) const CONSTRUCTORS: [(&str, Constructor, &str); 8] = [
+    ("zeros",         (0, |_| true, |this, _, shape| Some(Value::Matrix(this.graph().zero(shape)))), "all entries 0"),
+    ("identity",      (0, |shape| shape.is_square(), |this, _, shape| Some(Value::Matrix(this.graph().identity(shape.rows)))), "ones on the diagonal, of a square matrix"),
+    ("from_diagonal", (1, |shape| shape.is_square(), |this, call, shape| this.diagonal(call, shape)), "the square matrix with a vector on its diagonal"),
+    ("from_columns",  (1, |_| true, |this, call, shape| this.joined(call, shape, Shape::new(shape.rows, 1), shape.columns)), "from an array of columns"),
+    ("from_rows",     (1, |_| true, |this, call, shape| this.joined(call, shape, Shape::new(1, shape.columns), shape.rows)), "from an array of rows"),
+    ("x",             (0, |shape| shape.is_column(), |this, _, shape| Some(Value::Matrix(this.graph().unit(shape, 0, 0)))), "the first unit vector"),
+    ("y",             (0, |shape| shape.is_column() && shape.rows > 1, |this, _, shape| Some(Value::Matrix(this.graph().unit(shape, 1, 0)))), "the second unit vector"),
+    ("z",             (0, |shape| shape.is_column() && shape.rows > 2, |this, _, shape| Some(Value::Matrix(this.graph().unit(shape, 2, 0)))), "the third unit vector"),
 ];
 
 /// Constructors by other names.
@@ -85,7 +85,7 @@ impl<'g> Elaborator<'_, '_, 'g> {
         if method == "new" {
             return self.entries(call, method, shape);
         }
-        let Some(&(_, (arity, exists, make))) = CONSTRUCTORS.iter().find(|(name, _)| method == name) else {
+        let Some(&(_, (arity, exists, make), _)) = CONSTRUCTORS.iter().find(|(name, ..)| method == name) else {
             return self.unknown_constructor(method);
         };
         let function = spell(&call.func);
@@ -157,7 +157,7 @@ impl<'g> Elaborator<'_, '_, 'g> {
 
     fn unknown_constructor(&mut self, method: &Ident) -> Option<Value<'g>> {
         let name = method.to_string();
-        let names = ["new"].into_iter().chain(CONSTRUCTORS.iter().map(|&(name, _)| name));
+        let names = ["new"].into_iter().chain(CONSTRUCTORS.iter().map(|&(name, ..)| name));
         let error = error!(method, "unknown constructor `{name}`");
         self.refuse(match meant(&name, &SYNONYMS, names.clone()) {
             Some(meant) => error.help(format!("write `{meant}`")),

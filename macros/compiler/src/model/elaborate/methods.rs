@@ -21,7 +21,7 @@ impl<'g> Elaborator<'_, '_, 'g> {
         if let Some(Value::Quaternion(q)) = receiver {
             return self.quaternion_method(call, q);
         }
-        let Some(&(_, arity, rule)) = METHODS.iter().find(|(method, ..)| *method == name) else {
+        let Some(&(_, arity, rule, _)) = METHODS.iter().find(|(method, ..)| *method == name) else {
             return self.unknown_method(call, &name, receiver);
         };
         if call.args.len() != arity {
@@ -73,7 +73,7 @@ impl<'g> Elaborator<'_, '_, 'g> {
             Rule::Pair(make) => return self.pair(make, false, call, a),
             Rule::PairOfThree(make) => return self.pair(make, true, call, a),
             Rule::Part(part) => return self.part(part, call, a),
-            Rule::Special(method) => return method(self, call, a),
+            Rule::Special(_, method) => return method(self, call, a),
             Rule::OfScalar(method) if shape.is_scalar() => return method(self, call, a),
             Rule::Scalar(function) if shape.is_scalar() => return self.function(function, call, a),
             Rule::Any(make) => make,

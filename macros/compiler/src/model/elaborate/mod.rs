@@ -4,6 +4,7 @@ mod access;
 mod block;
 mod constructors;
 mod errors;
+mod markdown;
 mod methods;
 mod names;
 mod operators;
@@ -19,6 +20,8 @@ mod tests;
 use clebsch_symbolic::{Expr, Graph, Group, Shape, Table};
 use quote::ToTokens;
 use syn::Expr as Syntax;
+
+pub(crate) use markdown::functions_as_markdown;
 
 use super::Constant;
 use super::fields::Fields;

@@ -13,16 +13,16 @@ use crate::parse::{listed, parenthesized, spell};
 /// A method of a quaternion q: how many operands it counts as, how it grows, its value, and whether that is a quaternion.
 type QuaternionRule = (usize, Growth, for<'g> fn(Expr<'g>) -> Expr<'g>, bool);
 
-/// The methods of quaternions without an argument; `dot` has one.
+/// The methods of quaternions without an argument, with what each gives; `dot` has one.
 #[rustfmt::skip]
-const METHODS: [(&str, QuaternionRule); 7] = [
-    ("scalar",       (1, Growth::Sum,      algebra::scalar,       false)),
-    ("imag",         (1, Growth::Sum,      algebra::imaginary,    false)),
-    ("conjugate",    (1, Growth::Sum,      algebra::conjugate,    true)),
-    ("inverse",      (2, Growth::Product,  algebra::inverse,      true)),
-    ("norm_squared", (2, Growth::Product,  |q| q.norm_squared(),  false)),
-    ("norm",         (2, Growth::Power(2), |q| q.norm(),          false)),
-    ("normalize",    (2, Growth::Power(2), |q| q.normalize(),     true)),
+pub(super) const METHODS: [(&str, QuaternionRule, &str); 7] = [
+    ("scalar",       (1, Growth::Sum,      algebra::scalar,       false), "the scalar part w"),
+    ("imag",         (1, Growth::Sum,      algebra::imaginary,    false), "the vector part (i, j, k)"),
+    ("conjugate",    (1, Growth::Sum,      algebra::conjugate,    true), "w − i − j − k"),
+    ("inverse",      (2, Growth::Product,  algebra::inverse,      true), "q⁻¹"),
+    ("norm_squared", (2, Growth::Product,  |q| q.norm_squared(),  false), "w² + i² + j² + k²"),
+    ("norm",         (2, Growth::Power(2), |q| q.norm(),          false), "the length"),
+    ("normalize",    (2, Growth::Power(2), |q| q.normalize(),     true), "q/|q|"),
 ];
 
 /// Methods of matrices and of nalgebra's quaternions, and what to write instead.
@@ -106,8 +106,8 @@ impl<'g> Elaborator<'_, '_, 'g> {
         if name == "dot" && call.args.len() == 1 {
             return self.quaternion_dot(call, q);
         }
-        let rule = METHODS.iter().find(|(method, _)| *method == name && call.args.is_empty());
-        let Some(&(_, (operands, growth, make, is_quaternion))) = rule else {
+        let rule = METHODS.iter().find(|(method, ..)| *method == name && call.args.is_empty());
+        let Some(&(_, (operands, growth, make, is_quaternion), _)) = rule else {
             return self.refuse(no_method(call, &name));
         };
         // q⁻¹ is q̄ where |q| = 1
@@ -138,7 +138,7 @@ impl<'g> Elaborator<'_, '_, 'g> {
 
 fn no_method(call: &ExprMethodCall, name: &str) -> Diagnostic {
     let (method, receiver) = (&call.method, parenthesized(&call.receiver));
-    let names = METHODS.iter().map(|&(method, _)| method).chain(["dot"]);
+    let names = METHODS.iter().map(|&(method, ..)| method).chain(["dot"]);
     if names.clone().any(|method| method == name) {
         let arity = usize::from(name == "dot");
         return error!(method, "`{name}` has {arity} arguments, not {}", call.args.len(); help "write `{receiver}.{name}()`");

@@ -33,12 +33,30 @@ pub(super) enum Rule {
     PairOfThree(Binary),
     /// A part of a matrix.
     Part(Part),
-    /// Any matrix, by a function of its own.
-    Special(Method),
+    /// By a function of its own, and of what.
+    Special(&'static str, Method),
     /// An array, or a range of sites.
     Map,
     /// An array, or values for a range of sites.
     Sum,
+}
+
+impl Rule {
+    /// What a method is applied to, as the docs say it.
+    pub fn receiver(self) -> &'static str {
+        match self {
+            Rule::Any(_) | Rule::Part(_) => "a matrix or vector",
+            Rule::Special(of, _) => of,
+            Rule::Square(_) => "a square matrix",
+            Rule::Vector(_) => "a vector or matrix that is no scalar",
+            Rule::Three(_) => "a vector of three components",
+            Rule::Scalar(_) | Rule::OfScalar(_) => "a scalar",
+            Rule::Pair(_) => "two matrices or vectors of one shape",
+            Rule::PairOfThree(_) => "two vectors of three components",
+            Rule::Map => "an array or a range",
+            Rule::Sum => "an array",
+        }
+    }
 }
 
 /// A part of a matrix.
@@ -56,48 +74,48 @@ const fn part(sizes: usize, starts: [bool; 2], shape: fn(Shape, &[usize]) -> Sha
     Rule::Part(Part { sizes, shape, starts })
 }
 
-/// All methods with their number of arguments.
+/// All methods: the number of arguments, what each is of, and what it gives.
 #[rustfmt::skip]
-pub(super) const METHODS: [(&str, usize, Rule); 39] = [
-    ("transpose",      0, Rule::Any(|a| a.transpose())),
-    ("norm_squared",   0, Rule::Any(|a| a.norm_squared())),
-    ("norm",           0, Rule::Special(|this, call, a| this.norm(call, a))),
-    ("normalize",      0, Rule::Vector(|a| a.normalize())),
-    ("trace",          0, Rule::Square(|a| a.trace())),
-    ("determinant",    0, Rule::Square(|a| a.determinant())),
-    ("inverse",        0, Rule::Square(|a| a.inverse())),
-    ("symmetric_part", 0, Rule::Square(|a| a.symmetric_part())),
-    ("cross_matrix",   0, Rule::Three(|a| a.hat())),
-    ("dot",            1, Rule::Pair(|a, b| a.dot(b))),
-    ("component_mul",  1, Rule::Pair(|a, b| a.hadamard(b))),
-    ("cross",          1, Rule::PairOfThree(|a, b| a.cross(b))),
-    ("column",         1, part(0, [false, true], |all, _| Shape::new(all.rows, 1))),
-    ("row",            1, part(0, [true, false], |all, _| Shape::new(1, all.columns))),
-    ("fixed_rows",     1, part(1, [true, false], |all, n| Shape::new(n[0], all.columns))),
-    ("fixed_columns",  1, part(1, [false, true], |all, n| Shape::new(all.rows, n[0]))),
-    ("fixed_view",     2, part(2, [true, true], |_, n| Shape::new(n[0], n[1]))),
-    ("xy",             0, part(0, [false, false], |_, _| Shape::vector(2))),
-    ("xyz",            0, part(0, [false, false], |_, _| Shape::vector(3))),
-    ("rotation",       0, Rule::Special(|this, call, a| this.rotation(call, a))),
-    ("translation",    0, Rule::Special(|this, call, a| this.translation(call, a))),
-    ("matrix",         0, Rule::Special(|this, call, a| this.velocity_matrix(call, a))),
-    ("map",            1, Rule::Map),
-    ("sum",            0, Rule::Sum),
-    ("sqrt",           0, Rule::OfScalar(|this, call, a| this.sqrt(call, a))),
-    ("powi",           1, Rule::OfScalar(|this, call, a| this.powi(call, a))),
-    ("powf",           1, Rule::OfScalar(|this, call, a| this.powf(call, a))),
-    ("recip",          0, Rule::OfScalar(|this, call, a| this.recip(call, a))),
-    ("sin",            0, Rule::Scalar(Function::Sin)),
-    ("cos",            0, Rule::Scalar(Function::Cos)),
-    ("tan",            0, Rule::Scalar(Function::Tan)),
-    ("asin",           0, Rule::Scalar(Function::Asin)),
-    ("acos",           0, Rule::Scalar(Function::Acos)),
-    ("atan",           0, Rule::Scalar(Function::Atan)),
-    ("sinh",           0, Rule::Scalar(Function::Sinh)),
-    ("cosh",           0, Rule::Scalar(Function::Cosh)),
-    ("tanh",           0, Rule::Scalar(Function::Tanh)),
-    ("exp",            0, Rule::Scalar(Function::Exp)),
-    ("ln",             0, Rule::Scalar(Function::Ln)),
+pub(super) const METHODS: [(&str, usize, Rule, &str); 39] = [
+    ("transpose",      0, Rule::Any(|a| a.transpose()), "Aᵀ"),
+    ("norm_squared",   0, Rule::Any(|a| a.norm_squared()), "tr(AᵀA), the sum of the squares of all entries"),
+    ("norm",           0, Rule::Special("a vector or matrix that is no scalar", |this, call, a| this.norm(call, a)), "√tr(AᵀA); it has no derivative at 0"),
+    ("normalize",      0, Rule::Vector(|a| a.normalize()), "A/|A|"),
+    ("trace",          0, Rule::Square(|a| a.trace()), "tr A"),
+    ("determinant",    0, Rule::Square(|a| a.determinant()), "det A"),
+    ("inverse",        0, Rule::Square(|a| a.inverse()), "A⁻¹"),
+    ("symmetric_part", 0, Rule::Square(|a| a.symmetric_part()), "(A + Aᵀ)/2"),
+    ("cross_matrix",   0, Rule::Three(|a| a.hat()), "the matrix a^ with a^ b = a × b"),
+    ("dot",            1, Rule::Pair(|a, b| a.dot(b)), "tr(AᵀB), the sum of the products of equal entries"),
+    ("component_mul",  1, Rule::Pair(|a, b| a.hadamard(b)), "the products of equal entries"),
+    ("cross",          1, Rule::PairOfThree(|a, b| a.cross(b)), "a × b"),
+    ("column",         1, part(0, [false, true], |all, _| Shape::new(all.rows, 1)), "`A.column(j)`, counted from 0"),
+    ("row",            1, part(0, [true, false], |all, _| Shape::new(1, all.columns)), "`A.row(i)`, counted from 0"),
+    ("fixed_rows",     1, part(1, [true, false], |all, n| Shape::new(n[0], all.columns)), "`A.fixed_rows::<2>(i)`, two rows from row i on"),
+    ("fixed_columns",  1, part(1, [false, true], |all, n| Shape::new(all.rows, n[0])), "`A.fixed_columns::<2>(j)`, two columns from column j on"),
+    ("fixed_view",     2, part(2, [true, true], |_, n| Shape::new(n[0], n[1])), "`A.fixed_view::<2, 3>(i, j)`, two rows and three columns from entry (i, j) on"),
+    ("xy",             0, part(0, [false, false], |_, _| Shape::vector(2)), "the first two components of a vector"),
+    ("xyz",            0, part(0, [false, false], |_, _| Shape::vector(3)), "the first three components of a vector"),
+    ("rotation",       0, Rule::Special("an element of `SE`, `Sim` or `Aff`", |this, call, a| this.rotation(call, a)), "the linear part A of (A a; 0 1)"),
+    ("translation",    0, Rule::Special("an element of `SE`, `Sim` or `Aff`", |this, call, a| this.translation(call, a)), "the shift a of (A a; 0 1)"),
+    ("matrix",         0, Rule::Special("the velocity of one factor", |this, call, a| this.velocity_matrix(call, a)), "its element of the Lie algebra"),
+    ("map",            1, Rule::Map, "`x.map(|i| …)`, an array"),
+    ("sum",            0, Rule::Sum, "the sum of an array"),
+    ("sqrt",           0, Rule::OfScalar(|this, call, a| this.sqrt(call, a)), "√x"),
+    ("powi",           1, Rule::OfScalar(|this, call, a| this.powi(call, a)), "`x.powi(n)`, xⁿ for a whole number n from −64 to 64"),
+    ("powf",           1, Rule::OfScalar(|this, call, a| this.powf(call, a)), "`x.powf(y)`, x^y; `x.powf(3 / 2)` is exact"),
+    ("recip",          0, Rule::OfScalar(|this, call, a| this.recip(call, a)), "1/x"),
+    ("sin",            0, Rule::Scalar(Function::Sin), "sin x"),
+    ("cos",            0, Rule::Scalar(Function::Cos), "cos x"),
+    ("tan",            0, Rule::Scalar(Function::Tan), "tan x"),
+    ("asin",           0, Rule::Scalar(Function::Asin), "arcsin x"),
+    ("acos",           0, Rule::Scalar(Function::Acos), "arccos x"),
+    ("atan",           0, Rule::Scalar(Function::Atan), "arctan x"),
+    ("sinh",           0, Rule::Scalar(Function::Sinh), "sinh x"),
+    ("cosh",           0, Rule::Scalar(Function::Cosh), "cosh x"),
+    ("tanh",           0, Rule::Scalar(Function::Tanh), "tanh x"),
+    ("exp",            0, Rule::Scalar(Function::Exp), "eˣ"),
+    ("ln",             0, Rule::Scalar(Function::Ln), "ln x, the natural logarithm"),
 ];
 
 /// Methods without a derivative everywhere: why, and what to write instead, with `…` for the receiver.

@@ -19,6 +19,20 @@ macro_rules! features {
             pub fn is_key(self, name: &str) -> bool {
                 self.words().strip_prefix('`').and_then(|word| word.strip_suffix('`')) == Some(name)
             }
+
+            /// Whether it is a key of this name, a value of one, or what one declares.
+            pub fn belongs_to(self, name: &str) -> bool {
+                match self {
+                    Feature::OpaquePotential => name == "potential",
+                    Feature::OtherDiscretization => name == "discretization",
+                    Feature::Forces => ["force", "force_on"].contains(&name),
+                    Feature::Inputs => ["controls", "dynamics", "effort"].contains(&name),
+                    _ => {
+                        let behind = self.words().strip_prefix('`').and_then(|words| words.strip_prefix(name));
+                        behind.is_some_and(|behind| behind.starts_with(['`', ' ']))
+                    }
+                }
+            }
         }
     };
 }

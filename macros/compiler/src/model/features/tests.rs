@@ -1,16 +1,6 @@
-//! The table is in the docs, and refuses no pair twice.
+//! The table refuses no pair twice.
 
-use super::{combinations, features_as_markdown};
-
-#[test]
-fn the_docs_show_the_table() {
-    let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/features.md");
-    let page = std::fs::read_to_string(path).unwrap_or_default();
-    assert!(
-        page.contains(&features_as_markdown()),
-        "cargo run -p clebsch-compiler --example features > docs/features.md"
-    );
-}
+use super::combinations;
 
 #[test]
 fn no_pair_is_refused_twice() {
