@@ -4,11 +4,11 @@ use clebsch_compiler::{Graph, compile, derive, emit, model, parse};
 use proc_macro2::TokenStream;
 use quote::ToTokens;
 
-const README: &str = include_str!("../../../README.md");
+const README: &str = include_str!("../../../../README.md");
 
 /// The struct of the first example.
 fn declaration() -> TokenStream {
-    let file = syn::parse_file(include_str!("../../../examples/rigid_body/main.rs")).expect("Rust source");
+    let file = syn::parse_file(include_str!("../../../../examples/rigid_body/main.rs")).expect("Rust source");
     let item = file.items.into_iter().find(|item| matches!(item, syn::Item::Struct(_)));
     item.expect("a struct").into_token_stream()
 }
