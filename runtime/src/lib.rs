@@ -69,6 +69,7 @@
 //! | `rayon` | `Ensemble::par_advance`, on all cores; needs the standard library |
 //! | `num-dual` | the numbers of that crate as scalars, which carry derivatives; needs the standard library |
 //! | `double-double` | `DoubleDouble`: 31 digits for reference runs |
+//! | `generated` | the dial `emit = [generated]`: the constant `GENERATED`, the generated code as text |
 //! | `serde` | states that are written and read back; `Stepper::resume` goes on bit for bit, if the format keeps all digits (`serde_json` with `float_roundtrip`) |
 //!
 //! # Where dials end

@@ -42,10 +42,14 @@ pub use stub::stub;
 pub fn emit(program: &Program<'_>) -> TokenStream {
     let (emitter, items) = expanded(program);
     let asked = emitter.model.emit;
+    #[cfg(feature = "generated")]
     let generated = asked.generated.then(|| {
         let documentation = "The code that `derive(Clebsch)` has generated for this struct.";
         emitter.constant("GENERATED", documentation, &pretty(&items))
     });
+    // the parser refuses the word
+    #[cfg(not(feature = "generated"))]
+    let generated = None::<TokenStream>;
     let latex = asked.latex.then(|| {
         let documentation = "The formulas of the derivation of this struct in LaTeX, an `align*` of its own.";
         emitter.constant("DERIVATION_LATEX", documentation, &emitter.rows.latex())
@@ -84,10 +88,12 @@ pub fn derivations(program: &Program<'_>) -> String {
 }
 
 /// The generated code of a program as text.
+#[cfg(feature = "generated")]
 pub fn generated(program: &Program<'_>) -> String {
     pretty(&expanded(program).1)
 }
 
+#[cfg(feature = "generated")]
 fn pretty(items: &TokenStream) -> String {
     match syn::parse2(items.clone()) {
         Ok(file) => prettyplease::unparse(&file),

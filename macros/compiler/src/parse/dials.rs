@@ -208,7 +208,7 @@ impl Order {
 /// What is emitted beside the integrator.
 #[derive(Copy, Clone, PartialEq, Eq, Default, Debug)]
 pub struct Emit {
-    /// The constant `GENERATED`, the generated code as text.
+    /// The constant `GENERATED`, the generated code as text; needs the feature `generated`.
     pub generated: bool,
     /// The constant `DERIVATION_LATEX`, the formulas in LaTeX.
     pub latex: bool,
@@ -231,7 +231,7 @@ pub(super) struct Emitted {
 /// The words of `emit`: where each is noted, and what it gives.
 #[rustfmt::skip]
 pub(super) const EMITTED: [(&str, Emitted); 5] = [
-    ("generated", Emitted { part: |emit| &mut emit.generated, about: "The constant `GENERATED`, the generated code as text." }),
+    ("generated", Emitted { part: |emit| &mut emit.generated, about: "The constant `GENERATED`, the generated code as text; needs the feature `generated`." }),
     ("latex",     Emitted { part: |emit| &mut emit.latex,     about: "The constant `DERIVATION_LATEX`, the formulas in LaTeX." }),
     ("tangent",   Emitted { part: |emit| &mut emit.tangent,   about: "The methods `step_tangent` and `step_sensitivity`, the derivatives of a step." }),
     ("boundary",  Emitted { part: |emit| &mut emit.boundary,  about: "The method `boundary()`, the path of least action between two configurations." }),

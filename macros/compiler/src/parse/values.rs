@@ -12,7 +12,7 @@ use super::dials::{EMITTED, Emit, Word};
 use super::keys::{Key, Keys, Kind, Located};
 use super::spelling::tokens;
 use super::{Closure, Potential, opaque};
-use crate::diagnostic::{Diagnostic, Diagnostics, Location, bail, error, nearest, refuse};
+use crate::diagnostic::{Diagnostic, Diagnostics, Location, bail, error, nearest, refuse, report};
 
 /// Reads the value of a key and puts it in its place.
 pub(super) fn read(name: &Ident, key: &Key, stream: ParseStream, keys: &mut Keys) -> Result<(), Diagnostic> {
@@ -94,6 +94,9 @@ impl Reader<'_, '_> {
         for word in &words {
             if word == "connection" {
                 self.diagnostics.push(Diagnostic::later(word, "`connection` as `emit`", None));
+            } else if word == "generated" && !cfg!(feature = "generated") {
+                report!(self.diagnostics, word, "`emit = [generated]` needs the feature `generated` of the crate `clebsch`";
+                    help "add the feature: `clebsch = {{ …, features = [\"generated\"] }}`");
             } else if let Some(emitted) = self.choose(word, &EMITTED) {
                 *(emitted.part)(dial) = true;
             }
