@@ -2,8 +2,6 @@
 
 use std::rc::Rc;
 
-use num_traits::{One, Zero};
-
 use crate::memory::Map;
 use crate::node::{ExprNode, Operation, Term};
 use crate::{Expr, Graph, Group, Rational, Shape, integer};

@@ -6,8 +6,6 @@
 
 use std::ops::Range;
 
-use num_traits::Zero;
-
 use crate::memory::Images;
 use crate::node::{ExprNode, Id, Operation, Term};
 use crate::{Expr, Shape, integer};

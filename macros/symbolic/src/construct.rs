@@ -1,7 +1,5 @@
 //! The operations on expressions, each simplified as it is made.
 
-use num_traits::{One, Zero};
-
 use crate::blocks::common;
 use crate::node::{Analytic, ExprNode, Id, Operation, Term};
 use crate::{Expr, Graph, Group, Property, Rational, Shape};

@@ -1,7 +1,5 @@
 //! Evaluation of expressions over any field of numbers: the oracle of the tests, and the basis of identity testing.
 
-use num_traits::{One, Zero};
-
 use crate::node::{Analytic, Exponent, ExprNode, Function, Id, Operation};
 use crate::{Expr, Graph, Rational, Shape, Sparse, Table, work};
 
@@ -343,12 +341,12 @@ pub(crate) fn power<K: Number>(base: K, exponent: Exponent) -> K {
     if exponent.is_one() {
         return base;
     }
-    let whole = exponent.floor().to_integer();
-    let fraction = exponent - exponent.floor();
+    let whole = exponent.floor();
+    let (numerator, denominator) = exponent.parts();
     let factor = if whole < 0 { base.reciprocal() } else { base };
     let mut result = (0..whole.unsigned_abs()).fold(one(), |product: K, _| product.multiply(factor));
-    if !fraction.is_zero() {
-        result = result.multiply(base.fractional_power(fraction.into_raw()));
+    if !exponent.is_integer() {
+        result = result.multiply(base.fractional_power((numerator - whole * denominator, denominator)));
     }
     result
 }

@@ -6,8 +6,6 @@ use std::hash::{Hash, Hasher};
 use std::ops::{Add, Div, Mul, Neg, Sub};
 use std::rc::Rc;
 
-use num_traits::{One, Zero};
-
 use crate::node::{ExprNode, Id};
 use crate::{Graph, Property, Rational, Role, Shape, Symbol, integer};
 

@@ -3,8 +3,6 @@
 use std::cell::{OnceCell, RefCell};
 use std::rc::Rc;
 
-use num_traits::{One, Zero};
-
 use crate::algebra::{Basis, dense};
 use crate::group::{Block, Definition};
 use crate::identity::Evaluated;

@@ -7,9 +7,6 @@
 
 use std::cell::RefCell;
 
-use num_bigint::BigInt;
-use num_traits::ToPrimitive;
-
 use crate::evaluate::{Matrix, Number, Values, negative, one, zero};
 use crate::group::sample;
 use crate::node::{Analytic, Function, Term};
@@ -51,16 +48,14 @@ impl Residue {
 
 impl Number for Residue {
     fn from_rational(value: &Rational) -> Residue {
-        let reduce = |part: BigInt| {
-            let prime = BigInt::from(PRIME);
-            let residue: BigInt = ((part % &prime) + &prime) % &prime;
-            Residue(residue.to_u64().unwrap_or(0))
-        };
         match value.parts() {
             Some((numerator, 1)) if numerator.unsigned_abs() < PRIME => {
                 Residue(if numerator < 0 { PRIME - numerator.unsigned_abs() } else { numerator as u64 })
             }
-            _ => reduce(value.numer()).multiply(reduce(value.denom()).reciprocal()),
+            _ => {
+                let [numerator, denominator] = value.remainders(PRIME).map(Residue);
+                numerator.multiply(denominator.reciprocal())
+            }
         }
     }
     fn from_integer(value: i64) -> Residue {

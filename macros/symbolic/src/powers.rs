@@ -1,7 +1,5 @@
 //! Powers and functions of scalars, power series of matrices.
 
-use num_traits::{One, Signed, Zero};
-
 use crate::node::{Analytic, Exponent, ExprNode, Function, Operation, Term};
 use crate::{Expr, Rational, Shape, rational};
 
@@ -20,7 +18,10 @@ impl<'g> Expr<'g> {
     pub fn power(self, exponent: Rational) -> Expr<'g> {
         assert!(self.shape().is_scalar(), "a power of `{self}`");
         let graph = self.graph;
-        let is_small = |fraction: &Exponent| fraction.numer().abs().max(*fraction.denom()) <= 1 << 20;
+        let is_small = |fraction: &Exponent| {
+            let (numerator, denominator) = fraction.parts();
+            numerator.abs().max(denominator) <= 1 << 20
+        };
         let Some(exponent) = exponent.as_fraction().filter(is_small) else {
             return (self.function(Function::Ln) * graph.number(exponent)).function(Function::Exp);
         };
@@ -33,7 +34,7 @@ impl<'g> Expr<'g> {
         }
         let Term { coefficient, scalars, word: _ } = self.factor();
         let mut term = Term::number(Rational::one());
-        match exponent.into_raw() {
+        match exponent.parts() {
             (power, 1) => {
                 term.coefficient = coefficient.power(power as i32);
                 scalars.iter().for_each(|&(id, e)| term.multiply_scalars(&[(id, e * exponent)]));

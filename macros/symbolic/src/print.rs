@@ -2,8 +2,6 @@
 
 use std::fmt;
 
-use num_traits::{One, Signed};
-
 use crate::node::{Analytic, Exponent, ExprNode, Function, Id, Operation, Term};
 use crate::{Expr, Graph, Rational, Shape, work};
 
@@ -214,13 +212,13 @@ impl Printer<'_> {
     }
 
     fn scalar_power(&self, base: Id, exponent: Exponent) -> String {
-        if exponent.into_raw() == (1, 2) {
+        if exponent.parts() == (1, 2) {
             return self.enclosed(&self.print(base, Binding::Sum), ["√(", ")"], ["\\sqrt{", "}"]);
         }
         if exponent.is_one() {
             return self.print(base, Binding::Product);
         }
-        let in_unicode = match exponent.into_raw() {
+        let in_unicode = match exponent.parts() {
             (whole, 1) => in_digits(whole, "⁻⁰¹²³⁴⁵⁶⁷⁸⁹"),
             _ => format!("^({exponent})"),
         };

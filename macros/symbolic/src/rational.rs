@@ -7,16 +7,115 @@ use std::fmt;
 use std::iter::Sum;
 use std::ops::{Add, AddAssign, Div, Mul, MulAssign, Neg, Sub, SubAssign};
 
-use num_bigint::BigInt;
-use num_rational::BigRational;
-pub use num_rational::Ratio;
-pub use num_traits::{CheckedAdd, CheckedMul, One, Zero};
-use num_traits::{Pow, Signed, ToPrimitive};
-
+use crate::natural::Natural;
 use crate::work;
 
-/// Fractions of machine words: exponents, and the coefficients that fit. Their numerators have a negative.
-pub type Fraction = Ratio<i64>;
+/// A fraction of machine words in lowest terms: exponents, and the coefficients that fit. Its numerator has a negative.
+#[derive(Copy, Clone, PartialEq, Eq, Hash, Debug)]
+pub struct Fraction {
+    numerator: i64,
+    denominator: i64,
+}
+
+impl Fraction {
+    /// 0.
+    pub const ZERO: Fraction = Fraction::integer(0);
+    /// 1.
+    pub const ONE: Fraction = Fraction::integer(1);
+
+    const fn integer(numerator: i64) -> Fraction {
+        Fraction { numerator, denominator: 1 }
+    }
+
+    /// The fraction `numerator / denominator`; the denominator is not zero.
+    fn new(numerator: i64, denominator: i64) -> Fraction {
+        let (mut a, mut b) = (numerator, denominator);
+        while b != 0 {
+            (a, b) = (b, a % b);
+        }
+        let common = if (a < 0) == (denominator < 0) { a } else { -a };
+        Fraction { numerator: numerator / common, denominator: denominator / common }
+    }
+
+    /// Numerator and denominator, which is positive.
+    pub fn parts(self) -> (i64, i64) {
+        (self.numerator, self.denominator)
+    }
+
+    /// Whether it is 0.
+    pub fn is_zero(self) -> bool {
+        self.numerator == 0
+    }
+
+    /// Whether it is 1.
+    pub fn is_one(self) -> bool {
+        self == Fraction::ONE
+    }
+
+    /// Whether it is whole.
+    pub fn is_integer(self) -> bool {
+        self.denominator == 1
+    }
+
+    /// Whether it is below zero.
+    pub fn is_negative(self) -> bool {
+        self.numerator < 0
+    }
+
+    /// The largest integer that is not above it.
+    pub fn floor(self) -> i64 {
+        self.numerator.div_euclid(self.denominator)
+    }
+
+    fn recip(self) -> Fraction {
+        let sign = self.numerator.signum();
+        Fraction { numerator: sign * self.denominator, denominator: sign * self.numerator }
+    }
+}
+
+impl Add for Fraction {
+    type Output = Fraction;
+    fn add(self, other: Fraction) -> Fraction {
+        let sum = self.numerator * other.denominator + other.numerator * self.denominator;
+        Fraction::new(sum, self.denominator * other.denominator)
+    }
+}
+
+impl Mul for Fraction {
+    type Output = Fraction;
+    fn mul(self, other: Fraction) -> Fraction {
+        Fraction::new(self.numerator * other.numerator, self.denominator * other.denominator)
+    }
+}
+
+impl Neg for Fraction {
+    type Output = Fraction;
+    fn neg(self) -> Fraction {
+        Fraction { numerator: -self.numerator, ..self }
+    }
+}
+
+impl PartialOrd for Fraction {
+    fn partial_cmp(&self, other: &Fraction) -> Option<Ordering> {
+        Some(self.cmp(other))
+    }
+}
+
+impl Ord for Fraction {
+    fn cmp(&self, other: &Fraction) -> Ordering {
+        let crossed = |a: &Fraction, b: &Fraction| i128::from(a.numerator) * i128::from(b.denominator);
+        crossed(self, other).cmp(&crossed(other, self))
+    }
+}
+
+impl fmt::Display for Fraction {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self.parts() {
+            (numerator, 1) => write!(f, "{numerator}"),
+            (numerator, denominator) => write!(f, "{numerator}/{denominator}"),
+        }
+    }
+}
 
 /// A rational number of any size.
 #[derive(Clone, PartialEq, Eq, Hash, Debug)]
@@ -26,15 +125,20 @@ pub struct Rational(Size);
 #[derive(Clone, PartialEq, Eq, Hash, Debug)]
 enum Size {
     Short(Fraction),
-    Long(Box<BigRational>),
+    Long(Box<Long>),
+}
+
+/// A fraction in lowest terms.
+#[derive(Clone, PartialEq, Eq, Hash, Debug)]
+struct Long {
+    is_negative: bool,
+    numerator: Natural,
+    denominator: Natural,
 }
 
 /// The rational `numerator / denominator`; the denominator is not zero.
 pub fn rational(numerator: i64, denominator: i64) -> Rational {
-    match (numerator, denominator) {
-        (i64::MIN, _) | (_, i64::MIN) => Rational::new(numerator.into(), denominator.into()),
-        _ => Rational::short(Ratio::new(numerator, denominator)),
-    }
+    Rational::new(numerator.into(), denominator.into())
 }
 
 /// The rational that equals an integer.
@@ -54,11 +158,55 @@ pub fn product(a: &Rational, b: &Rational) -> Rational {
 impl Rational {
     /// The rational `numerator / denominator`; the denominator is not zero.
     pub fn new(numerator: i128, denominator: i128) -> Rational {
-        Rational::from(BigRational::new(numerator.into(), denominator.into()))
+        match (i64::try_from(numerator), i64::try_from(denominator)) {
+            (Ok(numerator), Ok(denominator)) if numerator != i64::MIN && denominator != i64::MIN => {
+                Rational::short(Fraction::new(numerator, denominator))
+            }
+            _ => {
+                let is_negative = (numerator < 0) != (denominator < 0);
+                Rational::of(is_negative, numerator.unsigned_abs().into(), denominator.unsigned_abs().into())
+            }
+        }
+    }
+
+    /// 0.
+    pub fn zero() -> Rational {
+        Rational::short(Fraction::ZERO)
+    }
+
+    /// 1.
+    pub fn one() -> Rational {
+        Rational::short(Fraction::ONE)
     }
 
     pub(crate) fn short(fraction: Fraction) -> Rational {
         Rational(Size::Short(fraction))
+    }
+
+    /// ±a/b, where b is not zero.
+    fn of(is_negative: bool, numerator: Natural, denominator: Natural) -> Rational {
+        let common = numerator.common_divisor(&denominator);
+        let [numerator, denominator] = [numerator, denominator].map(|part| part.divided(&common).0);
+        Rational::in_lowest_terms(Long { is_negative, numerator, denominator })
+    }
+
+    fn in_lowest_terms(value: Long) -> Rational {
+        let value = Rational::fitted(value);
+        if !matches!(value.0, Size::Short(_)) {
+            // digits meet digits in products and in lowest terms
+            work::spend(1 + value.digits() * value.digits() / 8);
+        }
+        value
+    }
+
+    fn fitted(value: Long) -> Rational {
+        match (value.numerator.word(), value.denominator.word()) {
+            (Some(numerator), Some(denominator)) => {
+                let numerator = if value.is_negative { -numerator } else { numerator };
+                Rational::short(Fraction { numerator, denominator })
+            }
+            _ => Rational(Size::Long(Box::new(value))),
+        }
     }
 
     /// The value as a fraction of machine words, if it is one.
@@ -69,44 +217,82 @@ impl Rational {
         }
     }
 
-    fn long(&self) -> BigRational {
+    fn long(&self) -> Long {
         match &self.0 {
-            Size::Short(fraction) => BigRational::new_raw((*fraction.numer()).into(), (*fraction.denom()).into()),
+            Size::Short(fraction) => Long {
+                is_negative: fraction.is_negative(),
+                numerator: u128::from(fraction.numerator.unsigned_abs()).into(),
+                denominator: u128::from(fraction.denominator.unsigned_abs()).into(),
+            },
             Size::Long(value) => (**value).clone(),
         }
     }
 
     /// Numerator and denominator, if they are machine words.
     pub fn parts(&self) -> Option<(i64, i64)> {
-        self.as_fraction().map(Fraction::into_raw)
+        self.as_fraction().map(Fraction::parts)
+    }
+
+    /// Numerator and denominator, if they fit into two machine words each.
+    pub fn wide_parts(&self) -> Option<(i128, i128)> {
+        let Long { is_negative, numerator, denominator } = self.long();
+        let numerator = numerator.wide()?;
+        Some((if is_negative { -numerator } else { numerator }, denominator.wide()?))
+    }
+
+    /// The remainders of numerator and denominator in the division by a number.
+    pub(crate) fn remainders(&self, modulus: u64) -> [u64; 2] {
+        let Long { is_negative, numerator, denominator } = self.long();
+        let remainder = |part: Natural| part.divided(&u128::from(modulus).into()).1.wide().unwrap_or(0) as u64;
+        let above = remainder(numerator);
+        [if is_negative && above > 0 { modulus - above } else { above }, remainder(denominator)]
+    }
+
+    /// The number of binary digits of numerator and denominator.
+    pub fn bits(&self) -> usize {
+        let Long { is_negative: _, numerator, denominator } = self.long();
+        numerator.bits() + denominator.bits()
     }
 
     /// The machine words that it takes beside one for each part.
     pub(crate) fn digits(&self) -> usize {
-        match &self.0 {
-            Size::Short(_) => 0,
-            Size::Long(value) => ((value.numer().bits() + value.denom().bits()) / 64) as usize,
-        }
+        if matches!(self.0, Size::Short(_)) { 0 } else { self.bits() / 64 }
     }
 
     /// The numerator in lowest terms.
-    pub fn numer(&self) -> BigInt {
-        self.parts().map_or_else(|| self.long().numer().clone(), |(numerator, _)| numerator.into())
+    pub fn numer(&self) -> Rational {
+        Rational::fitted(Long { denominator: 1.into(), ..self.long() })
     }
 
     /// The denominator in lowest terms, positive.
-    pub fn denom(&self) -> BigInt {
-        self.parts().map_or_else(|| self.long().denom().clone(), |(_, denominator)| denominator.into())
+    pub fn denom(&self) -> Rational {
+        Rational::fitted(Long { is_negative: false, numerator: self.long().denominator, denominator: 1.into() })
+    }
+
+    /// Whether it is 0.
+    pub fn is_zero(&self) -> bool {
+        self.as_fraction().is_some_and(Fraction::is_zero)
+    }
+
+    /// Whether it is 1.
+    pub fn is_one(&self) -> bool {
+        self.as_fraction().is_some_and(Fraction::is_one)
     }
 
     /// Whether it is whole.
     pub fn is_integer(&self) -> bool {
-        self.parts().map_or_else(|| self.long().is_integer(), |(_, denominator)| denominator == 1)
+        match &self.0 {
+            Size::Short(fraction) => fraction.is_integer(),
+            Size::Long(value) => value.denominator.word() == Some(1),
+        }
     }
 
     /// Whether it is below zero.
     pub fn is_negative(&self) -> bool {
-        self.parts().map_or_else(|| self.long().is_negative(), |(numerator, _)| numerator < 0)
+        match &self.0 {
+            Size::Short(fraction) => fraction.is_negative(),
+            Size::Long(value) => value.is_negative,
+        }
     }
 
     /// |a|.
@@ -116,62 +302,54 @@ impl Rational {
 
     /// 1/a of a number that is not zero.
     pub fn recip(&self) -> Rational {
-        self.as_fraction()
-            .map_or_else(|| Rational::from(self.long().recip()), |fraction| Rational::short(fraction.recip()))
+        match &self.0 {
+            Size::Short(fraction) => Rational::short(fraction.recip()),
+            Size::Long(_) => {
+                let Long { is_negative, numerator, denominator } = self.long();
+                Rational::in_lowest_terms(Long { is_negative, numerator: denominator, denominator: numerator })
+            }
+        }
     }
 
     /// The largest integer that is not above it.
     pub fn floor(&self) -> Rational {
-        // not `Ratio::floor`, which overflows next to the least machine word
-        self.parts().map_or_else(|| Rational::from(self.long().floor()), |(n, d)| integer(n.div_euclid(d)))
+        match &self.0 {
+            Size::Short(fraction) => integer(fraction.floor()),
+            Size::Long(value) => {
+                let (whole, remainder) = value.numerator.divided(&value.denominator);
+                let is_above = value.is_negative && remainder.word() != Some(0);
+                let numerator = if is_above { whole.plus(&1.into()) } else { whole };
+                let denominator = 1.into();
+                Rational::in_lowest_terms(Long { is_negative: value.is_negative, numerator, denominator })
+            }
+        }
     }
 
     /// aⁿ; a is not zero where n is negative.
     pub(crate) fn power(&self, exponent: i32) -> Rational {
-        match exponent {
-            0 => Rational::one(),
-            1 => self.clone(),
-            _ => Rational::from(Pow::pow(&self.long(), exponent)),
+        if exponent == 1 {
+            return self.clone();
         }
+        let Long { is_negative, numerator, denominator } = self.long();
+        let [numerator, denominator] = [numerator, denominator].map(|part| part.power(exponent.unsigned_abs()));
+        let is_negative = is_negative && exponent % 2 != 0;
+        let power = Long { is_negative, numerator, denominator };
+        if exponent < 0 { Rational::fitted(power).recip() } else { Rational::in_lowest_terms(power) }
     }
 
     /// The nearest floating-point number.
     pub fn to_f64(&self) -> f64 {
-        self.long().to_f64().unwrap_or(f64::NAN)
-    }
-}
-
-impl From<BigRational> for Rational {
-    fn from(value: BigRational) -> Rational {
-        match value.numer().to_i64().zip(value.denom().to_i64()) {
-            Some((numerator, denominator)) if numerator != i64::MIN => {
-                Rational::short(Ratio::new_raw(numerator, denominator))
+        let is_exact = |part: i64| part.unsigned_abs() <= 1 << f64::MANTISSA_DIGITS;
+        match self.parts() {
+            Some((numerator, denominator)) if is_exact(numerator) && is_exact(denominator) => {
+                numerator as f64 / denominator as f64
             }
             _ => {
-                let value = Rational(Size::Long(Box::new(value)));
-                // digits meet digits in products and in lowest terms
-                work::spend(1 + value.digits() * value.digits() / 8);
-                value
+                let Long { is_negative, numerator, denominator } = self.long();
+                let magnitude = numerator.ratio(&denominator);
+                if is_negative { -magnitude } else { magnitude }
             }
         }
-    }
-}
-
-impl Zero for Rational {
-    fn zero() -> Rational {
-        Rational::short(Ratio::ZERO)
-    }
-    fn is_zero(&self) -> bool {
-        self.as_fraction().is_some_and(|fraction| fraction.is_zero())
-    }
-}
-
-impl One for Rational {
-    fn one() -> Rational {
-        Rational::short(Ratio::ONE)
-    }
-    fn is_one(&self) -> bool {
-        self.as_fraction().is_some_and(|fraction| fraction.is_one())
     }
 }
 
@@ -183,9 +361,15 @@ impl PartialOrd for Rational {
 
 impl Ord for Rational {
     fn cmp(&self, other: &Rational) -> Ordering {
-        match (&self.0, &other.0) {
-            (Size::Short(a), Size::Short(b)) => a.cmp(b),
-            _ => self.long().cmp(&other.long()),
+        if let (Size::Short(a), Size::Short(b)) = (&self.0, &other.0) {
+            return a.cmp(b);
+        }
+        let (a, b) = (self.long(), other.long());
+        let magnitudes = a.numerator.times(&b.denominator).cmp(&b.numerator.times(&a.denominator));
+        match (a.is_negative, b.is_negative) {
+            (false, false) => magnitudes,
+            (true, true) => magnitudes.reverse(),
+            (a, b) => b.cmp(&a),
         }
     }
 }
@@ -194,7 +378,10 @@ impl fmt::Display for Rational {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match &self.0 {
             Size::Short(fraction) => fraction.fmt(f),
-            Size::Long(value) => value.fmt(f),
+            Size::Long(value) => {
+                write!(f, "{}{}", if value.is_negative { "-" } else { "" }, value.numerator)?;
+                if self.is_integer() { Ok(()) } else { write!(f, "/{}", value.denominator) }
+            }
         }
     }
 }
@@ -202,7 +389,12 @@ impl fmt::Display for Rational {
 impl Neg for &Rational {
     type Output = Rational;
     fn neg(self) -> Rational {
-        self.as_fraction().map_or_else(|| Rational::from(-self.long()), |fraction| Rational::short(-fraction))
+        match &self.0 {
+            Size::Short(fraction) => Rational::short(-*fraction),
+            Size::Long(value) => {
+                Rational::in_lowest_terms(Long { is_negative: !value.is_negative, ..(**value).clone() })
+            }
+        }
     }
 }
 
@@ -210,6 +402,38 @@ impl Neg for Rational {
     type Output = Rational;
     fn neg(self) -> Rational {
         -&self
+    }
+}
+
+impl Add for &Rational {
+    type Output = Rational;
+    fn add(self, other: &Rational) -> Rational {
+        if let (Size::Short(a), Size::Short(b)) = (&self.0, &other.0) {
+            let crossed = |a: &Fraction, b: &Fraction| i128::from(a.numerator) * i128::from(b.denominator);
+            // below 2¹²⁷
+            return Rational::new(crossed(a, b) + crossed(b, a), i128::from(a.denominator) * i128::from(b.denominator));
+        }
+        let (a, b) = (self.long(), other.long());
+        let (left, right) = (a.numerator.times(&b.denominator), b.numerator.times(&a.denominator));
+        let (is_negative, sum) = match left.cmp(&right) {
+            _ if a.is_negative == b.is_negative => (a.is_negative, left.plus(&right)),
+            Ordering::Less => (b.is_negative, right.minus(&left)),
+            _ => (a.is_negative, left.minus(&right)),
+        };
+        Rational::of(is_negative, sum, a.denominator.times(&b.denominator))
+    }
+}
+
+impl Mul for &Rational {
+    type Output = Rational;
+    fn mul(self, other: &Rational) -> Rational {
+        if let (Size::Short(a), Size::Short(b)) = (&self.0, &other.0) {
+            let numerator = i128::from(a.numerator) * i128::from(b.numerator);
+            return Rational::new(numerator, i128::from(a.denominator) * i128::from(b.denominator));
+        }
+        let (a, b) = (self.long(), other.long());
+        let is_negative = a.is_negative != b.is_negative;
+        Rational::of(is_negative, a.numerator.times(&b.numerator), a.denominator.times(&b.denominator))
     }
 }
 
@@ -226,22 +450,6 @@ impl Div for &Rational {
         product(self, &other.recip())
     }
 }
-
-/// The operators that fractions of machine words have, where the result fits.
-macro_rules! checked {
-    ($($operator:ident $function:ident $checked:ident),*) => {$(
-        impl $operator for &Rational {
-            type Output = Rational;
-            fn $function(self, other: &Rational) -> Rational {
-                let short = self.as_fraction().zip(other.as_fraction()).and_then(|(a, b)| a.$checked(&b));
-                let short = short.filter(|fraction| *fraction.numer() != i64::MIN);
-                short.map_or_else(|| Rational::from(self.long().$function(other.long())), Rational::short)
-            }
-        }
-    )*};
-}
-
-checked!(Add add checked_add, Mul mul checked_mul);
 
 /// The operators on values, by those on references.
 macro_rules! by_reference {

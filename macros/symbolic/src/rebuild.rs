@@ -1,7 +1,5 @@
 //! Rewriting an expression from its leaves: substitution, expansion, dependence.
 
-use num_traits::{One, Signed, Zero};
-
 use crate::memory::{self, Images, Map};
 use crate::node::{Exponent, ExprNode, Id, Operation, Term};
 use crate::{Expr, Graph, Rational, Shape, work};
@@ -188,7 +186,7 @@ impl Graph {
     /// Positive integer powers are multiplied out. The base of any other power stays as it was written: |x − y|² under a root
     /// must not become x² − 2xy + y², which cancels.
     fn expanded_power<'g>(&'g self, base: Expr<'g>, expanded: Expr<'g>, exponent: Exponent) -> Expr<'g> {
-        match exponent.into_raw() {
+        match exponent.parts() {
             (count @ 0..=16, 1) => {
                 (0..count).fold(self.integer(1), |power, _| self.distribute(power, expanded, Shape::scalar()))
             }

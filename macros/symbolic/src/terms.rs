@@ -2,8 +2,6 @@
 
 use std::cmp::Ordering;
 
-use num_traits::{One, Zero};
-
 use crate::blocks::common;
 use crate::node::{Exponent, ExprNode, Id, Operation, Term};
 use crate::rational::product;
@@ -31,8 +29,9 @@ impl Term {
             match self.scalars.binary_search_by_key(&base, |&(id, _)| id) {
                 Err(position) => self.scalars.insert(position, (base, exponent)),
                 Ok(position) => {
-                    self.scalars[position].1 += exponent;
-                    if self.scalars[position].1.is_zero() {
+                    let sum = self.scalars[position].1 + exponent;
+                    self.scalars[position].1 = sum;
+                    if sum.is_zero() {
                         self.scalars.remove(position);
                     }
                 }

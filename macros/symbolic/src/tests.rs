@@ -1,7 +1,7 @@
 //! Tests of what is not seen from outside: numbers, tables, the count of work.
 
 mod rational {
-    use crate::{One, Rational, Zero, integer, rational};
+    use crate::{Rational, integer, rational};
 
     #[test]
     fn numbers_of_any_size_are_exact() {
@@ -30,8 +30,81 @@ mod rational {
     }
 }
 
+mod natural {
+    use crate::natural::Natural;
+
+    /// Numbers of up to seven digits; some digits are 0 or the greatest, where carries go far.
+    fn numbers() -> Vec<Natural> {
+        let mut state = 1_u64;
+        let mut digit = || {
+            state = state.wrapping_mul(0x5851_f42d_4c95_7f2d).wrapping_add(0x1405_7b7e_f767_814f);
+            [0, u64::MAX, 1 << 63, state, state >> 40][(state >> 33) as usize % 5]
+        };
+        let number = |length: usize, digit: &mut dyn FnMut() -> u64| {
+            (0..length).fold(Natural::from(0), |sum, _| sum.shifted(64).plus(&u128::from(digit()).into()))
+        };
+        (0..40).map(|k| number(k % 8, &mut digit)).collect()
+    }
+
+    #[test]
+    fn operations_on_any_size_are_those_of_numbers() {
+        let numbers = numbers();
+        for (a, b) in numbers.iter().flat_map(|a| numbers.iter().map(move |b| (a, b))) {
+            let (sum, product) = (a.plus(b), a.times(b));
+            assert_eq!((sum.minus(b), sum.clone()), (a.clone(), b.plus(a)));
+            assert_eq!(
+                (product.clone(), sum.times(&sum)),
+                (b.times(a), a.power(2).plus(&product.shifted(1)).plus(&b.power(2)))
+            );
+            if b.bits() > 0 {
+                let (quotient, remainder) = a.divided(b);
+                assert!(remainder < *b && quotient.times(b).plus(&remainder) == *a, "{a}/{b}");
+                assert_eq!(product.plus(&remainder).divided(b), (a.clone(), remainder));
+                let common = a.common_divisor(b);
+                let [a, b] = [a, b].map(|part| part.divided(&common));
+                assert!([a.1, b.1].iter().all(|remainder| remainder.bits() == 0));
+                assert_eq!(a.0.common_divisor(&b.0), Natural::from(1));
+            }
+        }
+    }
+
+    #[test]
+    fn quotients_are_the_nearest_floating_point_numbers() {
+        let power = |exponent: u32| Natural::from(10).power(exponent);
+        let quotients = [
+            (1, 0, 0),
+            (17, 0, 1),
+            (123_456_789_123_456_789, 0, 5),
+            (1, 300, 0),
+            (1, 0, 300),
+            (49, 0, 325),
+            (1, 0, 330),
+        ];
+        for (k, (factor, above, below)) in quotients.into_iter().enumerate() {
+            let expected: f64 = format!("{factor}e{}", i64::from(above) - i64::from(below)).parse().unwrap();
+            assert_eq!(Natural::from(factor).times(&power(above)).ratio(&power(below)), expected, "{k}");
+        }
+        let least = f64::from_bits(1);
+        // halves go to even, and what is above a half goes up
+        let halves = [(1, 1075, 0.0), (3, 1075, 2.0 * least), (5, 1075, 2.0 * least), (11, 1076, 3.0 * least)];
+        for (factor, exponent, expected) in halves {
+            assert_eq!(Natural::from(factor).ratio(&Natural::from(1).shifted(exponent)), expected);
+        }
+        let odd = (1_u128 << 53) + 1;
+        assert_eq!(Natural::from(odd).ratio(&Natural::from(1)), (1_u64 << 53) as f64);
+        assert_eq!(power(400).ratio(&Natural::from(3)), f64::INFINITY);
+    }
+
+    #[test]
+    fn texts_have_all_digits() {
+        let number = Natural::from(10).power(57).plus(&7.into());
+        assert_eq!(number.to_string(), format!("1{}7", "0".repeat(56)));
+        assert_eq!(Natural::from(0).to_string(), "0");
+    }
+}
+
 mod fraction {
-    use crate::{One, Rational, integer, rational};
+    use crate::{Rational, integer, rational};
 
     #[test]
     fn lowest_terms_and_order() {

@@ -1,7 +1,7 @@
 //! Residuals freed of denominators, by maps that are regular near the identity: components of the result vanish where those of the
 //! residual do.
 
-use clebsch_symbolic::{Chart, Expr, Fraction, Graph, Group, One, Operation, View, WordTerm, integer};
+use clebsch_symbolic::{Chart, Expr, Fraction, Graph, Group, Operation, View, WordTerm, integer};
 
 use super::{ChartBlock, SystemFormulas};
 use crate::model::{Factor, Side};

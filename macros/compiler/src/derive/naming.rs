@@ -1,6 +1,6 @@
 //! Directions of Lie algebras in words.
 
-use clebsch_symbolic::{Group, Rational, Zero, integer, joined};
+use clebsch_symbolic::{Group, Rational, integer, joined};
 
 use crate::model::System;
 

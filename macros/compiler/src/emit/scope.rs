@@ -4,7 +4,7 @@ use std::cell::RefCell;
 use std::hash::Hash;
 use std::ops::Deref;
 
-use clebsch_symbolic::{Group, Rational, Role, Shape, Symbol, Table, Zero};
+use clebsch_symbolic::{Group, Rational, Role, Shape, Symbol, Table};
 use proc_macro2::{Literal, TokenStream, TokenTree};
 use quote::{ToTokens, format_ident, quote};
 

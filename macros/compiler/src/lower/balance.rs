@@ -1,6 +1,6 @@
 //! Sums in the order in which their terms are there: first those that are there first, so that the last one waits for one addition alone.
 
-use clebsch_symbolic::{Rational, Zero, integer};
+use clebsch_symbolic::{Rational, integer};
 
 use super::Code;
 

@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use clebsch_symbolic::{Operation, Shape, Zero};
+use clebsch_symbolic::{Operation, Shape};
 
 use super::scalar::is_unit;
 use super::{Code, Kernel, MatrixOperation};

@@ -1,6 +1,6 @@
 //! Common factors of the terms of a sum: a x + a y is a (x + y), where that saves multiplications.
 
-use clebsch_symbolic::{Rational, Table, Zero, integer, work};
+use clebsch_symbolic::{Rational, Table, integer, work};
 
 use super::kernel::{Id, Operation, Operations};
 use super::scalar::is_unit;

@@ -7,7 +7,7 @@ use std::collections::BTreeMap;
 use std::rc::Rc;
 
 use clebsch_symbolic::{
-    Algebra, Basis, Expr, Graph, One, Operation, Property, Rational, Shape, Sparse, Symbol, View, WordTerm, integer,
+    Algebra, Basis, Expr, Graph, Operation, Property, Rational, Shape, Sparse, Symbol, View, WordTerm, integer,
 };
 
 use super::entries::{Grid, Scalar};
@@ -169,7 +169,7 @@ impl<'g> Scalars {
         let mut groups: BTreeMap<Key<'g>, Vec<Grid>> = BTreeMap::new();
         let mut grids = Vec::new();
         for term in terms {
-            let scalars: Vec<_> = term.scalars.iter().map(|(base, exponent)| (*base, exponent.into_raw())).collect();
+            let scalars: Vec<_> = term.scalars.iter().map(|(base, exponent)| (*base, exponent.parts())).collect();
             if !term.word.is_empty() && !term.word.iter().any(|letter| self.is_constant(*letter)) {
                 let product = self.word(&term.word);
                 let scale = self.monomial(&term.coefficient, &scalars);
@@ -223,7 +223,7 @@ impl<'g> Scalars {
     }
 
     fn scaled(&mut self, grid: &Grid, scale: Scalar) -> Grid {
-        if self.as_number(scale).is_some_and(One::is_one) {
+        if self.as_number(scale).is_some_and(Rational::is_one) {
             return grid.clone();
         }
         Grid::from_fn(grid.shape, |(i, j)| self.product([scale, grid.at(i, j)]))

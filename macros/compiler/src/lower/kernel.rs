@@ -3,7 +3,7 @@
 mod hoisted;
 mod shorten;
 
-use clebsch_symbolic::{Function, Interner, Rational, Role, Shape, Table, Zero, integer, work};
+use clebsch_symbolic::{Function, Interner, Rational, Role, Shape, Table, integer, work};
 
 use super::balance;
 use super::code::DEEPEST_EXPRESSION;

@@ -9,8 +9,8 @@ mod hoisting;
 mod words;
 
 use clebsch_symbolic::{
-    Algebra, Expr, Fraction, Function, Graph, Group, One, Operation, Rational, Role, Shape, Symbol, Table, View,
-    WordTerm, integer, work,
+    Algebra, Expr, Fraction, Function, Graph, Group, Operation, Rational, Role, Shape, Symbol, Table, View, WordTerm,
+    integer, work,
 };
 
 use super::grid::by_components;
@@ -270,7 +270,7 @@ impl Matrices {
 
     fn powers(&mut self, scalars: &[(Expr<'_>, Fraction)]) -> Vec<Code> {
         let power = |(base, exponent): &(Expr<'_>, Fraction)| {
-            let (numerator, denominator) = exponent.into_raw();
+            let (numerator, denominator) = exponent.parts();
             let base = self.value(*base);
             let power = match (numerator.unsigned_abs() as usize, denominator) {
                 (1, 1) => base,

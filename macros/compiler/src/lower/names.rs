@@ -3,7 +3,7 @@
 //! Factors stand side by side, those below a fraction bar behind `per`; what is multiplied with a sum stands before `of`. A sum of entries of one
 //! field names the field once.
 
-use clebsch_symbolic::{One, Rational, Role, Zero, integer, work};
+use clebsch_symbolic::{Rational, Role, integer, work};
 
 use super::scalar::{Factors, add as add_to};
 use super::{Callee, Hoisted, Input, Scalar, ScalarNode, Scalars};

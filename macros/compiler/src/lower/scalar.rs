@@ -3,9 +3,7 @@
 use std::ops::AddAssign;
 use std::rc::Rc;
 
-use clebsch_symbolic::{
-    Analytic, Function, Interner, One, Rational, Role, Shape, Symbol, Table, Zero, integer, product, work,
-};
+use clebsch_symbolic::{Analytic, Function, Interner, Rational, Role, Shape, Symbol, Table, integer, product, work};
 
 use super::entries::{Grid, Scalar};
 
@@ -201,7 +199,7 @@ impl Scalars {
 
     /// Whether it is the number zero.
     pub fn is_zero(&self, scalar: Scalar) -> bool {
-        self.as_number(scalar).is_some_and(Zero::is_zero)
+        self.as_number(scalar).is_some_and(Rational::is_zero)
     }
 
     /// constant + Σ coefficient · scalar; sums inside are merged where the coefficient is ±1.

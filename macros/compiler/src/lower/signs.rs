@@ -6,7 +6,7 @@
 //! A shared term −a − b is computed as it is where a does not change in the loop of a solve: −a is made once. Where a changes, a + b is computed and
 //! then subtracted.
 
-use clebsch_symbolic::{Interner, One, Rational, Shape, Zero, integer, work};
+use clebsch_symbolic::{Interner, Rational, Shape, integer, work};
 
 use super::{Code, Cost, Kernel, MatrixOperation, Whole};
 

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use clebsch_symbolic::{Role, Zero};
+use clebsch_symbolic::Role;
 
 use super::made::{Maker, of_matrices, plain, separate};
 use super::{Code, Hoisted, Hoisting, Kernel, MechanicsProgram, Step, matrices};

@@ -1,6 +1,6 @@
 //! Sums within sums.
 
-use clebsch_symbolic::{Rational, Table, Zero, integer};
+use clebsch_symbolic::{Rational, Table, integer};
 
 use super::kernel::Id;
 use super::scalar::is_unit;

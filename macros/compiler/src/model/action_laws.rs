@@ -1,7 +1,7 @@
 //! The laws of the action, checked exactly and factor by factor: the identity moves nothing, products act as one after the
 //! other, different factors do not meet, and every factor moves something. The side of each factor is found here.
 
-use clebsch_symbolic::{Chart, Expr, Graph, Group, One, Operation, Role, View, identity};
+use clebsch_symbolic::{Chart, Expr, Graph, Group, Operation, Role, View, identity};
 
 use super::{Configuration, Factor, LeafSpace, Side};
 use crate::diagnostic::Diagnostics;

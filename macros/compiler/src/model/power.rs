@@ -7,7 +7,7 @@
 #[cfg(test)]
 mod tests;
 
-use clebsch_symbolic::{Expr, Rational, Role, Zero};
+use clebsch_symbolic::{Expr, Rational, Role};
 
 /// One site that terms read.
 #[derive(Clone, PartialEq, Eq)]

@@ -2,8 +2,6 @@
 
 use std::rc::Rc;
 
-use num_traits::Zero;
-
 use super::chart::Chart;
 use super::{Declared, Group, sample};
 use crate::algebra::{Sparse, dense};

@@ -97,7 +97,7 @@ fn nilpotent(e: &Field, t: Residue) -> Option<Field> {
 fn diagonal(element: &Sparse, n: usize, s: Residue) -> Option<Field> {
     let mut matrix = Matrix::scaled_identity(n, one());
     for (i, j, value) in element {
-        let is_small = |exponent: &Exponent| exponent.is_integer() && exponent.numer().abs() < 64;
+        let is_small = |exponent: &Exponent| exponent.is_integer() && exponent.parts().0.abs() < 64;
         let exponent = value.as_fraction().filter(|exponent| i == j && is_small(exponent))?;
         matrix.entries[i * n + j] = power(s, exponent);
     }

@@ -9,7 +9,7 @@ mod directions;
 mod large;
 mod special;
 
-use clebsch_symbolic::{Expr, Group, Rational, Shape, Zero, identity};
+use clebsch_symbolic::{Expr, Group, Rational, Shape, identity};
 
 use super::equation::Sources;
 use super::power::{self, SiteTerm};

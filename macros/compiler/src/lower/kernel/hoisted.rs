@@ -1,6 +1,6 @@
 //! Values that are computed less often than the kernels that use them: of a value and its negative, one.
 
-use clebsch_symbolic::{Zero, integer, work};
+use clebsch_symbolic::{integer, work};
 
 use super::{Hoisting, kernel};
 use crate::lower::entries::Grid;

@@ -1,6 +1,6 @@
 //! Fewer operations for the same outputs, and when each of them is done.
 
-use clebsch_symbolic::{Rational, Table, Zero, integer};
+use clebsch_symbolic::{Rational, Table, integer};
 
 use super::{Builder, Id, Operation};
 use crate::lower::scalar::is_unit;

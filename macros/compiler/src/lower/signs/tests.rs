@@ -1,6 +1,6 @@
 use super::{Code, Kernel, moved};
 use crate::lower::code::is_in_brackets;
-use clebsch_symbolic::{Rational, Shape, Zero, integer, rational};
+use clebsch_symbolic::{Rational, Shape, integer, rational};
 
 /// x/2 + 1 for the first term, and so on.
 fn local(index: usize) -> Code {

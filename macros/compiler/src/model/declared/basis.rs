@@ -75,7 +75,6 @@ fn independent(name: &str, matrices: &[Matrix], elements: &[Syntax]) -> Result<(
 
 /// `2*E1 - E2`.
 fn combination(terms: impl Iterator<Item = (usize, Rational)>) -> String {
-    use clebsch_symbolic::{One, Zero};
     let mut text = String::new();
     for (k, coefficient) in terms.filter(|(_, coefficient)| !coefficient.is_zero()) {
         let [first, next] = if coefficient.is_negative() { ["-", " - "] } else { ["", " + "] };

@@ -1,7 +1,7 @@
 //! A group by an equation: the identity satisfies it, its Lie algebra is the kernel of the derivative there, and the equation holds
 //! along the group that this algebra generates.
 
-use clebsch_symbolic::{Expr, Graph, Group, One, Property, Rational, Role, Shape, Sparse, Zero, reduce};
+use clebsch_symbolic::{Expr, Graph, Group, Property, Rational, Role, Shape, Sparse, reduce};
 use quote::ToTokens;
 use syn::Expr as Syntax;
 

@@ -7,7 +7,7 @@ mod numbers;
 #[cfg(test)]
 mod tests;
 
-use clebsch_symbolic::{Graph, Rational, Shape, Sparse, Zero, integer};
+use clebsch_symbolic::{Graph, Rational, Shape, Sparse, integer};
 use proc_macro2::{Ident, Span, TokenStream, TokenTree};
 use syn::ext::IdentExt;
 

@@ -1,7 +1,7 @@
 //! What equations are evaluated with: exact rational numbers that can be copied, and truncated power series, which say how a formula
 //! changes along a curve.
 
-use clebsch_symbolic::{Analytic, CheckedAdd, CheckedMul, Function, Matrix, Number, Ratio, Rational, Shape, Zero};
+use clebsch_symbolic::{Analytic, Function, Matrix, Number, Rational, Shape};
 
 /// The elementary functions of numbers that have none, all of the same value.
 macro_rules! without_functions {
@@ -30,40 +30,38 @@ macro_rules! without_functions {
 
 /// A rational number, or `None` where it does not fit or something is divided by 0.
 #[derive(Copy, Clone, PartialEq, Eq, Debug)]
-pub(super) struct Exact(Option<Ratio<i128>>);
+pub(super) struct Exact(Option<(i128, i128)>);
 
 impl Exact {
     /// The number, if it could be held.
     pub fn rational(self) -> Option<Rational> {
-        self.0.map(|value| Rational::new(*value.numer(), *value.denom()))
+        self.0.map(|(numerator, denominator)| Rational::new(numerator, denominator))
     }
 
-    /// The least numerator has no negative.
-    fn held(value: Option<Ratio<i128>>) -> Exact {
-        Exact(value.filter(|value| *value.numer() != i128::MIN))
+    fn of(self, other: Exact, operation: impl Fn(Rational, Rational) -> Rational) -> Exact {
+        Exact(self.rational().zip(other.rational()).and_then(|(a, b)| operation(a, b).wide_parts()))
     }
 }
 
 impl Number for Exact {
     fn from_rational(value: &Rational) -> Exact {
-        let parts = i128::try_from(value.numer()).ok().zip(i128::try_from(value.denom()).ok());
-        Exact::held(parts.map(|(numerator, denominator)| Ratio::new_raw(numerator, denominator)))
+        Exact(value.wide_parts())
     }
 
     fn from_integer(value: i64) -> Exact {
-        Exact(Some(Ratio::from_integer(value.into())))
+        Exact(Some((value.into(), 1)))
     }
 
     fn add(self, other: Exact) -> Exact {
-        Exact::held(self.0.zip(other.0).and_then(|(a, b)| a.checked_add(&b)))
+        self.of(other, |a, b| a + b)
     }
 
     fn multiply(self, other: Exact) -> Exact {
-        Exact::held(self.0.zip(other.0).and_then(|(a, b)| a.checked_mul(&b)))
+        self.of(other, |a, b| a * b)
     }
 
     fn reciprocal(self) -> Exact {
-        Exact(self.0.filter(|value| !value.is_zero()).map(|value| value.recip()))
+        Exact(self.rational().filter(|value| !value.is_zero()).and_then(|value| value.recip().wide_parts()))
     }
 
     without_functions!(Exact(None));

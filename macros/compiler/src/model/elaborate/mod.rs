@@ -218,8 +218,7 @@ impl<'e, 'c, 'g> Elaborator<'e, 'c, 'g> {
     }
 
     fn size(&self, expr: Expr<'g>) -> Size {
-        let digits = |number: clebsch_symbolic::Rational| (number.numer().bits() + number.denom().bits()) / 16;
-        let weight = || 1 + expr.as_number().map_or(0, digits);
+        let weight = || 1 + expr.as_number().map_or(0, |number| number.bits() as u64 / 16);
         self.sizes.get(&expr).copied().unwrap_or_else(|| Size { weight: weight(), nesting: 0 })
     }
 
