@@ -22,7 +22,13 @@ impl From<Span> for Location {
 /// The place of everything that a syntax tree was made from.
 impl<T: ToTokens + ?Sized> From<&T> for Location {
     fn from(tokens: &T) -> Location {
-        let mut spans = tokens.to_token_stream().into_iter().map(|token| match token {
+        Location::of(tokens.to_token_stream())
+    }
+}
+
+impl Location {
+    fn of(tokens: TokenStream) -> Location {
+        let mut spans = tokens.into_iter().map(|token| match token {
             TokenTree::Group(group) => (group.span_open(), group.span_close()),
             other => (other.span(), other.span()),
         });
@@ -215,13 +221,20 @@ impl fmt::Display for Diagnostics {
 
 /// The candidate that a misspelt name most likely means.
 pub fn nearest<'a>(name: &str, candidates: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
+    let mut best = None;
+    for candidate in candidates {
+        best = nearer(name, candidate, best);
+    }
+    best.map(|(_, candidate)| candidate)
+}
+
+/// A candidate with its distance where a name may mean it rather than the best one before, else that one.
+fn nearer<'a>(name: &str, candidate: &'a str, best: Option<(usize, &'a str)>) -> Option<(usize, &'a str)> {
     let allowed = (name.chars().count() / 3).max(1);
-    candidates
-        .into_iter()
-        .map(|candidate| (edit_distance(&name.to_lowercase(), &candidate.to_lowercase()), candidate))
-        .filter(|&(distance, candidate)| distance <= allowed && distance < candidate.chars().count())
-        .min_by_key(|&(distance, _)| distance)
-        .map(|(_, candidate)| candidate)
+    let distance = edit_distance(&name.to_lowercase(), &candidate.to_lowercase());
+    let is_meant = distance <= allowed && distance < candidate.chars().count();
+    let is_nearer = best.is_none_or(|(least, _)| distance < least);
+    if is_meant && is_nearer { Some((distance, candidate)) } else { best }
 }
 
 /// The name that another one means: its synonym, or one that is spelled nearly like it.

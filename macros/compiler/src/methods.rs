@@ -1,5 +1,6 @@
 //! Methods: several programs of one system.
 
+use clebsch_symbolic::Elements;
 use proc_macro2::Ident;
 
 use crate::diagnostic::{Diagnostics, bail};
@@ -41,7 +42,7 @@ impl<'g> MethodProgram<'g> {
         // by construction: a method has the system of its declaration
         let Program::Mechanics(program) = program else { return Err(Diagnostics::new()) };
         let of = |program: &MechanicsProgram<'g>| -> Vec<String> {
-            program.formulas.symmetries.conserved.iter().map(|momentum| momentum.name.clone()).collect()
+            program.formulas.symmetries.conserved.each(|momentum| momentum.name.clone())
         };
         let conserved = of(&program);
         if let Some(lost) = of(declared).into_iter().find(|momentum| !conserved.contains(momentum)) {

@@ -4,7 +4,7 @@ use std::rc::Rc;
 
 use crate::memory::Map;
 use crate::node::{ExprNode, Operation, Term};
-use crate::{Expr, Graph, Group, Rational, Shape, integer};
+use crate::{Elements, Expr, Graph, Group, Rational, Shape, indexed, integer};
 
 /// The entries (row, column, value) of a matrix that are not zero.
 pub type Sparse = Vec<(usize, usize, Rational)>;
@@ -50,7 +50,7 @@ impl Graph {
     /// The basis as literal matrices.
     pub fn basis_matrices(&self, algebra: Algebra) -> Vec<Expr<'_>> {
         let matrix = |element: &Sparse| self.sparse_literal(algebra.shape, element.iter().cloned());
-        self.basis(algebra).elements.iter().map(matrix).collect()
+        self.basis(algebra).elements.each(matrix)
     }
 }
 
@@ -71,7 +71,7 @@ impl Basis {
             };
             a.iter().map(product).sum()
         };
-        self.elements.iter().map(|a| self.elements.iter().map(|b| pairing(a, b)).collect()).collect()
+        self.elements.each(|a| self.elements.each(|b| pairing(a, b)))
     }
 
     /// The square ⟨E_i, E_i⟩ of the elements, if they are orthogonal to each other and equally long.
@@ -107,7 +107,7 @@ impl Basis {
 }
 
 pub(crate) fn unit_vectors(n: usize) -> Vec<Sparse> {
-    (0..n).map(|i| vec![(i, 0, integer(1))]).collect()
+    indexed(n, |i| vec![(i, 0, integer(1))])
 }
 
 impl<'g> Expr<'g> {
@@ -174,7 +174,7 @@ impl<'g> Expr<'g> {
                 let columns = algebra.shape.columns;
                 let product = |(i, j, value): &(usize, usize, Rational)| &entries[i * columns + j] * value;
                 let component = |element: &Sparse| element.iter().map(product).sum();
-                let components = plain.graph.basis(algebra).elements.iter().map(component).collect();
+                let components = plain.graph.basis(algebra).elements.each(component);
                 return plain.graph.literal(shape, components);
             }
             if !algebra.is_skew {

@@ -1,7 +1,7 @@
 //! Evaluation of expressions over any field of numbers: the oracle of the tests, and the basis of identity testing.
 
 use crate::node::{Analytic, Exponent, ExprNode, Function, Id, Operation};
-use crate::{Expr, Graph, Rational, Shape, Sparse, Table, work};
+use crate::{Elements, Expr, Graph, Rational, Shape, Sparse, Table, work};
 
 /// A field of numbers with elementary functions.
 pub trait Number: Copy + PartialEq {
@@ -159,7 +159,7 @@ impl<K: Number> Matrix<K> {
     }
 
     pub(crate) fn scale(&self, factor: K) -> Matrix<K> {
-        Matrix::new(self.shape, self.entries.iter().map(|entry| entry.multiply(factor)).collect())
+        Matrix::new(self.shape, self.entries.each(|entry| entry.multiply(factor)))
     }
 
     /// The matrix product; a 1×1 factor scales.
@@ -277,7 +277,7 @@ impl<'g> Expr<'g> {
         match &*self.node() {
             ExprNode::Symbol(_) => Matrix::zeros(shape),
             ExprNode::Pi => scalar(K::pi()),
-            ExprNode::Literal(entries) => Matrix::new(shape, entries.iter().map(K::from_rational).collect()),
+            ExprNode::Literal(entries) => Matrix::new(shape, entries.each(K::from_rational)),
             ExprNode::Sum(terms) => {
                 let mut sum = Matrix::zeros(shape);
                 for term in terms {
@@ -291,11 +291,11 @@ impl<'g> Expr<'g> {
                 }
                 sum
             }
-            ExprNode::Stack(parts) => Matrix::new(shape, parts.iter().map(|part| known[part].entries[0]).collect()),
+            ExprNode::Stack(parts) => Matrix::new(shape, parts.each(|part| known[part].entries[0])),
             ExprNode::Word(word) => product(word).unwrap_or_else(|| scalar(one())),
             ExprNode::Trace(word) => scalar(product(word).map_or_else(zero, |matrix| matrix.trace())),
             ExprNode::Opaque(name, output, arguments) => {
-                let arguments: Vec<&Matrix<K>> = arguments.iter().map(|argument| &known[argument]).collect();
+                let arguments: Vec<&Matrix<K>> = arguments.each(|argument| &known[argument]);
                 K::opaque(name, *output, &arguments, shape)
             }
             ExprNode::Hadamard(a, b) => Matrix::from_fn(shape, |(i, j)| known[a].at(i, j).multiply(known[b].at(i, j))),
@@ -330,7 +330,7 @@ impl<'g> Expr<'g> {
             Operation::Components(algebra) => {
                 let product = |(i, j, value): &(usize, usize, Rational)| a.at(*i, *j).multiply(K::from_rational(value));
                 let component = |element: &Sparse| element.iter().map(product).fold(zero(), K::add);
-                Matrix::new(shape, self.graph.basis(algebra).elements.iter().map(component).collect())
+                Matrix::new(shape, self.graph.basis(algebra).elements.each(component))
             }
         }
     }

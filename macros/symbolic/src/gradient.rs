@@ -2,7 +2,7 @@
 
 use crate::memory::{self, Images, Map};
 use crate::node::{Analytic, Exponent, ExprNode, Function, Id, Operation, Term};
-use crate::{Expr, Graph, Rational, Shape, Table};
+use crate::{Elements, Expr, Graph, Rational, Shape, Table, indexed};
 
 impl<'g> Expr<'g> {
     /// The gradient of a scalar with respect to a symbol: the matrix G of the symbol's shape with df = ⟨G, dx⟩ = tr(GᵀdX).
@@ -91,7 +91,7 @@ impl<'g> Expr<'g> {
 
     fn pull_back_word(self, word: &[Id], adjoint: Expr<'g>, add: &mut impl FnMut(Id, Expr<'g>)) {
         let graph = self.graph;
-        let transposed: Vec<Expr<'g>> = word.iter().map(|&letter| graph.expr(letter).transpose()).collect();
+        let transposed: Vec<Expr<'g>> = word.each(|&letter| graph.expr(letter).transpose());
         for (position, letter) in word.iter().enumerate() {
             let left = transposed[..position].iter().copied().reduce(|product, letter| letter * product);
             let right = transposed[position + 1..].iter().rev().copied().reduce(|product, letter| product * letter);
@@ -132,7 +132,7 @@ impl<'g> Expr<'g> {
             }
             ExprNode::Word(word) => self.push_forward_word(word, tangents),
             ExprNode::Trace(word) => self.push_forward_word(word, tangents).trace(),
-            ExprNode::Stack(entries) => graph.stack(self.shape(), entries.iter().map(tangent).collect()),
+            ExprNode::Stack(entries) => graph.stack(self.shape(), entries.each(tangent)),
             ExprNode::Opaque(name, output, arguments) => {
                 let slope = |index| graph.slope_of_opaque(name, *output, arguments, index);
                 let term = |index: usize| slope(index).pairing(tangent(&arguments[index]));
@@ -209,7 +209,7 @@ impl<'g> Expr<'g> {
             return factor * graph.identity(shape.rows);
         }
         let column = |j| self.differential(&[(vector, graph.unit(vector.shape(), j, 0))]);
-        let columns: Vec<Expr<'g>> = (0..shape.columns).map(column).collect();
+        let columns: Vec<Expr<'g>> = indexed(shape.columns, column);
         graph.stack(shape, shape.positions().map(|(i, j)| columns[j].entry(i, 0)).collect())
     }
 

@@ -8,7 +8,7 @@ use crate::group::{Block, Definition};
 use crate::identity::Evaluated;
 use crate::memory::{Images, Maps};
 use crate::node::{ExprNode, Id, Term};
-use crate::{Expr, Group, Interner, Property, Rational, Role, Shape, Symbol, Table, integer, rational, work};
+use crate::{Elements, Expr, Group, Interner, Property, Rational, Role, Shape, Symbol, Table, integer, rational, work};
 
 /// Owns expressions. Nodes are only added, and children come before their parents.
 #[derive(Default)]
@@ -56,7 +56,7 @@ impl Graph {
     }
 
     pub(crate) fn exprs<'g>(&'g self, ids: &[Id]) -> Vec<Expr<'g>> {
-        ids.iter().map(|id| self.expr(*id)).collect()
+        ids.each(|id| self.expr(*id))
     }
 
     pub(crate) fn node(&self, id: Id) -> Rc<ExprNode> {
@@ -76,10 +76,7 @@ impl Graph {
     /// What a method of the user's gives for some arguments: its value for `output` 0, its gradient with respect to argument i for
     /// `output` i + 1.
     pub fn opaque<'g>(&'g self, name: &str, output: usize, arguments: &[Expr<'g>], shape: Shape) -> Expr<'g> {
-        self.intern(
-            ExprNode::Opaque(name.into(), output, arguments.iter().map(|argument| argument.id).collect()),
-            shape,
-        )
+        self.intern(ExprNode::Opaque(name.into(), output, arguments.each(|argument| argument.id)), shape)
     }
 
     /// A rational number.
@@ -177,6 +174,6 @@ impl Graph {
         if let Some(numbers) = entries.iter().map(|entry| entry.as_number()).collect::<Option<Vec<_>>>() {
             return self.literal(shape, numbers);
         }
-        self.intern(ExprNode::Stack(entries.iter().map(|entry| entry.id).collect()), shape)
+        self.intern(ExprNode::Stack(entries.each(|entry| entry.id)), shape)
     }
 }

@@ -15,6 +15,7 @@
 mod algebra;
 mod blocks;
 mod construct;
+mod each;
 mod evaluate;
 mod expr;
 mod gradient;
@@ -37,6 +38,7 @@ mod tests;
 pub mod work;
 
 pub use algebra::{Algebra, Basis, Sparse};
+pub use each::{Elements, IntoElements, indexed};
 pub use evaluate::{Matrix, Number};
 pub use expr::Expr;
 pub use graph::Graph;

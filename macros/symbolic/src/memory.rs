@@ -6,7 +6,7 @@ use std::cell::RefCell;
 use std::rc::Rc;
 
 use crate::node::Id;
-use crate::{Algebra, Expr, Graph, Group, Table, work};
+use crate::{Algebra, Elements, Expr, Graph, Group, Table, work};
 
 /// A map of expressions.
 #[derive(Clone, PartialEq, Eq, Hash)]
@@ -62,7 +62,7 @@ impl Graph {
 }
 
 pub(crate) fn pairs(pairs: &[(Expr<'_>, Expr<'_>)]) -> Vec<(Id, Id)> {
-    pairs.iter().map(|(from, to)| (from.id, to.id)).collect()
+    pairs.each(|(from, to)| (from.id, to.id))
 }
 
 impl<'g> Expr<'g> {

@@ -5,7 +5,7 @@
 
 use std::rc::Rc;
 
-use crate::{Algebra, Expr, Fraction, Graph, Rational, Symbol};
+use crate::{Algebra, Elements, Expr, Fraction, Graph, Rational, Symbol};
 
 /// The identity of a node in its graph.
 #[derive(Copy, Clone, PartialEq, Eq, Hash, PartialOrd, Ord, Debug)]
@@ -137,11 +137,11 @@ impl<C: Copy> NodeOf<C> {
 
     /// The same node over the images of its children.
     pub(crate) fn map<D>(&self, image: impl Fn(C) -> D) -> NodeOf<D> {
-        let all = |parts: &[C]| parts.iter().map(|part| image(*part)).collect();
+        let all = |parts: &[C]| parts.each(|part| image(*part));
         match self {
             NodeOf::Symbol(symbol) => NodeOf::Symbol(symbol.clone()),
             NodeOf::Pi => NodeOf::Pi,
-            NodeOf::Sum(terms) => NodeOf::Sum(terms.iter().map(|term| term.map(&image)).collect()),
+            NodeOf::Sum(terms) => NodeOf::Sum(terms.each(|term| term.map(&image))),
             NodeOf::Literal(entries) => NodeOf::Literal(entries.clone()),
             NodeOf::Stack(entries) => NodeOf::Stack(all(entries)),
             NodeOf::Word(word) => NodeOf::Word(all(word)),
@@ -178,8 +178,8 @@ impl<C: Copy> TermOf<C> {
     pub(crate) fn map<D>(&self, image: impl Fn(C) -> D) -> TermOf<D> {
         TermOf {
             coefficient: self.coefficient.clone(),
-            scalars: self.scalars.iter().map(|(base, exponent)| (image(*base), *exponent)).collect(),
-            word: self.word.iter().map(|letter| image(*letter)).collect(),
+            scalars: self.scalars.each(|(base, exponent)| (image(*base), *exponent)),
+            word: self.word.each(|letter| image(*letter)),
         }
     }
 
@@ -210,7 +210,7 @@ impl<'g> WordTerm<'g> {
 impl<'g> Expr<'g> {
     /// The terms whose sum this is.
     pub fn word_terms(self) -> Vec<WordTerm<'g>> {
-        self.terms().iter().map(|term| term.map(|id| self.graph.expr(id))).collect()
+        self.terms().each(|term| term.map(|id| self.graph.expr(id)))
     }
 
     /// The outermost operation.

@@ -3,7 +3,7 @@
 use std::fmt;
 
 use crate::node::{Analytic, Exponent, ExprNode, Function, Id, Operation, Term};
-use crate::{Expr, Graph, Rational, Shape, work};
+use crate::{Elements, Expr, Graph, Rational, Shape, work};
 
 /// A notation of formulas.
 #[derive(Copy, Clone, PartialEq, Eq, Debug)]
@@ -71,7 +71,7 @@ impl Printer<'_> {
             ExprNode::Symbol(symbol) => self.symbol(&symbol.name),
             ExprNode::Pi => self.notation.either("π", "\\pi").into(),
             ExprNode::Sum(terms) => return self.sum(terms, shape),
-            ExprNode::Literal(entries) => self.rows(shape, entries.iter().map(|entry| self.rational(entry)).collect()),
+            ExprNode::Literal(entries) => self.rows(shape, entries.each(|entry| self.rational(entry))),
             ExprNode::Stack(entries) => self.rows(shape, self.all(entries)),
             ExprNode::Word(word) => return (self.word(word), Binding::Product),
             ExprNode::Trace(word) => {
@@ -123,7 +123,7 @@ impl Printer<'_> {
     }
 
     fn all(&self, ids: &[Id]) -> Vec<String> {
-        ids.iter().map(|id| self.print(*id, Binding::Sum)).collect()
+        ids.each(|id| self.print(*id, Binding::Sum))
     }
 
     fn symbol(&self, name: &str) -> String {
@@ -226,7 +226,7 @@ impl Printer<'_> {
     }
 
     fn word(&self, word: &[Id]) -> String {
-        let letters: Vec<String> = word.iter().map(|&letter| self.print(letter, Binding::Product)).collect();
+        let letters: Vec<String> = word.each(|&letter| self.print(letter, Binding::Product));
         self.join(&letters)
     }
 

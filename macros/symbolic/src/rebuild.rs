@@ -2,7 +2,7 @@
 
 use crate::memory::{self, Images, Map};
 use crate::node::{Exponent, ExprNode, Id, Operation, Term};
-use crate::{Expr, Graph, Rational, Shape, work};
+use crate::{Elements, Expr, Graph, Rational, Shape, work};
 
 impl<'g> Expr<'g> {
     /// All nodes that this expression is made of, children before parents, itself last.
@@ -103,7 +103,7 @@ impl<'g> Expr<'g> {
             return self;
         }
         let image = |part: &Id| images.of(graph, part);
-        let all = |parts: &[Id]| parts.iter().map(image).collect::<Vec<_>>();
+        let all = |parts: &[Id]| parts.each(image);
         let product = |word: &[Id]| word.iter().map(image).reduce(|a, b| a * b);
         match &*node {
             ExprNode::Symbol(_) | ExprNode::Pi | ExprNode::Literal(_) => self,

@@ -1,6 +1,6 @@
 //! Solutions of the momentum equation without iteration: one square root for bi-invariant energies, or the predictor itself.
 
-use clebsch_symbolic::{Chart, Expr, Group, Shape, identity};
+use clebsch_symbolic::{Chart, Elements, Expr, Group, Shape, identity};
 
 use super::equation::{MomentumEquation, SineForm, Solution, Sources};
 use super::trivialisation::Covector;
@@ -13,7 +13,7 @@ pub(super) fn is_solved_by_predictor<'g>(sources: &Sources<'_, 'g>, blocks: &[us
         let step = sources.chart_step(i, sources.divisor);
         (block.coordinates, step * velocity.block(block.offset, 0, block.coordinates.shape()))
     };
-    let solutions: Vec<_> = blocks.iter().map(solution).collect();
+    let solutions: Vec<_> = blocks.each(solution);
     identity::vanishes(residual.substitute(&solutions))
 }
 

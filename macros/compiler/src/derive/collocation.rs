@@ -1,6 +1,6 @@
 //! Steps of order 16: Hamilton's equations on T*Q in the form of the Clebsch problem, to be collocated at the nodes of Gauss and Legendre.
 
-use clebsch_symbolic::{Expr, Property, Role, Shape, identity};
+use clebsch_symbolic::{Elements, Expr, IntoElements, Property, Role, Shape, identity};
 
 use super::Energy;
 use super::equation::Sources;
@@ -55,7 +55,7 @@ pub(super) fn collocation<'g>(
     let lift = lift(sources)?;
     // stages lie off the orbit of q, where what simplifies on it does not hold
     let everywhere = |expr: &Expr<'g>| expr.substitute(&general);
-    let momentum: Vec<_> = sources.momentum_map.iter().map(everywhere).collect();
+    let momentum: Vec<_> = sources.momentum_map.each(everywhere);
     let slope = symbols.slope(everywhere(&energy.gyroscopic));
     let velocities = velocities(sources, &momentum, slope);
     let pairing = model
@@ -68,9 +68,9 @@ pub(super) fn collocation<'g>(
     let origin = at_zero(model.configurations.iter().map(|leaf| leaf.symbol));
     let is_moved = |momentum: &Expr<'g>| !identity::vanishes(momentum.substitute(&origin));
     Ok(Some(Collocation {
-        algebra: at_start.into_iter().map(|(_, velocity)| velocity).collect(),
-        velocity: sources.generator.iter().map(|velocity| moving(everywhere(velocity))).collect(),
-        force: general.iter().map(|(_, q)| moving(-hamiltonian.gradient(*q))).collect(),
+        algebra: at_start.into_each(|(_, velocity)| velocity),
+        velocity: sources.generator.each(|velocity| moving(everywhere(velocity))),
+        force: general.each(|(_, q)| moving(-hamiltonian.gradient(*q))),
         is_affine: sources.momentum_map.iter().any(is_moved),
         lift,
     }))
@@ -107,7 +107,7 @@ fn lift<'g>(sources: &Sources<'_, 'g>) -> Result<Vec<Expr<'g>>, Diagnostics> {
             .then(|| sources.motion_by(&scaled(&sources.symbols.momenta)))
     });
     lifted.ok_or_else(|| {
-        let groups: Vec<String> = sources.model.factors.iter().map(|factor| factor.group.name(graph)).collect();
+        let groups: Vec<String> = sources.model.factors.each(|factor| factor.group.name(graph));
         let action = Found::somewhere().named(groups.join(" × "));
         features::refusal((Feature::Collocation, asked(sources.model)), (Feature::UnliftedMomentum, action)).into()
     })

@@ -4,7 +4,7 @@
 //! exp η′ = (F⁻¹ exp(η) F)(F⁻¹ F(w)) for a right action and (F(w) F⁻¹)(F exp(η) F⁻¹) for a left one, w = (η, u): to first order
 //! η′ = Ad η + b(w), and to second order ½ b″ + ½ [Ad η, b] or ½ [b, Ad η] more (Baker, Campbell, Hausdorff).
 
-use clebsch_symbolic::{Block, Chart, Expr, Property, Role, Shape};
+use clebsch_symbolic::{Block, Chart, Elements, Expr, Property, Role, Shape, indexed};
 
 use super::SystemFormulas;
 use super::choice::{Direction, Endpoint, Jet, Steering};
@@ -50,7 +50,7 @@ impl<'g> SystemFormulas<'g> {
         Some(Steering {
             price: Jet::of(control.price, &all),
             price_of_time: self.by_time(control.price),
-            bounds: control.bounds.iter().map(|bound| Jet::of(bound.value, &all)).collect(),
+            bounds: control.bounds.each(|bound| Jet::of(bound.value, &all)),
             weights: self.model.graph.symbol("z", count, Role::Weight, Property::General),
             approach: self.momenta_of(apart),
         })
@@ -83,7 +83,7 @@ fn element<'g>(model: &Steered<'g>) -> Vec<Expr<'g>> {
             let part = xi.block(block.offset, 0, Shape::vector(block.algebra.dimension));
             model.graph.rational(numerator, denominator) * model.step_size * part
         };
-        let coordinates: Vec<_> = model.graph.blocks(factor.group).iter().map(coordinates).collect();
+        let coordinates: Vec<_> = model.graph.blocks(factor.group).each(coordinates);
         chart.increment(factor.group, &coordinates)
     };
     model.factors.iter().zip(velocity).map(increment).collect()
@@ -107,8 +107,8 @@ pub(super) fn step<'g>(model: &Steered<'g>, formulas: &SystemFormulas<'g>) -> In
     let increment = element(model);
     let factored = |(k, factor): (usize, &'_ Factor<'g>)| {
         let basis = formulas.symbols.basis();
-        let moved = basis.iter().map(|element| formulas.adjoint(k).substitute(element)).collect();
-        let changes = directions.iter().map(|direction| increment[k].differential(direction)).collect();
+        let moved = basis.each(|element| formulas.adjoint(k).substitute(element));
+        let changes = directions.each(|direction| increment[k].differential(direction));
         Factored { factor: factor.clone(), costate: formulas.symbols.momenta[k], moved, changes }
     };
     let parts: Vec<Factored<'g>> = model.factors.iter().enumerate().map(factored).collect();
@@ -129,9 +129,9 @@ pub(super) fn step<'g>(model: &Steered<'g>, formulas: &SystemFormulas<'g>) -> In
         graph.total(Shape::scalar(), parts.iter().zip(&increment).map(slope))
     });
     InputStep {
-        by_place: (0..dimension).map(column).collect(),
+        by_place: indexed(dimension, column),
         by_input: (dimension..directions.len()).map(column).collect(),
-        curvature: (0..directions.len()).map(|i| (0..=i).map(|j| second(i, j)).collect()).collect(),
+        curvature: indexed(directions.len(), |i| (0..=i).map(|j| second(i, j)).collect()),
         by_time,
         increment,
     }
@@ -196,7 +196,7 @@ pub(super) fn bend<'g>(
     let (symbols, inputs) = (&formulas.symbols, formulas.inputs());
     let costate = formulas.model.graph.below(&symbols.momenta);
     let function = costate.dot(after) + symbols.multiplier.dot(before);
-    let columns = |momentum: Expr<'g>| inputs.iter().map(|input| momentum.differential(input)).collect();
+    let columns = |momentum: Expr<'g>| inputs.each(|input| momentum.differential(input));
     Bend {
         bracket: bracket(&formulas.model, costate),
         curvature: Jet::of(function, &[ends, inputs.clone()].concat()).curvature,

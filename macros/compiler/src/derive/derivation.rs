@@ -4,7 +4,7 @@ mod conserved;
 mod equations;
 mod step;
 
-use clebsch_symbolic::joined;
+use clebsch_symbolic::{Elements, joined};
 
 use super::symbols::subscript;
 use super::{MechanicsFormulas, SteeredFormulas, Structure};
@@ -101,7 +101,7 @@ fn sites(formulas: &MechanicsFormulas<'_>, lowered: &Lowered) -> String {
 }
 
 fn inputs(model: &System<'_>) -> String {
-    model.inputs.iter().map(|leaf| leaf.name.as_str()).collect::<Vec<_>>().join(", ")
+    model.inputs.each(|leaf| leaf.name.as_str()).join(", ")
 }
 
 /// `one bound`, `3 bounds`; `None` where nothing is bounded.

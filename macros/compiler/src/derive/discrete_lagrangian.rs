@@ -1,7 +1,7 @@
 //! The discrete Lagrangian ℓd(t, h, q, F) = K(t, h, q, F) + U₀(t, q) + U₁(t + h, Φ_F q): separated, tested for time symmetry, and
 //! composed with its adjoint where that fails.
 
-use clebsch_symbolic::{Expr, identity};
+use clebsch_symbolic::{Elements, Expr, identity};
 
 use super::symbols::{identities, logarithm, moved, moved_on};
 use super::{exact, trivialisation, velocity};
@@ -69,7 +69,7 @@ impl<'g> DiscreteLagrangian<'g> {
     pub fn adjoint(&self, model: &System<'g>) -> DiscreteLagrangian<'g> {
         let h = model.step_size;
         let inverse = |factor: &Factor<'g>| (factor.symbol, factor.group.inverse(factor.symbol));
-        let mut reversed: Vec<_> = model.factors.iter().map(inverse).collect();
+        let mut reversed: Vec<_> = model.factors.each(inverse);
         reversed.extend((0..model.factors.len()).map(|k| logarithm(model, k)).map(|y| (y, -y)));
         reversed.extend(moved(model));
         reversed.extend([(h, -h), (model.time, model.time + h)]);

@@ -1,6 +1,6 @@
 //! The kinetic energy ½ ξ·Σξ, the Hessian of the cost at the identity, with the checks that it exists and is regular.
 
-use clebsch_symbolic::{Expr, Shape, identity, integer};
+use clebsch_symbolic::{Elements, Expr, Shape, identity, integer};
 
 use super::symbols::{at_zero, identities};
 use super::{DiscreteLagrangian, Symbols, SystemFormulas, naming};
@@ -56,7 +56,7 @@ fn general<'g>(system: &SystemFormulas<'g>, cost: Expr<'g>) -> Result<Expr<'g>, 
 fn declared<'g>(system: &SystemFormulas<'g>, lagrangian: Expr<'g>) -> Result<Energy<'g>, Diagnostics> {
     let (graph, algebra) = (system.model.graph, &system.symbols.algebra);
     let rest = at_zero(algebra.iter().copied());
-    let directions: Vec<_> = algebra.iter().map(|xi| (*xi, *xi)).collect();
+    let directions: Vec<_> = algebra.each(|xi| (*xi, *xi));
     let first = lagrangian.differential(&directions);
     // d/dξ along ξ itself counts the order of each term: ξ·∂ℓ is 2 T + A·ξ
     let gyroscopic =
@@ -208,7 +208,7 @@ pub(super) fn is_multiple_of_identity(matrix: Expr<'_>) -> bool {
 
 /// Σ, the Hessian of ½ ξ·Σξ.
 pub(super) fn inertia<'g>(symbols: &Symbols<'g>, energy: Expr<'g>) -> Expr<'g> {
-    let rows: Vec<_> = symbols.algebra.iter().map(|xi| symbols.slopes(energy.gradient(*xi))).collect();
+    let rows: Vec<_> = symbols.algebra.each(|xi| symbols.slopes(energy.gradient(*xi)));
     energy.graph().below(&rows)
 }
 

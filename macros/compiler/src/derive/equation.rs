@@ -2,7 +2,7 @@
 
 use std::ops::Deref;
 
-use clebsch_symbolic::{Chart, Expr, identity};
+use clebsch_symbolic::{Chart, Elements, Expr, IntoElements, identity};
 
 use super::trivialisation::Covector;
 use super::{ChartBlock, Symbols, SystemFormulas};
@@ -116,10 +116,10 @@ impl<'g> MomentumEquation<'g> {
         cleared: bool,
     ) -> MomentumEquation<'g> {
         let symbols = &system.symbols;
-        let blocks: Vec<_> = symbols.blocks_of(&components).into_iter().map(|i| symbols.blocks[i]).collect();
-        let mut factors: Vec<usize> = blocks.iter().map(|block| block.factor).collect();
+        let blocks: Vec<_> = symbols.blocks_of(&components).into_each(|i| symbols.blocks[i]);
+        let mut factors: Vec<usize> = blocks.each(|block| block.factor);
         factors.dedup();
-        let directions: Vec<_> = blocks.iter().map(|block| (block.coordinates, block.direction)).collect();
+        let directions: Vec<_> = blocks.each(|block| (block.coordinates, block.direction));
         let moves = system.is_moving(residual);
         let slope = residual.differential(&directions);
         let kept = factors.iter().any(|&k| is_kept(symbols.charts[k], moves));
@@ -148,7 +148,7 @@ impl<'g> MomentumEquation<'g> {
     /// The columns of Dρ(x), one for each of its coordinates.
     pub fn columns(&self, symbols: &Symbols<'g>) -> Vec<Expr<'g>> {
         let graph = self.residual.graph();
-        let blocks: Vec<_> = symbols.blocks_of(&self.components).into_iter().map(|i| symbols.blocks[i]).collect();
+        let blocks: Vec<_> = symbols.blocks_of(&self.components).into_each(|i| symbols.blocks[i]);
         let column = |&component: &usize| {
             let direction = |block: &ChartBlock<'g>| {
                 let shape = block.direction.shape();
@@ -156,9 +156,9 @@ impl<'g> MomentumEquation<'g> {
                 let unit = if is_own { graph.unit(shape, component - block.offset, 0) } else { graph.zero(shape) };
                 (block.direction, unit)
             };
-            self.directional.substitute(&blocks.iter().map(direction).collect::<Vec<_>>())
+            self.directional.substitute(&blocks.each(direction))
         };
-        self.components.iter().map(column).collect()
+        self.components.each(column)
     }
 }
 

@@ -1,6 +1,6 @@
 //! The implicit equation in the chart: both trivialisations of ∂_F ℓd, denominators cleared, coupled blocks together.
 
-use clebsch_symbolic::{Chart, Expr, Shape, identity};
+use clebsch_symbolic::{Chart, Elements, Expr, Shape, identity, indexed};
 
 use super::clearing;
 use super::closed_form::{closed_form, is_solved_by_predictor};
@@ -83,7 +83,7 @@ fn explicit<'g>(sources: &Sources<'_, 'g>, residuals: &[Residual<'g>], i: usize)
     }
     let (momentum, step) = (sources.momentum_of_block(i), sources.chart_step(i, sources.divisor));
     let entry = |a: usize| step * momentum.entry(a, 0) / inertia.entry(a, a).expand();
-    Some(graph.stack(block.coordinates.shape(), (0..block.dimension()).map(entry).collect()))
+    Some(graph.stack(block.coordinates.shape(), indexed(block.dimension(), entry)))
 }
 
 /// ρ_k(x): the components of T* ∂_F K − J(q, ∂_q K), less their value at F = I, less μ.
@@ -99,7 +99,7 @@ fn residual<'g>(sources: &Sources<'_, 'g>, momentum: &Momentum<'g>, k: usize) ->
     let late: Vec<(Expr<'g>, Expr<'g>)> = late.collect();
     let by_increment = |j: usize| model.factors[j].group.identity(model.graph) + symbols.increments[j];
     let element = |j: usize| if is_late(&j) { by_increment(j) } else { sources.chart_element(j) };
-    let mut elements: Vec<_> = (0..model.factors.len()).map(|j| (model.factors[j].symbol, element(j))).collect();
+    let mut elements: Vec<_> = indexed(model.factors.len(), |j| (model.factors[j].symbol, element(j)));
     elements.extend((0..model.factors.len()).map(|j| (symbols.logarithms[j], symbols.stacked_coordinates(j))));
     let array = before[k].array.substitute(&elements).expand();
     let mu = rest.as_ref().map_or(symbols.momenta[k], |rest| symbols.momenta[k] - rest[k]);
@@ -146,7 +146,7 @@ fn equation<'g>(
         return exact::equation(sources, only);
     }
     let components: Vec<usize> = blocks.iter().flat_map(|&i| symbols.blocks[i].components()).collect();
-    let rows: Vec<_> = blocks.iter().map(|&i| residuals[i].rows).collect();
+    let rows: Vec<_> = blocks.each(|&i| residuals[i].rows);
     let residual = sources.model.graph.below(&rows);
     let cleared = blocks.iter().all(|&i| residuals[i].cleared);
     let mut equation = MomentumEquation::new(sources, components, residual, cleared);

@@ -1,6 +1,6 @@
 //! The free motion of rigid bodies and of translations, which needs no equation to be solved by iteration.
 
-use clebsch_symbolic::{Expr, Graph, Group, Property, Role, Shape};
+use clebsch_symbolic::{Expr, Graph, Group, Property, Role, Shape, indexed};
 
 use super::equation::{MomentumEquation, Solution, Sources, is_diagonal};
 use super::velocity;
@@ -99,7 +99,7 @@ pub(super) fn by_inertia<'g>(inertia: Expr<'g>, inverse: impl FnOnce() -> Expr<'
     let row = |i: usize| {
         inertia.graph().total(Shape::scalar(), mu.iter().enumerate().map(|(j, mu)| inverse.entry(i, j) * *mu))
     };
-    (0..mu.len()).map(row).collect()
+    indexed(mu.len(), row)
 }
 
 /// Σ⁻¹ as a symbol, which the stepper computes from Σ.

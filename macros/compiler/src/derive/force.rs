@@ -3,7 +3,7 @@
 //! r(F) = N + h/2 f(t, q, ξ) and N⁺ = r⁺(F) + h/2 f(t + h, q⁺, ξ), with the velocity ξ = ξ(F)/h of the step at both ends. The part of f at
 //! ξ = 0 is a kick; the rest joins the momentum equation as the coupling of a cost does.
 
-use clebsch_symbolic::{Expr, identity};
+use clebsch_symbolic::{Elements, Expr, identity};
 
 use super::symbols::at_zero;
 use super::{SystemFormulas, velocity};
@@ -50,11 +50,11 @@ pub(super) fn on_edge<'g>(model: &Mechanics<'g>, covector: &[Expr<'g>], divisor:
     let acts = |impulse: Vec<Expr<'g>>| impulse.iter().any(|part| !identity::vanishes(*part)).then_some(impulse);
     let depends = velocities.iter().any(|xi| covector.iter().any(|component| component.depends_on(*xi)));
     let beyond_rest = |f: &Expr<'g>| first * (moved(f) - moved(&at_rest(f))).expand();
-    let start_moving: Vec<_> = covector.iter().map(beyond_rest).collect();
+    let start_moving: Vec<_> = covector.each(beyond_rest);
     EdgeForce {
-        start: acts(covector.iter().map(|f| first * at_rest(f)).collect()),
+        start: acts(covector.each(|f| first * at_rest(f))),
         start_moving: if depends { acts(start_moving) } else { None },
-        end: covector.iter().map(|f| last * moved(f)).collect(),
+        end: covector.each(|f| last * moved(f)),
     }
 }
 

@@ -3,7 +3,7 @@
 use std::cell::OnceCell;
 use std::fmt;
 
-use clebsch_symbolic::{Expr, Notation, Shape};
+use clebsch_symbolic::{Elements, Expr, Notation, Shape};
 
 use super::{Entry, Id, Reference, latex};
 
@@ -83,7 +83,7 @@ impl<'g> Formula<'g> {
 
     /// The shapes of the right sides.
     pub fn shapes(&self) -> Vec<Shape> {
-        self.expressions().iter().map(|value| value.shape()).collect()
+        self.expressions().each(|value| value.shape())
     }
 
     /// What is written.
@@ -172,6 +172,10 @@ impl<'g> FormulaTable<'g> {
 
     /// The formulas whose ids are of a kind; they stand together in the table.
     pub fn titled_all(&self, is_meant: impl Fn(Id) -> bool) -> &[Formula<'g>] {
+        self.titled_by(&is_meant)
+    }
+
+    fn titled_by(&self, is_meant: &dyn Fn(Id) -> bool) -> &[Formula<'g>] {
         let is_meant = |row: &Formula<'g>| is_meant(row.id);
         let Some(first) = self.0.iter().position(&is_meant) else { return &[] };
         let count = self.0[first..].iter().take_while(|row| is_meant(row)).count();

@@ -1,6 +1,6 @@
 //! Matrices of derivatives at F = I + D: those of the kernels of an edge, of prices and of bounds.
 
-use clebsch_symbolic::{Expr, Shape};
+use clebsch_symbolic::{Elements, Expr, Shape};
 
 use super::moves::{inserted, inverse_by};
 use super::{EdgeDerivatives, Id, MechanicsFormulas, SystemFormulas};
@@ -77,11 +77,11 @@ impl<'g> MechanicsFormulas<'g> {
             if keeps_matrices {
                 return at.whole(*derivative);
             }
-            let columns: Vec<_> = basis.iter().map(|element| derivative.substitute(element)).collect();
+            let columns: Vec<_> = basis.each(|element| derivative.substitute(element));
             at.columns(&columns)
         };
         let momenta = variation.momenta.map(|value| at.whole(value)).to_vec();
-        let derivatives: Vec<_> = variation.derivatives.iter().map(along_motions).collect();
+        let derivatives: Vec<_> = variation.derivatives.each(along_motions);
         let carried = variation.carried.each_ref().map(along_motions);
         let carried = [&momenta[2..], &carried, &derivatives[1..3]].concat();
         let mut kernels = vec![(Id::EdgeMomenta(index), momenta.clone())];

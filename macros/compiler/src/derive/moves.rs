@@ -1,6 +1,6 @@
 //! What a move runs: elements as increments D = F − I and in the chart, so that what is near the identity is written without cancellation.
 
-use clebsch_symbolic::{Chart, Expr, Group, Property, Role, Shape, identity};
+use clebsch_symbolic::{Chart, Elements, Expr, Group, IntoElements, Property, Role, Shape, identity};
 
 use super::{MechanicsFormulas, Substep, SystemFormulas, cayley};
 use crate::model::{Factor, Isotropy};
@@ -23,7 +23,7 @@ impl<'g> SystemFormulas<'g> {
     /// Expressions with I + D put in for F, products distributed.
     pub(super) fn at_increments(&self, parts: &[Expr<'g>]) -> Vec<Expr<'g>> {
         let elements = self.increments();
-        parts.iter().map(|part| part.substitute(&elements).expand()).collect()
+        parts.each(|part| part.substitute(&elements).expand())
     }
 }
 
@@ -50,7 +50,7 @@ pub(super) fn inserted<'g>(expression: Expr<'g>, elements: &[(Expr<'g>, Expr<'g>
 impl<'g> MechanicsFormulas<'g> {
     /// Functions of the time at which a step starts, of functions of a time that is `later`.
     pub(super) fn as_of_start(&self, later: Expr<'g>, parts: &[Expr<'g>]) -> Vec<Expr<'g>> {
-        parts.iter().map(|part| self.later(*part, later)).collect()
+        parts.each(|part| self.later(*part, later))
     }
 
     /// The gradients of a part of the discrete Lagrangian with respect to the configuration; none where they vanish.
@@ -66,7 +66,7 @@ impl<'g> MechanicsFormulas<'g> {
     pub(super) fn coupled_kick(&self, substep: &Substep<'g>) -> Vec<Expr<'g>> {
         let acts = substep.lagrangian.couples && self.model.force.is_none();
         let moved = self.increments();
-        let kick = || self.gradients(substep.lagrangian.kinetic).iter().map(|part| part.substitute(&moved)).collect();
+        let kick = || self.gradients(substep.lagrangian.kinetic).each(|part| part.substitute(&moved));
         if acts { kick() } else { Vec::new() }
     }
 
@@ -82,7 +82,7 @@ impl<'g> MechanicsFormulas<'g> {
             };
             elements.extend([(factor.symbol, element), (symbols.logarithms[k], logarithm)]);
         }
-        parts.iter().map(|part| part.substitute(&elements).expand()).collect()
+        parts.each(|part| part.substitute(&elements).expand())
     }
 
     /// F − I of each factor, from the chart coordinates: F − I = 2 (w x^ + (x^)²)/(w² + |x|²) of the rotation whose Gibbs vector is x/w.
@@ -105,7 +105,7 @@ impl<'g> MechanicsFormulas<'g> {
             return self.at_increments(&self.model.action);
         }
         let inverses = self.inverses();
-        self.displacements().into_iter().map(|added| added.substitute(&inverses)).collect()
+        self.displacements().into_each(|added| added.substitute(&inverses))
     }
 
     /// M⁺ = Ad*_{F⁻¹} M for a left action, Ad*_F M for a right one, with F = I + D; the other trivialisation of ∂_F K where the cost couples.

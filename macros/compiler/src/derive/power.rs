@@ -1,6 +1,6 @@
 //! What ties the sites of a power to each other: the gradient of each term, differentiated once for all indices.
 
-use clebsch_symbolic::{Expr, Role};
+use clebsch_symbolic::{Elements, Expr, Role};
 
 use crate::model::{Configuration, Linear, Mechanics, Power, SiteIndex, Term};
 
@@ -57,7 +57,7 @@ pub struct Stencil<'g> {
 pub fn stencil<'g>(model: &Mechanics<'g>, links: &[SiteTerm<'g>]) -> Option<Stencil<'g>> {
     let power = model.power.as_ref()?;
     let zero = |leaf: &Configuration<'g>| model.graph.zero(leaf.shape);
-    let gradient = model.configurations.iter().map(zero).collect();
+    let gradient = model.configurations.each(zero);
     let mut stencil = Stencil { places: Vec::new(), gradient, others: Vec::new() };
     for (term, link) in links.iter().enumerate() {
         for (number, (home, (_, slopes))) in link.homes(power)?.iter().zip(&link.gradient).enumerate() {
@@ -121,7 +121,7 @@ pub(super) fn links<'g>(model: &Mechanics<'g>) -> Vec<SiteTerm<'g>> {
         let gradient = read.map(|place| (place, leaves.clone().map(|leaf| slope(place, leaf)).collect())).collect();
         SiteTerm { term: term.clone(), gradient }
     };
-    power.terms.iter().map(link).collect()
+    power.terms.each(link)
 }
 
 /// The symbol of a leaf of the configuration at a place, if it is among some.
@@ -145,5 +145,5 @@ pub(super) fn moved<'g>(model: &Mechanics<'g>, links: &[SiteTerm<'g>], motion: &
         }
         change
     };
-    links.iter().map(of_link).collect()
+    links.each(of_link)
 }

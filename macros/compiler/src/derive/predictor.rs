@@ -1,6 +1,6 @@
 //! What iterations start from, and equations in the form in which they are solved.
 
-use clebsch_symbolic::{Expr, Shape};
+use clebsch_symbolic::{Elements, Expr, IntoElements, Shape};
 
 use super::exact::{by_inertia, inertia_inverse};
 use super::symbols::{at_zero, entries, rows_at};
@@ -25,7 +25,7 @@ impl<'g> MechanicsFormulas<'g> {
         };
         let inertia = block(self.inertia);
         let momenta = entries(&self.symbols.momenta);
-        let momentum: Vec<Expr<'g>> = components.iter().map(|&component| momenta[component]).collect();
+        let momentum: Vec<Expr<'g>> = components.each(|&component| momenta[component]);
         let inverse = || block(inertia_inverse(graph, self.inertia.shape()));
         let velocity = by_inertia(inertia, inverse, &momentum);
         let coordinate =
@@ -63,7 +63,7 @@ impl<'g> MechanicsFormulas<'g> {
             let positions: Vec<usize> = within.map(|component| component - start).collect();
             self.chart_step(i, substep.divisor) * rows_at(velocity, &positions)
         };
-        self.symbols.blocks_of(&equation.components).into_iter().map(part).collect()
+        self.symbols.blocks_of(&equation.components).into_each(part)
     }
 
     /// The chart coordinates of the motion by the velocity of the start of a step that is collocated, to first order in h.

@@ -4,7 +4,7 @@ mod energy;
 mod motions;
 mod steps;
 
-use clebsch_symbolic::{Expr, Property};
+use clebsch_symbolic::{Elements, Expr, Property, indexed};
 
 use super::moves::inverse_by;
 use super::{Formula, FormulaTable, Id, MechanicsFormulas, SteeredFormulas, SystemFormulas};
@@ -63,7 +63,7 @@ impl<'g> SystemFormulas<'g> {
             inverses.extend(inverse_by(factor.group, factor.symbol, factor.symbol));
             inverses.push(logarithm);
         }
-        parts.iter().map(|part| part.substitute(&inverses)).collect()
+        parts.each(|part| part.substitute(&inverses))
     }
 
     /// What vanishes where q lies on its groups. Those of SO(n) and of the unit sphere are the runtime's.
@@ -85,7 +85,7 @@ impl<'g> SystemFormulas<'g> {
         let mut rows = Vec::new();
         if let Some(control) = &self.model.control {
             rows.push(Formula::new(Id::Price, format!("ℓ(h, {u})"), [control.price]));
-            let bounds: Vec<_> = control.bounds.iter().map(|bound| bound.value).collect();
+            let bounds: Vec<_> = control.bounds.each(|bound| bound.value);
             rows.push(Formula::new(Id::Bounds, "0 ≥ a", bounds));
         }
         rows.extend(self.model.endpoint.map(|price| Formula::new(Id::PriceOfEnd, format!("φ({q})"), [price])));
@@ -189,7 +189,7 @@ impl<'g> MechanicsFormulas<'g> {
         };
         let mut rows: Vec<_> = match conserved.len() {
             count if count > MOST_LISTED => vec![row(0, ""), row(count - 1, "… ")],
-            count => (0..count).map(|number| row(number, "")).collect(),
+            count => indexed(count, |number| row(number, "")),
         };
         let mut inverses = Vec::new();
         for leaf in &self.model.configurations {
@@ -197,7 +197,7 @@ impl<'g> MechanicsFormulas<'g> {
                 inverses.extend(inverse_by(group, leaf.symbol, leaf.symbol));
             }
         }
-        let values: Vec<_> = conserved.iter().map(|momentum| momentum.value.substitute(&inverses)).collect();
+        let values: Vec<_> = conserved.each(|momentum| momentum.value.substitute(&inverses));
         rows.push(Formula::new(Id::ConservedMomenta, "conserved", values));
         rows
     }

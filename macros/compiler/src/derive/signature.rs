@@ -1,6 +1,6 @@
 //! The signature of the kinetic energy: how many directions it is positive and negative in, for typical parameters.
 
-use clebsch_symbolic::{Expr, Matrix, Property};
+use clebsch_symbolic::{Expr, Matrix, Property, indexed};
 
 #[cfg(test)]
 mod tests;
@@ -34,7 +34,7 @@ fn typical(symbol: Expr<'_>, seed: u64) -> Matrix<f64> {
 /// The signs of the pivots of a symmetric matrix, by Sylvester's law of inertia; `None` where a pivot is too small to have one.
 fn squares(matrix: &Matrix<f64>) -> Option<(usize, usize)> {
     let n = matrix.shape.rows;
-    let mut rows: Vec<Vec<f64>> = (0..n).map(|i| (0..n).map(|j| matrix.at(i, j)).collect()).collect();
+    let mut rows: Vec<Vec<f64>> = indexed(n, |i| indexed(n, |j| matrix.at(i, j)));
     let scale = matrix.entries.iter().fold(0.0_f64, |scale, entry| scale.max(entry.abs()));
     let (mut positive, mut negative) = (0, 0);
     for step in 0..n {

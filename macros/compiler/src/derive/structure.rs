@@ -6,7 +6,7 @@
 mod pattern;
 mod sylvester;
 
-use clebsch_symbolic::{Expr, Shape, identity};
+use clebsch_symbolic::{Elements, Expr, IntoElements, Shape, identity};
 
 use super::equation::{MomentumEquation, Solution, Sources};
 use super::symbols::{ChartBlock, rows_at};
@@ -117,7 +117,7 @@ impl<'a, 'b, 'g> Reduced<'a, 'b, 'g> {
     fn without(&self, positions: &[usize]) -> Option<Reduced<'a, 'b, 'g>> {
         let first = self.slope(*positions.first()?);
         let (sources, graph, whole) = (self.sources, self.sources.model.graph, &self.equation);
-        let gone: Vec<usize> = positions.iter().map(|&i| whole.components[i]).collect();
+        let gone: Vec<usize> = positions.each(|&i| whole.components[i]);
         // what others a leaf has in its formula cancels
         let absent = if positions.iter().all(|&i| self.pattern.is_alone(i)) { &whole.components } else { &gone };
         let rest = self.with(absent, graph.zero(Shape::vector(absent.len())), rows_at(whole.residual, positions));
@@ -135,7 +135,7 @@ impl<'a, 'b, 'g> Reduced<'a, 'b, 'g> {
         let left: Vec<usize> = (0..self.columns.len()).filter(|i| !positions.contains(i)).collect();
         let residual = self.with(&gone, formula, rows_at(whole.residual, &left)).expand();
         let residual = identity::without_vanishing_terms(residual);
-        let left = left.into_iter().map(|i| whole.components[i]).collect();
+        let left = left.into_each(|i| whole.components[i]);
         let cleared = whole.cleared || whole.residual.has_inverse() && !residual.has_inverse();
         let left = Reduced::new(sources, MomentumEquation::new(sources, left, residual, cleared));
         Some(Reduced { eliminated, ..left })
@@ -199,7 +199,7 @@ impl<'a, 'b, 'g> Reduced<'a, 'b, 'g> {
     /// One equation for each set of coordinates that depend on each other.
     fn parts(&self) -> Vec<MomentumEquation<'g>> {
         let sets = self.pattern.connected();
-        if sets.len() == 1 { vec![self.whole()] } else { sets.iter().map(|positions| self.part(positions)).collect() }
+        if sets.len() == 1 { vec![self.whole()] } else { sets.each(|positions| self.part(positions)) }
     }
 
     fn whole(&self) -> MomentumEquation<'g> {
@@ -219,7 +219,7 @@ impl<'a, 'b, 'g> Reduced<'a, 'b, 'g> {
         let absent = sources.model.graph.zero(Shape::vector(others.len()));
         let residual = self.with(&others, absent, rows_at(whole.residual, positions)).expand();
         let residual = identity::without_vanishing_terms(residual);
-        let components = positions.iter().map(|&i| whole.components[i]).collect();
+        let components = positions.each(|&i| whole.components[i]);
         let part = MomentumEquation::new(sources, components, residual, whole.cleared);
         let part = Reduced::new(sources, MomentumEquation { is_inertial: whole.is_inertial, ..part });
         part.substituted().unwrap_or_else(|| part.whole())

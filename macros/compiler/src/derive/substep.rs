@@ -1,6 +1,6 @@
 //! A substep: one discrete Lagrangian with what a step of it needs.
 
-use clebsch_symbolic::{Chart, Expr, identity};
+use clebsch_symbolic::{Chart, Elements, Expr, IntoElements, identity, indexed};
 
 use super::equation::{Momentum, MomentumEquation, Solution, Sources};
 use super::force::total;
@@ -57,19 +57,19 @@ impl<'g> Substep<'g> {
         let moving = force
             .as_ref()
             .and_then(|force| force.start_moving.as_ref())
-            .map(|moving| -> Vec<Expr<'g>> { moving.iter().map(|part| -sources.later(*part, begins)).collect() });
+            .map(|moving| -> Vec<Expr<'g>> { moving.each(|part| -sources.later(*part, begins)) });
         let is_forced = moving.is_some();
         let coupling = total(coupling, moving);
         let rest = at_rest(model, &before, coupling.as_deref());
-        let unchanged: Vec<bool> = (0..model.factors.len()).map(|k| agree(model, (&before, &after), k)).collect();
+        let unchanged: Vec<bool> = indexed(model.factors.len(), |k| agree(model, (&before, &after), k));
         let momentum = Momentum { before, coupling, rest: rest.clone(), is_forced };
         // impulses are functions of the time of the configuration, K of the time at which the whole step starts
-        let earlier = |rest: &Vec<Expr<'g>>| rest.iter().map(|part| sources.later(*part, -begins)).collect();
+        let earlier = |rest: &Vec<Expr<'g>>| rest.each(|part| sources.later(*part, -begins));
         let changes = rest.iter().flatten().any(|part| part.depends_on(model.time));
         let other = lagrangian.couples || changes;
         let ends = begins + model.step_size / sources.divisor;
         Substep {
-            unchanged: unchanged.into_iter().map(|unchanged| !other && unchanged).collect(),
+            unchanged: unchanged.into_each(|unchanged| !other && unchanged),
             variation: model
                 .has_variations()
                 .then(|| variations.variation(&lagrangian, (begins, ends), force.as_ref())),
@@ -181,7 +181,7 @@ pub(super) fn check_poles(
 ) -> Result<(), Diagnostics> {
     let by_cayley = model.kinetic.discretization() == Some(Discretization::Cayley);
     let chosen = model.dials.chart.as_ref().filter(|chart| by_cayley && chart.value == ChartChoice::Exponential);
-    let coordinates: Vec<Expr<'_>> = symbols.blocks.iter().map(|block| block.coordinates).collect();
+    let coordinates: Vec<Expr<'_>> = symbols.blocks.each(|block| block.coordinates);
     let has_poles = |equation: &MomentumEquation<'_>| {
         equation.solution == Solution::Newton && equation.residual.has_poles_in(&coordinates)
     };

@@ -1,6 +1,6 @@
 //! The symbols of the derivation: covectors, momenta, algebra elements, chart coordinates, increments.
 
-use clebsch_symbolic::{Block, Chart, Expr, Graph, Property, Role, Shape};
+use clebsch_symbolic::{Block, Chart, Elements, Expr, Graph, Property, Role, Shape, indexed};
 
 use crate::model::{ChartChoice, Configuration, Discretization, Factor, System};
 
@@ -96,20 +96,20 @@ impl<'g> Symbols<'g> {
     /// Motions that are linear in ξ, along each element of the basis.
     pub(super) fn along_basis(&self, motions: &[(Expr<'g>, Expr<'g>)]) -> Vec<Vec<(Expr<'g>, Expr<'g>)>> {
         let along = |element: &Vec<(Expr<'g>, Expr<'g>)>| {
-            motions.iter().map(|(symbol, velocity)| (*symbol, velocity.substitute(element))).collect()
+            motions.each(|(symbol, velocity)| (*symbol, velocity.substitute(element)))
         };
-        self.basis().iter().map(along).collect()
+        self.basis().each(along)
     }
 
     /// The gradient with respect to the velocities of all factors, in one vector.
     pub fn slope(&self, function: Expr<'g>) -> Expr<'g> {
-        let gradients: Vec<_> = self.algebra.iter().map(|xi| function.gradient(*xi)).collect();
+        let gradients: Vec<_> = self.algebra.each(|xi| function.gradient(*xi));
         function.graph().below(&gradients)
     }
 
     /// The derivative of a vector with respect to the velocities of all factors, as a matrix.
     pub fn slopes(&self, vector: Expr<'g>) -> Expr<'g> {
-        let jacobians: Vec<_> = self.algebra.iter().map(|xi| vector.jacobian(*xi)).collect();
+        let jacobians: Vec<_> = self.algebra.each(|xi| vector.jacobian(*xi));
         vector.graph().beside(&jacobians)
     }
 
@@ -122,7 +122,7 @@ impl<'g> Symbols<'g> {
             };
             shapes.iter().enumerate().map(symbol).collect()
         };
-        let leaves: Vec<Shape> = model.configurations.iter().map(|leaf| leaf.shape).collect();
+        let leaves: Vec<Shape> = model.configurations.each(|leaf| leaf.shape);
         let groups = || model.factors.iter().map(|factor| factor.group);
         let vectors: Vec<Shape> = groups().map(|group| Shape::vector(group.dimension())).collect();
         let matrices: Vec<Shape> = groups().map(|group| group.element_shape()).collect();
@@ -140,9 +140,9 @@ impl<'g> Symbols<'g> {
                 Role::Multiplier,
                 Property::General,
             ),
-            charts: model.factors.iter().map(|factor| chart(model, factor, discretization)).collect(),
+            charts: model.factors.each(|factor| chart(model, factor, discretization)),
             blocks: blocks(model, [fresh(&["x", "c", "z"], &taken), fresh(&["δ", "ε", "γ"], &taken)]),
-            logarithms: (0..model.factors.len()).map(|k| logarithm(model, k)).collect(),
+            logarithms: indexed(model.factors.len(), |k| logarithm(model, k)),
             increments: numbered(&["D", "Δ", "B"], Role::Increment, &matrices),
             following: numbered(&["D⁺"], Role::Following, &matrices),
             images: model.configurations.iter().enumerate().map(image).collect(),
@@ -173,7 +173,7 @@ pub(super) fn rows_at<'g>(vector: Expr<'g>, positions: &[usize]) -> Expr<'g> {
     let shape = Shape::vector(positions.len());
     match positions {
         [first, .., last] if last - first + 1 == positions.len() => vector.block(*first, 0, shape),
-        _ => vector.graph().stack(shape, positions.iter().map(|&i| vector.entry(i, 0)).collect()),
+        _ => vector.graph().stack(shape, positions.each(|&i| vector.entry(i, 0))),
     }
 }
 

@@ -4,7 +4,7 @@
 use std::cell::OnceCell;
 use std::rc::Rc;
 
-use clebsch_symbolic::{Expr, identity};
+use clebsch_symbolic::{Elements, Expr, IntoElements, identity, indexed};
 
 use super::choice::{Endpoint, Steering};
 use super::symbols::{identities, of_columns};
@@ -70,7 +70,7 @@ impl<'g> SystemFormulas<'g> {
         let start = block.offset - self.model.offset(block.factor);
         let is_own = |a: &usize| (start..start + block.dimension()).contains(a);
         let entry = |a: usize| if is_own(&a) { mu.graph().integer(0) } else { mu.entry(a, 0) };
-        let others = mu.graph().stack(mu.shape(), (0..mu.shape().rows).map(entry).collect());
+        let others = mu.graph().stack(mu.shape(), indexed(mu.shape().rows, entry));
         expression.substitute(&[(mu, others)])
     }
 
@@ -84,13 +84,13 @@ impl<'g> SystemFormulas<'g> {
     /// J(q, p) of these covectors p.
     pub(super) fn momenta_of(&self, covectors: impl IntoIterator<Item = Expr<'g>>) -> Vec<Expr<'g>> {
         let covectors: Vec<_> = self.symbols.covectors.iter().copied().zip(covectors).collect();
-        self.momentum_map.iter().map(|momentum| momentum.substitute(&covectors)).collect()
+        self.momentum_map.each(|momentum| momentum.substitute(&covectors))
     }
 
     /// ξ_Q(q) for a velocity of all factors.
     pub(super) fn motion_by(&self, velocity: &[Expr<'g>]) -> Vec<Expr<'g>> {
         let replaced: Vec<_> = self.symbols.algebra.iter().copied().zip(velocity.iter().copied()).collect();
-        self.generator.iter().map(|motion| motion.substitute(&replaced)).collect()
+        self.generator.each(|motion| motion.substitute(&replaced))
     }
 
     /// A function of the time, of a time that is later.
@@ -110,7 +110,7 @@ impl<'g> SystemFormulas<'g> {
 
     /// The gradients with respect to the leaves of the configuration.
     pub(super) fn gradients(&self, part: Expr<'g>) -> Vec<Expr<'g>> {
-        self.model.configurations.iter().map(|leaf| part.gradient(leaf.symbol)).collect()
+        self.model.configurations.each(|leaf| part.gradient(leaf.symbol))
     }
 
     /// Ad*_F μ.
@@ -151,7 +151,7 @@ impl<'g> SystemFormulas<'g> {
 
     /// The components of −J(q, ∂_q K) for each factor.
     pub(super) fn coupling(&self, kinetic: Expr<'g>) -> Vec<Expr<'g>> {
-        self.momenta_of(self.gradients(kinetic)).into_iter().map(|momentum| -momentum).collect()
+        self.momenta_of(self.gradients(kinetic)).into_each(|momentum| -momentum)
     }
 
     /// J(q, ∂U(q)), the impulse of a function of q; `None` if it moves nothing.
@@ -193,7 +193,7 @@ impl<'g> SystemFormulas<'g> {
     pub(super) fn generator_columns(&self) -> Vec<Vec<Expr<'g>>> {
         let column =
             |motion: Vec<(Expr<'g>, Expr<'g>)>| motion.into_iter().flat_map(|(_, leaf)| leaf.entries()).collect();
-        self.symbols.along_basis(&self.leaves_by_generator()).into_iter().map(column).collect()
+        self.symbols.along_basis(&self.leaves_by_generator()).into_each(column)
     }
 }
 
@@ -202,7 +202,7 @@ pub(super) fn generator<'g>(model: &System<'g>, symbols: &Symbols<'g>) -> Vec<Ex
     let factors = || model.factors.iter().zip(&symbols.algebra);
     let directions: Vec<_> = factors().map(|(factor, xi)| (factor.symbol, factor.group.wedge(*xi))).collect();
     let at_identity = identities(model);
-    model.action.iter().map(|image| image.differential(&directions).substitute(&at_identity).expand()).collect()
+    model.action.each(|image| image.differential(&directions).substitute(&at_identity).expand())
 }
 
 /// J(q, p): the gradient of ⟨p, ξ_Q(q)⟩ with respect to ξ.
@@ -212,5 +212,5 @@ pub(super) fn momentum_map<'g>(symbols: &Symbols<'g>, generator: &[Expr<'g>]) ->
         Some(pairing) => pairing.gradient(*xi),
         None => xi.graph().zero(xi.shape()),
     };
-    symbols.algebra.iter().map(gradient).collect()
+    symbols.algebra.each(gradient)
 }

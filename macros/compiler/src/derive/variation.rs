@@ -1,7 +1,7 @@
 //! Second derivatives of a discrete Lagrangian: its Legendre transforms differentiated along the motions of both ends of an edge, and
 //! with respect to everything that is fixed during a step.
 
-use clebsch_symbolic::{Expr, Property};
+use clebsch_symbolic::{Elements, Expr, Property, indexed};
 
 use super::choice::Direction;
 use super::force::total;
@@ -127,7 +127,7 @@ impl<'g> Source<'_, 'g> {
         let after_by_start = force.map(|_| last.differential(&at_start));
         derivatives.push(last.differential(&at_end));
         derivatives.extend(after_by_start);
-        let adjoint: Vec<_> = (0..model.factors.len()).map(|k| system.adjoint(k)).collect();
+        let adjoint: Vec<_> = indexed(model.factors.len(), |k| system.adjoint(k));
         // how q and q⁺ move with η at q while F stays as it is: q⁺ by Ad η for each factor
         let by_adjoint: Vec<_> = system.symbols.algebra.iter().copied().zip(adjoint.iter().copied()).collect();
         let images = self.images_by_generator().into_iter();
@@ -136,7 +136,7 @@ impl<'g> Source<'_, 'g> {
         let along = |quantity: &Quantity<'g>, momentum: Expr<'g>| {
             momentum.differential(&[(quantity.symbol, quantity.direction)])
         };
-        let slopes = |momentum| self.quantities.iter().map(|quantity| along(quantity, momentum)).collect();
+        let slopes = |momentum| self.quantities.each(|quantity| along(quantity, momentum));
         EdgeDerivatives {
             momenta,
             derivatives,

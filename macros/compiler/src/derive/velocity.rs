@@ -1,6 +1,6 @@
 //! The velocity ξ, made from F and h.
 
-use clebsch_symbolic::{Expr, Group, Shape, identity, integer, reduce};
+use clebsch_symbolic::{Elements, Expr, Group, IntoElements, Shape, identity, indexed, integer, reduce};
 
 use super::symbols::{at_zero, logarithm, of_columns};
 use crate::diagnostic::Diagnostics;
@@ -79,7 +79,7 @@ pub(super) fn mass_matrix<'g>(group: Group, inertia: Expr<'g>) -> Option<Expr<'g
     let image = |unit: &Expr<'g>| -> Vec<Expr<'g>> {
         basis.iter().flat_map(|a| basis.iter().map(|b| (*a * *unit).dot(*b).expand())).collect()
     };
-    let (units, images) = independent(units.into_iter().map(|unit| (unit, image(&unit))).collect());
+    let (units, images) = independent(units.into_each(|unit| (unit, image(&unit))));
     let map = of_columns(graph, &images);
     let normal = map.transpose() * map;
     let given = graph.stack(Shape::vector(map.shape().rows), inertia.entries());
@@ -96,8 +96,7 @@ pub(super) fn mass_matrix<'g>(group: Group, inertia: Expr<'g>) -> Option<Expr<'g
 fn independent<'g>(units: Vec<(Expr<'g>, Vec<Expr<'g>>)>) -> (Vec<Expr<'g>>, Vec<Vec<Expr<'g>>>) {
     let value = |entry: &Expr<'g>| entry.as_number().unwrap_or_else(|| integer(0));
     let length = units.first().map_or(0, |(_, image)| image.len());
-    let mut rows: Vec<Vec<_>> =
-        (0..length).map(|row| units.iter().map(|(_, image)| value(&image[row])).collect()).collect();
+    let mut rows: Vec<Vec<_>> = indexed(length, |row| units.each(|(_, image)| value(&image[row])));
     let pivots = reduce(&mut rows);
     units.into_iter().enumerate().filter(|(index, _)| pivots.contains(index)).map(|(_, unit)| unit).unzip()
 }

@@ -1,5 +1,6 @@
 //! The implementation of the trait `Controlled`: what choosing the inputs needs.
 
+use clebsch_symbolic::Elements;
 use proc_macro2::TokenStream;
 use quote::quote;
 
@@ -70,7 +71,7 @@ impl SystemEmitter<'_, '_> {
         let types = ControlTypes {
             is_steered,
             inputs: self.model.inputs.iter().map(|leaf| leaf.shape.len()).sum(),
-            bounds: control.bounds.iter().map(|bound| bound.text.as_str()).collect(),
+            bounds: control.bounds.each(|bound| bound.text.as_str()),
         };
         let scope = self.scope_of_system();
         let functions = |words: &Words<'_>| {

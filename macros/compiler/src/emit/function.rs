@@ -1,5 +1,6 @@
 //! How a generated function is written: its documentation, its signature and its body.
 
+use clebsch_symbolic::Elements;
 use proc_macro2::TokenStream;
 use quote::{format_ident, quote};
 
@@ -131,16 +132,22 @@ impl<'g> SystemEmitter<'_, 'g> {
         words: &Words<'_>,
         body: impl Fn(&Function, Option<&'k Kernel>) -> Option<Body<'k>>,
     ) -> TokenStream {
-        let written = table.iter().filter_map(|function| {
-            let body = body(function, self.kernels.find(function.kernel.at(place)))?;
-            let title = body.title.unwrap_or(function.title);
-            let is_shown = |id: Id| function.shown.iter().any(|shown| shown.is_like(id) && id.at(place) == id);
-            let documentation = || self::documentation(title, self.rows.titled_all(is_shown), body.cost);
-            let documentation = (!title.is_empty()).then(documentation);
-            let function = self.function(function, words, body);
-            Some(quote!(#documentation #function))
-        });
-        written.collect()
+        let mut written = TokenStream::new();
+        for function in table {
+            if let Some(body) = body(function, self.kernels.find(function.kernel.at(place))) {
+                written.extend(self.documented(function, place, words, body));
+            }
+        }
+        written
+    }
+
+    fn documented(&self, function: &Function, place: (usize, usize), words: &Words<'_>, body: Body<'_>) -> TokenStream {
+        let title = body.title.unwrap_or(function.title);
+        let is_shown = |id: Id| function.shown.iter().any(|shown| shown.is_like(id) && id.at(place) == id);
+        let documentation = || self::documentation(title, self.rows.titled_all(is_shown), body.cost);
+        let documentation = (!title.is_empty()).then(documentation);
+        let function = self.function(function, words, body);
+        quote!(#documentation #function)
     }
 }
 
@@ -204,7 +211,7 @@ pub(super) fn lines(text: &str) -> TokenStream {
 pub(super) fn documentation(title: &str, formulas: &[Formula<'_>], kernel: Option<&Kernel>) -> TokenStream {
     let (mut line, first) = (vec![title.to_string()], formulas.first());
     line.extend(first.map(|formula| {
-        let shapes: Vec<String> = formula.shapes().iter().map(|shape| shape.to_string()).collect();
+        let shapes: Vec<String> = formula.shapes().each(|shape| shape.to_string());
         format!("Shape: {}.", shapes.join(", "))
     }));
     line.extend(kernel.map(|kernel| format!("Cost: {}.", kernel.cost())));

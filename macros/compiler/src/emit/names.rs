@@ -88,7 +88,7 @@ impl Names {
 }
 
 /// Some tokens, with others for some of their names; fields, methods, lifetimes and what stands in a module or a type are left.
-pub(super) fn put_in(tokens: TokenStream, other: &impl Fn(&str, Span) -> Option<TokenStream>) -> TokenStream {
+pub(super) fn put_in(tokens: TokenStream, other: &dyn Fn(&str, Span) -> Option<TokenStream>) -> TokenStream {
     let (mut all, mut before) = (TokenStream::new(), [' ', ' ']);
     for token in tokens {
         let is_member = before == [':', ':'] || ['.', '\''].contains(&before[1]);

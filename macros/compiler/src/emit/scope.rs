@@ -4,7 +4,7 @@ use std::cell::RefCell;
 use std::hash::Hash;
 use std::ops::Deref;
 
-use clebsch_symbolic::{Group, Rational, Role, Shape, Symbol, Table};
+use clebsch_symbolic::{Elements, Group, Rational, Role, Shape, Symbol, Table};
 use proc_macro2::{Literal, TokenStream, TokenTree};
 use quote::{ToTokens, format_ident, quote};
 
@@ -314,10 +314,10 @@ pub fn nested_type(structure: &Layout, mut leaf: impl FnMut(usize) -> TokenStrea
 
 fn laid_out(
     structure: &Layout,
-    leaf: &mut impl FnMut(usize) -> TokenStream,
+    leaf: &mut dyn FnMut(usize) -> TokenStream,
     array: fn(&[TokenStream]) -> TokenStream,
 ) -> TokenStream {
-    let mut each = |parts: &[Layout]| parts.iter().map(|part| laid_out(part, leaf, array)).collect::<Vec<_>>();
+    let mut each = |parts: &[Layout]| parts.each(|part| laid_out(part, leaf, array));
     match structure {
         Layout::Leaf(index) => leaf(*index),
         Layout::Tuple(parts) => {

@@ -1,6 +1,6 @@
 //! The implementation of the trait `Clebsch` for the user's struct, and what goes with it.
 
-use clebsch_symbolic::{Group, Property, Role};
+use clebsch_symbolic::{Elements, Group, Property, Role};
 use proc_macro2::TokenStream;
 use quote::{format_ident, quote};
 
@@ -209,7 +209,7 @@ impl<'g> Emitter<'_, 'g> {
             return quote!(runtime::#of_projection(mu, |mu| { #projection }));
         }
         let (locals, (shape, entries)) = (scope.locals(kernel), &kernel.outputs[0]);
-        let entries: Vec<_> = entries.iter().map(|entry| scope.code(entry, false)).collect();
+        let entries: Vec<_> = entries.each(|entry| scope.code(entry, false));
         let rows = entries.chunks(shape.columns).map(|row| quote!([#(#row),*]));
         quote!(#locals runtime::#of_motions(&[#(#rows),*], mu))
     }

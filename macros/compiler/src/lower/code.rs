@@ -1,6 +1,6 @@
 //! Code: what kernels are made of, and what of each other and of their arguments they read.
 
-use clebsch_symbolic::{Function, Operation, Rational, Role, Shape, integer};
+use clebsch_symbolic::{Elements, Function, IntoElements, Operation, Rational, Role, Shape, integer};
 
 use super::scalar::{Callee, Output, is_unit};
 use super::{Cost, Input};
@@ -221,7 +221,7 @@ impl Kernel {
 
     /// Its outputs with other entries.
     pub(super) fn outputs_by(&self, other: impl Fn(&Code) -> Code) -> Vec<(Shape, Vec<Code>)> {
-        self.outputs.iter().map(|(shape, entries)| (*shape, entries.iter().map(&other).collect())).collect()
+        self.outputs.each(|(shape, entries)| (*shape, entries.each(&other)))
     }
 
     /// Its outputs, where each is an entry of an argument.
@@ -240,12 +240,12 @@ impl Kernel {
             _ => None,
         };
         let mapped = |code: &Code| code.clone().mapped(&put_in);
-        Kernel { locals: self.locals.iter().map(mapped).collect(), outputs: self.outputs_by(mapped) }
+        Kernel { locals: self.locals.each(mapped), outputs: self.outputs_by(mapped) }
     }
 
     /// Which of its terms an output is made of.
     pub fn needed_by(&self, output: usize) -> Vec<bool> {
-        self.uses(&self.outputs[output..=output]).into_iter().map(|uses| uses > 0).collect()
+        self.uses(&self.outputs[output..=output]).into_each(|uses| uses > 0)
     }
 }
 
@@ -386,20 +386,18 @@ impl Code {
     /// The same operation of other codes.
     pub(super) fn of(self, other: &mut dyn FnMut(Code) -> Code) -> Code {
         match self {
-            Code::Sum(constant, terms) => {
-                Code::Sum(constant, terms.into_iter().map(|(weight, term)| (weight, other(term))).collect())
-            }
-            Code::Product(factors) => Code::Product(factors.into_iter().map(other).collect()),
+            Code::Sum(constant, terms) => Code::Sum(constant, terms.into_each(|(weight, term)| (weight, other(term)))),
+            Code::Product(factors) => Code::Product(factors.into_each(other)),
             Code::Reciprocal(x) => Code::Reciprocal(Box::new(other(*x))),
             Code::Root(x, exponent) => Code::Root(Box::new(other(*x)), exponent),
             Code::PerOnePlusCosine(x) => Code::PerOnePlusCosine(Box::new(other(*x))),
             Code::Function(function, x) => Code::Function(function, Box::new(other(*x))),
             Code::Call(callee, arguments) => {
-                let mut each = |entries: Vec<Code>| entries.into_iter().map(&mut *other).collect();
-                Code::Call(callee, arguments.into_iter().map(|(shape, entries)| (shape, each(entries))).collect())
+                let mut each = |entries: Vec<Code>| entries.into_each(&mut *other);
+                Code::Call(callee, arguments.into_each(|(shape, entries)| (shape, each(entries))))
             }
             Code::Whole(mut whole) => {
-                whole.operands = whole.operands.into_iter().map(other).collect();
+                whole.operands = whole.operands.into_each(other);
                 Code::Whole(whole)
             }
             read => read,

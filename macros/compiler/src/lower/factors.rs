@@ -1,6 +1,6 @@
 //! Common factors of the terms of a sum: a x + a y is a (x + y), where that saves multiplications.
 
-use clebsch_symbolic::{Rational, Table, integer, work};
+use clebsch_symbolic::{Elements, IntoElements, Rational, Table, integer, work};
 
 use super::kernel::{Id, Operation, Operations};
 use super::scalar::is_unit;
@@ -68,7 +68,7 @@ impl Factored<'_> {
 
     fn operands(&self, id: Id) -> Vec<Id> {
         match self.sums.get(&id) {
-            Some(terms) => terms.iter().map(|(_, term)| *term).collect(),
+            Some(terms) => terms.each(|(_, term)| *term),
             None => self.operations.value(id).operands(),
         }
     }
@@ -147,7 +147,7 @@ impl Factored<'_> {
         inner.retain(|(coefficient, _)| !coefficient.is_zero());
         let sum = match inner.as_slice() {
             // what is left of them cancels
-            [] => return rest.into_iter().map(|(_, term)| term).collect(),
+            [] => return rest.into_each(|(_, term)| term),
             [(coefficient, only)] if *coefficient == integer(1) => *only,
             _ => self.made(Operation::Sum(integer(0), inner)),
         };
@@ -158,7 +158,7 @@ impl Factored<'_> {
         self.take(term);
         let place = rest.iter().position(|(position, _)| *position > first).unwrap_or(rest.len());
         rest.insert(place, (first, (weight, term)));
-        rest.into_iter().map(|(_, term)| term).collect()
+        rest.into_each(|(_, term)| term)
     }
 
     fn product(&mut self, factor: Id, other: Id) -> Id {

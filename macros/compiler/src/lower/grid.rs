@@ -7,7 +7,8 @@ use std::collections::BTreeMap;
 use std::rc::Rc;
 
 use clebsch_symbolic::{
-    Algebra, Basis, Expr, Graph, Operation, Property, Rational, Shape, Sparse, Symbol, View, WordTerm, integer,
+    Algebra, Basis, Elements, Expr, Graph, IntoElements, Operation, Property, Rational, Shape, Sparse, Symbol, View,
+    WordTerm, integer,
 };
 
 use super::entries::{Grid, Scalar};
@@ -30,19 +31,15 @@ impl<'g> Scalars {
             View::Symbol(symbol) => self.symbol(&symbol),
             View::Pi => Grid::scalar(self.pi()),
             View::Sum(terms) => self.terms(expr.graph(), shape, terms),
-            View::Literal(entries) => {
-                Grid { shape, entries: entries.into_iter().map(|entry| self.number(entry)).collect() }
-            }
-            View::Stack(entries) => {
-                Grid { shape, entries: entries.into_iter().map(|entry| self.grid(entry).entries[0]).collect() }
-            }
+            View::Literal(entries) => Grid { shape, entries: entries.into_each(|entry| self.number(entry)) },
+            View::Stack(entries) => Grid { shape, entries: entries.into_each(|entry| self.grid(entry).entries[0]) },
             View::Word(word) => self.word(&word),
             View::Trace(word) => {
                 let product = self.word(&word);
                 Grid::scalar(self.total((0..product.shape.rows).map(|i| product.at(i, i))))
             }
             View::Opaque(name, output, arguments) => {
-                let arguments = arguments.into_iter().map(|argument| self.grid(argument)).collect();
+                let arguments = arguments.into_each(|argument| self.grid(argument));
                 let of = if output == 0 { Callee::Value } else { Callee::Gradient };
                 self.call(of(name.to_string()), arguments, output.saturating_sub(1), shape)
             }
@@ -117,13 +114,13 @@ impl<'g> Scalars {
     fn components(&mut self, basis: &Basis, a: &Grid) -> Grid {
         let component =
             |entries: &Sparse| self.sum(integer(0), entries.iter().map(|(i, j, value)| (a.at(*i, *j), value.clone())));
-        Grid::vector(basis.elements.iter().map(component).collect())
+        Grid::vector(basis.elements.each(component))
     }
 
     /// The product of letters, associated so that vectors are multiplied first.
     fn word(&mut self, word: &[Expr<'g>]) -> Grid {
         let from_right = word.last().is_some_and(|letter| letter.shape().columns == 1) && word[0].shape().rows != 1;
-        let mut grids: Vec<Rc<Grid>> = word.iter().map(|letter| self.grid(*letter)).collect();
+        let mut grids: Vec<Rc<Grid>> = word.each(|letter| self.grid(*letter));
         if from_right {
             grids.reverse();
         }
@@ -139,7 +136,7 @@ impl<'g> Scalars {
         Grid::from_fn(Shape::new(a.shape.rows, b.shape.columns), |(i, j)| {
             let factors = (0..a.shape.columns).map(|k| [a.at(i, k), b.at(k, j)]);
             let factors: Vec<_> = factors.filter(|pair| !pair.iter().any(|x| self.is_zero(*x))).collect();
-            let terms: Vec<Scalar> = factors.into_iter().map(|pair| self.product(pair)).collect();
+            let terms: Vec<Scalar> = factors.into_each(|pair| self.product(pair));
             self.total(terms)
         })
     }
@@ -169,7 +166,7 @@ impl<'g> Scalars {
         let mut groups: BTreeMap<Key<'g>, Vec<Grid>> = BTreeMap::new();
         let mut grids = Vec::new();
         for term in terms {
-            let scalars: Vec<_> = term.scalars.iter().map(|(base, exponent)| (*base, exponent.parts())).collect();
+            let scalars: Vec<_> = term.scalars.each(|(base, exponent)| (*base, exponent.parts()));
             if !term.word.is_empty() && !term.word.iter().any(|letter| self.is_constant(*letter)) {
                 let product = self.word(&term.word);
                 let scale = self.monomial(&term.coefficient, &scalars);

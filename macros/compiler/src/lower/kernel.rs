@@ -3,7 +3,7 @@
 mod hoisted;
 mod shorten;
 
-use clebsch_symbolic::{Function, Interner, Rational, Role, Shape, Table, integer, work};
+use clebsch_symbolic::{Elements, Function, Interner, IntoElements, Rational, Role, Shape, Table, integer, work};
 
 use super::balance;
 use super::code::DEEPEST_EXPRESSION;
@@ -41,7 +41,7 @@ pub fn kernel(scalars: &mut Scalars, outputs: &[Grid], hoisting: Hoisting<'_>) -
     let (locals, entries) = builder.code();
     let mut entries = entries.into_iter();
     let output = |grid: &Grid| (grid.shape, entries.by_ref().take(grid.entries.len()).collect());
-    signs::moved(Kernel { locals, outputs: outputs.iter().map(output).collect() })
+    signs::moved(Kernel { locals, outputs: outputs.each(output) })
 }
 
 /// Factors as often as they stand in a product.
@@ -77,7 +77,7 @@ impl Operation {
     pub(super) fn operands(&self) -> Vec<Id> {
         match self {
             Operation::Leaf(_) => Vec::new(),
-            Operation::Sum(_, terms) => terms.iter().map(|(_, term)| *term).collect(),
+            Operation::Sum(_, terms) => terms.each(|(_, term)| *term),
             Operation::Product(factors) => factors.clone(),
             Operation::Reciprocal(x) | Operation::Root(x, _) | Operation::Function(_, x) => vec![*x],
             Operation::Call(_, arguments) => {
@@ -151,8 +151,8 @@ impl Builder<'_, '_> {
                     ScalarNode::Function(function, x) => Operation::Function(function, self.convert(x)),
                     ScalarNode::Output(call, output) => {
                         let (callee, arguments) = self.scalars.call_of(call).clone();
-                        let mut entries = |grid: &Grid| grid.entries.iter().map(|entry| self.convert(*entry)).collect();
-                        let arguments = arguments.iter().map(|grid| (grid.shape, entries(grid))).collect();
+                        let mut entries = |grid: &Grid| grid.entries.each(|entry| self.convert(*entry));
+                        let arguments = arguments.each(|grid| (grid.shape, entries(grid)));
                         let id = self.intern(Operation::Call(callee.clone(), arguments));
                         Operation::Output(id, callee, output)
                     }
@@ -219,7 +219,7 @@ impl Builder<'_, '_> {
             let slow = |(position, slow): &(usize, Factors)| {
                 (self.scalars.product(repeated(slow)), terms[*position].1.clone())
             };
-            let slow: Vec<_> = members.iter().map(slow).collect();
+            let slow: Vec<_> = members.each(slow);
             let slow = self.scalars.sum(integer(0), slow);
             (self.scalars.product([slow].into_iter().chain(repeated(fast))), integer(1))
         };
@@ -287,7 +287,7 @@ impl Builder<'_, '_> {
 
     fn operands(&self, id: Id) -> Vec<Id> {
         match self.operations.value(id) {
-            Operation::Sum(_, terms) => self.terms(id, terms).iter().map(|(_, term)| *term).collect(),
+            Operation::Sum(_, terms) => self.terms(id, terms).each(|(_, term)| *term),
             Operation::Product(factors) => self.products.get(id).unwrap_or(factors).to_vec(),
             operation => operation.operands(),
         }
@@ -318,7 +318,7 @@ impl Builder<'_, '_> {
             }
         }
         let outputs = self.outputs.clone();
-        (locals, outputs.into_iter().map(|entry| self.reference(entry, &names)).collect())
+        (locals, outputs.into_each(|entry| self.reference(entry, &names)))
     }
 
     /// How often each operation stands in the code, and the operations behind their operands.
@@ -372,7 +372,7 @@ impl Builder<'_, '_> {
                     return Code::Number(constant);
                 }
                 let code = |(weight, term): &(Rational, Id)| (weight.clone(), self.reference(*term, names));
-                let codes: Vec<_> = terms.iter().map(code).collect();
+                let codes: Vec<_> = terms.each(code);
                 if self.delays.is_empty() {
                     return Code::Sum(constant, codes);
                 }
@@ -381,16 +381,16 @@ impl Builder<'_, '_> {
             }
             Operation::Product(_) => {
                 let factors = self.operands(id);
-                Code::Product(factors.into_iter().map(|factor| self.reference(factor, names)).collect())
+                Code::Product(factors.into_each(|factor| self.reference(factor, names)))
             }
             Operation::Reciprocal(x) => Code::reciprocal(self.reference(x, names)),
             Operation::Root(x, exponent) => Code::Root(Box::new(self.reference(x, names)), exponent),
             Operation::Function(function, x) => Code::Function(function, Box::new(self.reference(x, names))),
             Operation::Call(callee, arguments) => {
                 let argument = |(shape, entries): (Shape, Vec<Id>)| {
-                    (shape, entries.into_iter().map(|entry| self.reference(entry, names)).collect())
+                    (shape, entries.into_each(|entry| self.reference(entry, names)))
                 };
-                Code::Call(callee, arguments.into_iter().map(argument).collect())
+                Code::Call(callee, arguments.into_each(argument))
             }
             // by construction: calls are always shared terms, and come before their entries
             Operation::Output(call, callee, output) => {

@@ -1,6 +1,6 @@
 //! Kernels of given expressions: each by itself, one below the other in one vector, or as matrices.
 
-use clebsch_symbolic::{Expr, Shape};
+use clebsch_symbolic::{Elements, Expr, Shape};
 
 use super::form::has_quaternions;
 use super::kernel::kernel;
@@ -105,7 +105,7 @@ pub(super) fn plain(scalars: &mut Scalars, expressions: &[Expr<'_>]) -> Kernel {
 
 /// Several expressions, one output each.
 pub(super) fn separate(scalars: &mut Scalars, expressions: &[Expr<'_>], hoisting: Hoisting<'_>) -> Kernel {
-    let forms: Vec<MatrixForm<'_>> = expressions.iter().map(|&expr| MatrixForm::Whole(expr)).collect();
+    let forms: Vec<MatrixForm<'_>> = expressions.each(|&expr| MatrixForm::Whole(expr));
     of_matrices(scalars, &forms, hoisting)
 }
 
@@ -123,7 +123,7 @@ pub(super) fn of_matrices(scalars: &mut Scalars, forms: &[MatrixForm<'_>], hoist
     if let Some(wholes) = MatrixForm::wholes(forms).filter(|_| scalars.keeps_matrices) {
         return matrices::kernel(&wholes);
     }
-    let outputs: Vec<Grid> = forms.iter().map(|form| output(scalars, form)).collect();
+    let outputs: Vec<Grid> = forms.each(|form| output(scalars, form));
     kernel(scalars, &outputs, hoisting)
 }
 
@@ -132,7 +132,7 @@ fn output(scalars: &mut Scalars, matrix: &MatrixForm<'_>) -> Grid {
         MatrixForm::Whole(expression) => (*scalars.grid(*expression)).clone(),
         MatrixForm::Entries(shape, parts) => Grid { shape: *shape, entries: entries(scalars, parts) },
         MatrixForm::Columns(columns) => {
-            let columns: Vec<Vec<Scalar>> = columns.iter().map(|parts| entries(scalars, parts)).collect();
+            let columns: Vec<Vec<Scalar>> = columns.each(|parts| entries(scalars, parts));
             let shape = Shape::new(columns.first().map_or(0, Vec::len), columns.len());
             Grid { shape, entries: shape.positions().map(|(i, j)| columns[j][i]).collect() }
         }

@@ -9,8 +9,8 @@ mod hoisting;
 mod words;
 
 use clebsch_symbolic::{
-    Algebra, Expr, Fraction, Function, Graph, Group, Operation, Rational, Role, Shape, Symbol, Table, View, WordTerm,
-    integer, work,
+    Algebra, Elements, Expr, Fraction, Function, Graph, Group, IntoElements, Operation, Rational, Role, Shape, Symbol,
+    Table, View, WordTerm, indexed, integer, work,
 };
 
 use super::grid::by_components;
@@ -37,7 +37,7 @@ pub(super) fn below<'g>(vectors: &[Expr<'g>]) -> Vec<Expr<'g>> {
 
 /// Numbers, one after the other in one output, for a person to read.
 pub(super) fn short_list(expressions: &[Expr<'_>]) -> Kernel {
-    short(|lowering| vec![column(expressions.iter().map(|&expr| lowering.value(expr)).collect())])
+    short(|lowering| vec![column(expressions.each(|&expr| lowering.value(expr)))])
 }
 
 fn short(outputs: impl FnOnce(&mut Matrices) -> Vec<(Shape, Vec<Code>)>) -> Kernel {
@@ -79,7 +79,7 @@ impl Matrices {
     }
 
     fn each(&mut self, expressions: &[Expr<'_>]) -> Vec<(Shape, Vec<Code>)> {
-        expressions.iter().map(|&expr| (expr.shape(), vec![self.value(expr)])).collect()
+        expressions.each(|&expr| (expr.shape(), vec![self.value(expr)]))
     }
 
     /// The code of an expression: a scalar where it is 1×1, else the matrix as a whole.
@@ -129,7 +129,7 @@ impl Matrices {
             View::Pi => Code::Pi,
             View::Sum(terms) if shape.is_scalar() => self.scalar_sum(terms),
             View::Sum(terms) => self.sum(graph, shape, terms),
-            View::Literal(entries) => self.entries(shape, entries.into_iter().map(Code::Number).collect()),
+            View::Literal(entries) => self.entries(shape, entries.into_each(Code::Number)),
             View::Stack(entries) => self.stack(&entries, shape),
             View::Word(word) => self.scalar_word(&word),
             View::Trace(word) => self.trace(&word),
@@ -160,7 +160,7 @@ impl Matrices {
     }
 
     fn stack(&mut self, entries: &[Expr<'_>], shape: Shape) -> Code {
-        let entries = entries.iter().map(|&entry| self.value(entry)).collect();
+        let entries = entries.each(|&entry| self.value(entry));
         self.entries(shape, entries)
     }
 
@@ -169,7 +169,7 @@ impl Matrices {
     }
 
     fn opaque(&mut self, output: usize, arguments: &[Expr<'_>], shape: Shape) -> Code {
-        let arguments: Vec<Code> = arguments.iter().map(|&argument| self.value(argument)).collect();
+        let arguments: Vec<Code> = arguments.each(|&argument| self.value(argument));
         let operation = if output == 0 { MatrixOperation::Value } else { MatrixOperation::Gradient(output - 1) };
         self.operation(operation, arguments, shape)
     }
@@ -221,7 +221,7 @@ impl Matrices {
                 entries[i * shape.columns + j].push((value.clone(), x));
             }
         }
-        let entries = entries.into_iter().map(|terms| linear(integer(0), terms)).collect();
+        let entries = entries.into_each(|terms| linear(integer(0), terms));
         self.entries(shape, entries)
     }
 
@@ -235,10 +235,10 @@ impl Matrices {
         }
         let basis = graph.basis(algebra);
         let component = |element: &clebsch_symbolic::Sparse| {
-            let terms = element.iter().map(|(i, j, value)| (value.clone(), self.entry(&a, *i, *j))).collect();
+            let terms = element.each(|(i, j, value)| (value.clone(), self.entry(&a, *i, *j)));
             total(terms)
         };
-        let components: Vec<Code> = basis.elements.iter().map(component).collect();
+        let components: Vec<Code> = basis.elements.each(component);
         match components.len() {
             1 => components.into_iter().next().unwrap_or(Code::Number(integer(0))),
             _ => self.entries(shape, components),
@@ -279,7 +279,7 @@ impl Matrices {
             };
             self.shared(if numerator < 0 { Code::reciprocal(power) } else { power })
         };
-        scalars.iter().map(power).collect()
+        scalars.each(power)
     }
 
     /// A product of letters that is 1×1.
@@ -300,7 +300,7 @@ impl Matrices {
             [only] => {
                 let (n, only) = (only.shape().rows, self.value(*only));
                 if self.joins_blocks && self.is_read(&only) {
-                    return total((0..n).map(|i| (integer(1), self.entry(&only, i, i))).collect());
+                    return total(indexed(n, |i| (integer(1), self.entry(&only, i, i))));
                 }
                 self.operation(MatrixOperation::Trace, vec![only], Shape::scalar())
             }
@@ -360,12 +360,12 @@ impl Matrices {
         let mut parts = Vec::new();
         for (algebra, inner) in under {
             let matrix = algebra.shape;
-            let inner = inner.iter().map(|term| self.weighted(term)).collect();
+            let inner = inner.each(|term| self.weighted(term));
             let sum = self.gathered(matrix, inner);
             parts.push((integer(1), self.components(graph, algebra, sum)));
         }
         if !rest.is_empty() {
-            let rest = rest.iter().map(|term| self.weighted(term)).collect();
+            let rest = rest.each(|term| self.weighted(term));
             parts.extend(self.summands(shape, rest));
         }
         self.total(shape, parts)
@@ -395,7 +395,7 @@ impl Matrices {
             let is_shared = |term: &Weighted<'_>| term.outermost(first) == Some(letter);
             let (shared, rest): (Vec<_>, Vec<_>) = terms.into_iter().partition(is_shared);
             terms = rest;
-            let left = shared.into_iter().map(|term| term.without(first)).collect();
+            let left = shared.into_each(|term| term.without(first));
             let parts_of = if first {
                 Shape::new(letter.shape().columns, shape.columns)
             } else {

@@ -23,7 +23,7 @@ mod stepping;
 mod sums;
 mod variation;
 
-use clebsch_symbolic::Expr;
+use clebsch_symbolic::{Elements, Expr, IntoElements};
 
 use crate::derive::{self, Formulas, Id, MechanicsFormulas, SteeredFormulas, Stencil};
 use crate::diagnostic::{Diagnostic, Diagnostics};
@@ -111,7 +111,7 @@ fn check_size(
     model: &System<'_>,
     missing: Option<Feature>,
 ) -> Result<(), Diagnostics> {
-    let lengths: Vec<usize> = kernels.into_iter().map(|(_, kernel)| kernel.length()).collect();
+    let lengths: Vec<usize> = kernels.into_each(|(_, kernel)| kernel.length());
     let (whole, kernel) = (lengths.iter().sum(), lengths.iter().copied().max().unwrap_or(0));
     for (operations, most, of) in [(whole, LARGEST_PROGRAM, ""), (kernel, LARGEST_KERNEL, " in one function")] {
         if operations > most {
@@ -136,7 +136,7 @@ fn written_out_too_large(model: &System<'_>, missing: Option<Feature>, size: Str
 
 /// The error for a system whose code would be too large, with what is too large of it.
 fn too_large(model: &System<'_>, size: String) -> Diagnostic {
-    let groups: Vec<String> = model.factors.iter().map(|factor| factor.group.name(model.graph)).collect();
+    let groups: Vec<String> = model.factors.each(|factor| factor.group.name(model.graph));
     Diagnostic::new(model.spans.action.place, format!("`{}` is too large: {size}", groups.join(" × "))).help(
         "use a smaller group or fewer factors; for a Lagrangian, `discretization = exponential` is often much smaller",
     )
@@ -189,7 +189,7 @@ impl<'g> Maker<'_, 'g> {
             let (place, slopes) = &formulas.links[term].gradient[number];
             (Id::TermGradient(term, *place), plain(&mut self.scalars, slopes))
         };
-        let others = stencil.others.iter().map(other).collect::<Vec<_>>();
+        let others = stencil.others.each(other);
         [(Id::SiteGradient, common)].into_iter().chain(others).collect()
     }
 

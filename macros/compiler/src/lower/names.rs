@@ -3,7 +3,7 @@
 //! Factors stand side by side, those below a fraction bar behind `per`; what is multiplied with a sum stands before `of`. A sum of entries of one
 //! field names the field once.
 
-use clebsch_symbolic::{Rational, Role, integer, work};
+use clebsch_symbolic::{Elements, Rational, Role, integer, work};
 
 use super::scalar::{Factors, add as add_to};
 use super::{Callee, Hoisted, Input, Scalar, ScalarNode, Scalars};
@@ -49,7 +49,7 @@ impl Scalars {
         let name = match self.node(scalar) {
             ScalarNode::Sum(constant, terms) => {
                 let term = |(term, weight): &(Scalar, Rational)| (weight * &sign, self.factors(*term));
-                self.name_of_sum(constant * &sign, terms.iter().map(term).collect())
+                self.name_of_sum(constant * &sign, terms.each(term))
             }
             _ => self.name_of_product(&sign, &self.factors(scalar)),
         };
@@ -113,7 +113,7 @@ impl Scalars {
             let left = factors.iter().map(|&(base, power)| (base, power - in_all(base)));
             (weight / &size, left.filter(|(_, power)| *power > 0).collect())
         };
-        let rest = self.joined(constant, &terms.iter().map(rest).collect::<Vec<_>>())?;
+        let rest = self.joined(constant, &terms.each(rest))?;
         if size.is_one() && common.is_empty() {
             Some(rest)
         } else {

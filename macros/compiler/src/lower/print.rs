@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use clebsch_symbolic::{Analytic, Operation, Rational, integer, joined};
+use clebsch_symbolic::{Analytic, Elements, Operation, Rational, integer, joined};
 
 use super::{Callee, Code, Form, Input, Kernel, KernelTable, LARGEST_UNROLLED, MOST_UNKNOWNS, MatrixOperation};
 use super::{MechanicsProgram, Program, Solve, Whole};
@@ -71,8 +71,7 @@ impl KernelTable {
                 bracketed(text, place > 0)
             }
             Code::Product(factors) => {
-                let product =
-                    |factors: &[&Code]| factors.iter().map(|factor| self.text(factor, 1)).collect::<Vec<_>>().join("*");
+                let product = |factors: &[&Code]| factors.each(|factor| self.text(factor, 1)).join("*");
                 let text = match Code::quotient(factors) {
                     None => product(&factors.iter().collect::<Vec<_>>()),
                     Some((above, below)) => {
@@ -87,7 +86,7 @@ impl KernelTable {
             Code::PerOnePlusCosine(x) => bracketed(format!("1/(1 + sqrt(1 - {}))", self.text(x, 1)), place > 0),
             Code::Root(x, (numerator, denominator)) => format!("{}^({numerator}/{denominator})", self.text(x, 1)),
             Code::Call(callee, arguments) => {
-                let entries = |entries: &[Code]| entries.iter().map(|entry| self.text(entry, 0)).collect::<Vec<_>>();
+                let entries = |entries: &[Code]| entries.each(|entry| self.text(entry, 0));
                 let arguments = arguments.iter().map(|(_, argument)| format!("[{}]", entries(argument).join(", ")));
                 format!("{callee}({})", arguments.collect::<Vec<_>>().join(", "))
             }
@@ -102,7 +101,7 @@ impl KernelTable {
     }
 
     fn whole(&self, whole: &Whole, place: usize) -> String {
-        let operands: Vec<String> = whole.operands.iter().map(|operand| self.text(operand, 1)).collect();
+        let operands: Vec<String> = whole.operands.each(|operand| self.text(operand, 1));
         let (text, is_sum) = match &whole.operation {
             MatrixOperation::Argument(input) => (input.name.clone(), false),
             MatrixOperation::Entries => (format!("[{}]", operands.join(", ")), false),
@@ -192,7 +191,7 @@ impl MechanicsProgram<'_> {
             structure: solve.structure.clone(),
             tries_fixed_point: self.find(solve.id(Id::Residual)).is_some(),
         };
-        self.steps.iter().map(|step| step.solves.iter().map(iteration).collect()).collect()
+        self.steps.each(|step| step.solves.each(iteration))
     }
 }
 

@@ -1,5 +1,6 @@
 //! The value of this stage: a table of kernels, each with the id of what it computes.
 
+use clebsch_symbolic::Elements;
 use std::ops::Deref;
 
 use super::{Cost, Form, Kernel, Solve};
@@ -191,7 +192,7 @@ impl MechanicsProgram<'_> {
     /// The kernels with their names, in the order of prints and of tables of costs.
     pub fn kernels(&self) -> Vec<(String, &Kernel)> {
         let named = |&(name, id): &(&str, Id)| (name.to_string(), id);
-        let mut ids: Vec<(String, Id)> = OF_SYSTEM.iter().map(named).collect();
+        let mut ids: Vec<(String, Id)> = OF_SYSTEM.each(named);
         ids.extend(self.ids_of_terms());
         ids.extend(OF_MOTIONS.iter().map(named));
         for index in 0..self.steps.len() {

@@ -207,18 +207,34 @@ impl Scalars {
         let mut total = constant;
         let mut collected: Vec<(Scalar, Rational)> = Vec::new();
         for (scalar, coefficient) in terms {
-            match self.node(scalar) {
-                ScalarNode::Sum(inner, parts) if parts.len() < 2 || is_unit(&coefficient) => {
-                    if !inner.is_zero() {
-                        total += product(inner, &coefficient);
-                    }
-                    parts.iter().for_each(|(part, factor)| add(&mut collected, *part, product(factor, &coefficient)));
-                }
-                _ => add(&mut collected, scalar, coefficient),
-            }
+            self.add_term(&mut total, &mut collected, scalar, coefficient);
         }
-        collected.retain(|(_, coefficient)| !coefficient.is_zero());
-        let terms = collected;
+        self.sum_of(total, collected)
+    }
+
+    /// Adds a term, or the terms inside, to a constant and terms.
+    fn add_term(
+        &self,
+        total: &mut Rational,
+        terms: &mut Vec<(Scalar, Rational)>,
+        scalar: Scalar,
+        coefficient: Rational,
+    ) {
+        match self.node(scalar) {
+            ScalarNode::Sum(inner, parts) if parts.len() < 2 || is_unit(&coefficient) => {
+                if !inner.is_zero() {
+                    *total += product(inner, &coefficient);
+                }
+                for (part, factor) in parts {
+                    add(terms, *part, product(factor, &coefficient));
+                }
+            }
+            _ => add(terms, scalar, coefficient),
+        }
+    }
+
+    fn sum_of(&mut self, total: Rational, mut terms: Vec<(Scalar, Rational)>) -> Scalar {
+        terms.retain(|(_, coefficient)| !coefficient.is_zero());
         match terms.as_slice() {
             [(only, coefficient)] if total.is_zero() && coefficient.is_one() => *only,
             _ => {

@@ -6,7 +6,7 @@
 //! A shared term −a − b is computed as it is where a does not change in the loop of a solve: −a is made once. Where a changes, a + b is computed and
 //! then subtracted.
 
-use clebsch_symbolic::{Interner, Rational, Shape, integer, work};
+use clebsch_symbolic::{Interner, IntoElements, Rational, Shape, integer, work};
 
 use super::{Code, Cost, Kernel, MatrixOperation, Whole};
 
@@ -28,8 +28,8 @@ pub(super) fn moved(kernel: Kernel) -> Kernel {
         signs.are_negative.extend(is_new.then_some(is_computed));
         signs.places.push((is_negative ^ signs.are_negative[place], place));
     }
-    let mut whole = |entries: Vec<Code>| entries.into_iter().map(|entry| signs.whole(entry)).collect();
-    let outputs = kernel.outputs.into_iter().map(|(shape, entries)| (shape, whole(entries))).collect();
+    let mut whole = |entries: Vec<Code>| entries.into_each(|entry| signs.whole(entry));
+    let outputs = kernel.outputs.into_each(|(shape, entries)| (shape, whole(entries)));
     let locals = signs.locals.into_values().into_iter().zip(signs.are_negative);
     let locals = locals.map(|(code, is_negative)| if is_negative { negative(code) } else { code });
     Kernel { locals: locals.collect(), outputs }
@@ -160,8 +160,7 @@ impl Signs {
             MatrixOperation::Sum(weights) => {
                 let mut parts: Vec<_> = weights.into_iter().zip(operands).collect();
                 parts.sort_by_key(|(weight, _)| weight.is_negative());
-                let mut parts: Vec<_> =
-                    parts.into_iter().map(|(weight, part)| self.weighted(weight, part, true)).collect();
+                let mut parts: Vec<_> = parts.into_each(|(weight, part)| self.weighted(weight, part, true));
                 let is_negative = parts.iter().all(|(weight, _)| weight.is_negative());
                 if is_negative {
                     parts.iter_mut().for_each(flip);

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use clebsch_symbolic::Role;
+use clebsch_symbolic::{Elements, Role, indexed};
 
 use super::made::{Maker, of_matrices, plain, separate};
 use super::{Code, Hoisted, Hoisting, Kernel, MechanicsProgram, Step, matrices};
@@ -40,7 +40,7 @@ pub struct Solve {
 impl<'g> Maker<'_, 'g> {
     /// The kernels of all substeps, and of the moves that they have in common.
     pub(super) fn steps(&mut self, formulas: &MechanicsFormulas<'g>) -> Vec<Step> {
-        let steps = (0..formulas.substeps.len()).map(|index| self.step(formulas, index)).collect();
+        let steps = indexed(formulas.substeps.len(), |index| self.step(formulas, index));
         // the inverse Legendre transform alone is kicked and solved, and never stepped
         self.table.retain(|(id, _)| {
             let is_solved = id.equation().is_some() || matches!(id, Id::StartKick(_));
@@ -51,7 +51,7 @@ impl<'g> Maker<'_, 'g> {
 
     fn step(&mut self, formulas: &MechanicsFormulas<'g>, index: usize) -> Step {
         let substep = &formulas.substeps[index];
-        let solves = (0..substep.equations.len()).map(|number| self.solve(formulas, index, number)).collect();
+        let solves = indexed(substep.equations.len(), |number| self.solve(formulas, index, number));
         self.known_rows(
             [Id::StartForce, Id::MovingForce, Id::EndForce, Id::StartKick, Id::EndKick].map(|id| id(index)),
         );
@@ -138,7 +138,7 @@ impl<'g> Maker<'_, 'g> {
         let residual = residual.filter(|_| momenta.len() == equation.components.len() && given.is_empty());
         kernels.extend(residual.map(|kernel| (Id::Residual(index, number), kernel)));
         self.table.extend(kernels);
-        let blocks: Vec<_> = formulas.symbols.blocks.iter().map(|block| block.coordinates).collect();
+        let blocks: Vec<_> = formulas.symbols.blocks.each(|block| block.coordinates);
         Solve {
             substep: index,
             number,

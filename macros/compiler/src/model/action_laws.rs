@@ -1,7 +1,7 @@
 //! The laws of the action, checked exactly and factor by factor: the identity moves nothing, products act as one after the
 //! other, different factors do not meet, and every factor moves something. The side of each factor is found here.
 
-use clebsch_symbolic::{Chart, Expr, Graph, Group, Operation, Role, View, identity};
+use clebsch_symbolic::{Chart, Elements, Expr, Graph, Group, Operation, Role, View, identity, indexed};
 
 use super::{Configuration, Factor, LeafSpace, Side};
 use crate::diagnostic::Diagnostics;
@@ -27,7 +27,7 @@ pub(super) fn check(action: &Action, diagnostics: &Diagnostics) -> Option<Vec<(S
     if !identity::equal(&action.of_identity(), &action.points()) {
         return diagnostics.refuse(action.identity_moves());
     }
-    let sides: Vec<_> = (0..action.factors.len()).map(|factor| action.side(factor, diagnostics)).collect();
+    let sides: Vec<_> = indexed(action.factors.len(), |factor| action.side(factor, diagnostics));
     action.factors_commute(diagnostics);
     let sides: Vec<(Option<Side>, bool)> = sides.into_iter().collect::<Option<_>>()?;
     // a factor on which both laws hold takes the side of the others, else left; so does one that moves nothing
@@ -39,7 +39,7 @@ pub(super) fn check(action: &Action, diagnostics: &Diagnostics) -> Option<Vec<(S
 
 impl<'g> Action<'_, 'g> {
     fn points(&self) -> Vec<Expr<'g>> {
-        self.configurations.iter().map(|leaf| leaf.symbol).collect()
+        self.configurations.each(|leaf| leaf.symbol)
     }
 
     /// Φ at elements for some factors (the identity for all others) and a point.
@@ -50,7 +50,7 @@ impl<'g> Action<'_, 'g> {
         };
         let mut rules: Vec<(Expr<'g>, Expr<'g>)> = self.factors.iter().enumerate().map(at_factor).collect();
         rules.extend(self.points().into_iter().zip(point.iter().copied()));
-        self.value.iter().map(|expr| expr.substitute(&rules)).collect()
+        self.value.each(|expr| expr.substitute(&rules))
     }
 
     pub(super) fn of_identity(&self) -> Vec<Expr<'g>> {

@@ -7,6 +7,7 @@ mod rows;
 #[cfg(test)]
 mod tests;
 
+use clebsch_symbolic::{Elements, IntoElements};
 use proc_macro2::Span;
 
 use crate::diagnostic::{Diagnostic, Diagnostics, Location, error};
@@ -71,7 +72,7 @@ pub(crate) fn refusals_of(
     combinations().filter(is_of_it).filter_map(move |combination| error(combination, &found))
 }
 
-fn error((row, refused, beside): Combination, found: &impl Fn(Feature) -> Option<Found>) -> Option<Diagnostic> {
+fn error((row, refused, beside): Combination, found: &dyn Fn(Feature) -> Option<Found>) -> Option<Diagnostic> {
     let (refused, beside) = ((refused, found(refused)?), (beside, found(beside)?));
     Some(row.diagnostic(refused, beside))
 }
@@ -141,7 +142,7 @@ pub(crate) fn refused_with(key: &str) -> Vec<String> {
             }
         }
     }
-    refused.into_iter().map(|(own, others)| format!("{own}: not with {}", others.join("; "))).collect()
+    refused.into_each(|(own, others)| format!("{own}: not with {}", others.join("; ")))
 }
 
 /// The table of what does not go together in Markdown.
@@ -174,5 +175,5 @@ fn either(features: &[Feature], stand_in: &str) -> String {
 }
 
 fn words(features: &[Feature], separator: &str) -> String {
-    features.iter().map(|feature| feature.words()).collect::<Vec<_>>().join(separator)
+    features.each(|feature| feature.words()).join(separator)
 }

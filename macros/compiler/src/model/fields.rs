@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use clebsch_symbolic::{Graph, Property, Role, Shape};
+use clebsch_symbolic::{Elements, Graph, Property, Role, Shape, indexed};
 use proc_macro2::{Span, TokenStream, TokenTree};
 use quote::ToTokens;
 use syn::ext::IdentExt;
@@ -83,7 +83,7 @@ pub(super) fn read<'g>(
             Some(Parameter { per_site: entry.is_some(), ..parameter })
         });
         let value = parameter.as_ref().map(|parameter| {
-            let leaves: Vec<Value<'g>> = parameter.leaves.iter().map(|leaf| Value::Matrix(leaf.symbol)).collect();
+            let leaves: Vec<Value<'g>> = parameter.leaves.each(|leaf| Value::Matrix(leaf.symbol));
             let value = Value::nested(&parameter.structure, &leaves);
             value.of_each(Each::Field(parameters.len()), parameter.per_site)
         });
@@ -105,7 +105,7 @@ fn field_type<'t>(ty: &'t Type, generics: &Generics) -> Result<FieldType<'t>, Op
             if numbers > ENTRIES {
                 bail!(ty, "`{}` has {numbers} numbers, more than {ENTRIES}", spell_type(ty); note "{GROWS}");
             }
-            let parts = (0..length).map(|i| element.structure.shifted(i * leaves)).collect();
+            let parts = indexed(length, |i| element.structure.shifted(i * leaves));
             Ok(FieldType { structure: Layout::Array(parts), ..element })
         }
         ty => {

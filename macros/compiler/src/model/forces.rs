@@ -1,6 +1,6 @@
 //! Forces: the closures `force` and `force_on`, with the velocity and the input that they introduce.
 
-use clebsch_symbolic::{Expr, Graph, Role, Shape};
+use clebsch_symbolic::{Elements, Expr, Graph, Role, Shape, indexed};
 
 use super::closures::{optional, written};
 use super::features::{self, Feature, Found};
@@ -42,7 +42,7 @@ impl<'g> ActedSystem<'_, '_, 'g> {
         // both closures speak of one velocity, each under its own name
         let renamed = |read: &ReadForce<'g>| -> Vec<Expr<'g>> {
             let names: Vec<_> = read.velocities.iter().copied().zip(velocities.iter().flatten().copied()).collect();
-            read.value.iter().map(|part| part.substitute(&names)).collect()
+            read.value.each(|part| part.substitute(&names))
         };
         let closures = declaration.force.iter().chain(&declaration.force_on);
         let force = velocities.clone().map(|velocities| Force {
@@ -60,7 +60,7 @@ impl<'g> ActedSystem<'_, '_, 'g> {
         let velocity = Velocity { graph: self.context.graph, factors: self.factors, diagnostics };
         let pattern = matched.argument(Slot::Velocity).map(|argument| &argument.pattern);
         let (value, velocities) = optional(pattern, |pattern| velocity.of(pattern, self.element))?.unzip();
-        let unnamed = || (0..self.factors.len()).map(|k| velocity.symbol(k, "velocity")).collect();
+        let unnamed = || indexed(self.factors.len(), |k| velocity.symbol(k, "velocity"));
         let velocities = velocities.unwrap_or_else(unnamed);
         let input = optional(matched.argument(Slot::Input), |argument| self.read_input(argument))?;
         let introduced = [(Slot::Velocity, value), (Slot::Input, input.as_ref().map(Space::value))];

@@ -2,7 +2,7 @@
 
 use std::cell::Cell;
 
-use clebsch_symbolic::{Graph, Group};
+use clebsch_symbolic::{Elements, Graph, Group};
 use proc_macro2::Ident;
 use syn::ext::IdentExt;
 use syn::{GenericArgument, Generics, Type};
@@ -218,7 +218,7 @@ fn unknown_group(ty: &Type, names: GroupNames) -> Diagnostic {
 
 /// The group that a name like `SO3`, `So` or `Rotation3` most likely means.
 pub(super) fn suggestion(name: &str, names: GroupNames) -> Option<String> {
-    let own: Vec<String> = names.declared.known.iter().map(|(name, ..)| name.unraw().to_string()).collect();
+    let own: Vec<String> = names.declared.known.each(|(name, ..)| name.unraw().to_string());
     if let Some(similar) = nearest(name, own.iter().map(String::as_str)).filter(|_| name.len() > 2) {
         return Some(similar.to_string());
     }

@@ -1,5 +1,6 @@
 //! How the leaves of a product nest, and how each is reached.
 
+use clebsch_symbolic::Elements;
 use std::fmt;
 
 /// The nesting of leaves, which are numbered from left to right.
@@ -44,14 +45,14 @@ impl Layout {
             Layout::Array(parts) => (parts, Part::Index),
         };
         let within = |(position, part): (usize, &Layout)| -> Vec<Access> {
-            part.accessors().iter().map(|access| access.within(step(position))).collect()
+            part.accessors().each(|access| access.within(step(position)))
         };
         parts.iter().enumerate().flat_map(within).collect()
     }
 
     /// The same nesting with its leaves numbered from `offset` on.
     pub(super) fn shifted(&self, offset: usize) -> Layout {
-        let shift = |parts: &[Layout]| parts.iter().map(|part| part.shifted(offset)).collect();
+        let shift = |parts: &[Layout]| parts.each(|part| part.shifted(offset));
         match self {
             Layout::Leaf(leaf) => Layout::Leaf(leaf + offset),
             Layout::Tuple(parts) => Layout::Tuple(shift(parts)),

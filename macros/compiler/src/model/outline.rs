@@ -1,6 +1,6 @@
 //! What a declaration with errors still says: the types that its integrator would have.
 
-use clebsch_symbolic::{Graph, Group, Shape};
+use clebsch_symbolic::{Elements, Graph, Group, Shape};
 use quote::ToTokens;
 
 use super::groups::GroupNames;
@@ -38,9 +38,8 @@ pub fn outline(graph: &Graph, declaration: &Declaration) -> Option<Outline> {
     let types = arguments::of_action(declaration, &ignored)?;
     let groups = spaces::read_groups(types.group, names)?;
     let of_group = |(group, _): &(Group, _)| (group.element_shape(), *group == Group::UnitQuaternions);
-    let nested = |spaces: Product<SpaceType>| {
-        (spaces.layout, spaces.leaves.iter().map(|(leaf, _)| (leaf.shape, leaf.is_quaternion)).collect())
-    };
+    let nested =
+        |spaces: Product<SpaceType>| (spaces.layout, spaces.leaves.each(|(leaf, _)| (leaf.shape, leaf.is_quaternion)));
     let is_time = |argument: &Argument| matches!(&argument.pattern, Pattern::Name(ident) if ident == "t");
     let opaque = declaration.potential.as_ref().and_then(Potential::opaque);
     let opaque_takes_time = opaque.is_some_and(|opaque| opaque.takes_time);
@@ -51,7 +50,7 @@ pub fn outline(graph: &Graph, declaration: &Declaration) -> Option<Outline> {
         sites: types.sites.cloned(),
         input: input.map_or_else(point, nested),
         dimension: groups.leaves.iter().map(|(group, _)| group.dimension()).sum(),
-        element: (groups.layout, groups.leaves.iter().map(of_group).collect()),
+        element: (groups.layout, groups.leaves.each(of_group)),
         configuration: if declaration.dials.emit.momentum { point() } else { nested(spaces) },
         takes_time: opaque_takes_time || declaration.closures().flat_map(|closure| &closure.arguments).any(is_time),
         scalar: scalar(declaration),

@@ -1,6 +1,6 @@
 //! The sites of a power while closures are read: what they meet, and what becomes of the model of one site.
 
-use clebsch_symbolic::{Expr, Graph, Property, Role, Shape};
+use clebsch_symbolic::{Elements, Expr, Graph, Property, Role, Shape};
 use proc_macro2::Ident;
 
 use super::features::{self, Feature, Found};
@@ -151,7 +151,7 @@ pub(super) fn power_of<'g>(
         parameters.push(Parameter { leaves, ..field.clone() });
     }
     let mut of_site: Vec<Parameter<'g>> = system.parameters.iter().filter(by_site).cloned().collect();
-    let copied = of_site.iter().map(|parameter| parameter.field.clone()).collect();
+    let copied = of_site.each(|parameter| parameter.field.clone());
     for parameter in &mut of_site {
         if let syn::Member::Unnamed(index) = &parameter.field {
             parameter.field = syn::Member::Named(quote::format_ident!("field_{}", index.index));

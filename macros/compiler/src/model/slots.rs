@@ -1,5 +1,6 @@
 //! Which argument stands for what: each is found by the name that the action gives, and they keep their order.
 
+use clebsch_symbolic::Elements;
 use syn::ext::IdentExt;
 
 use super::arguments::TypedArguments;
@@ -121,8 +122,7 @@ impl<'d> Matched<'d> {
     /// Finds the slot that each argument takes, and reports what is wrong with them.
     pub fn new(names: TypedArguments<'d>, closure: &'d Closure, slots: &'static [Slot]) -> Matched<'d> {
         let arguments = &closure.arguments;
-        let mut taken: Vec<Option<Slot>> =
-            arguments.iter().map(|argument| names.find(&argument.pattern, slots)).collect();
+        let mut taken: Vec<Option<Slot>> = arguments.each(|argument| names.find(&argument.pattern, slots));
         let mut untyped = arguments.len();
         if slots.contains(&Slot::Input) && arguments.last().is_some_and(|argument| argument.ty.is_some()) {
             untyped -= 1;
@@ -295,7 +295,7 @@ impl<'d> Matched<'d> {
                 self.dependence()
             };
             let names = match (self.names.pattern(slot), slot) {
-                (Some(pattern), _) => pattern.names().iter().map(|ident| ident.unraw().to_string()).collect(),
+                (Some(pattern), _) => pattern.names().each(|ident| ident.unraw().to_string()),
                 (None, Slot::Chosen) => Vec::new(),
                 (None, _) => vec![self.names.names(slot).0],
             };

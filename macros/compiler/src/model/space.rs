@@ -1,6 +1,6 @@
 //! Products of spaces: their leaves, what a value gives for each, and the names that a pattern gives them.
 
-use clebsch_symbolic::{Expr, Graph, Role};
+use clebsch_symbolic::{Elements, Expr, Graph, Role};
 use syn::ext::IdentExt;
 use syn::{Expr as Syntax, Ident};
 
@@ -43,7 +43,7 @@ impl<'g> Space<'g> {
 
     /// What it is in a closure.
     pub fn value(&self) -> Value<'g> {
-        let values: Vec<_> = self.leaves.iter().map(|leaf| Value::leaf(leaf.symbol, leaf.is_quaternion)).collect();
+        let values: Vec<_> = self.leaves.each(|leaf| Value::leaf(leaf.symbol, leaf.is_quaternion));
         Value::nested(&self.layout, &values)
     }
 
@@ -86,7 +86,7 @@ pub(super) fn leaf_names(pattern: &Pattern, layout: &Layout, diagnostics: &Diagn
     match (pattern, layout) {
         (Pattern::Name(ident), _) => {
             let name = ident.unraw();
-            Some(layout.accessors().iter().map(|accessor| format!("{name}{accessor}")).collect())
+            Some(layout.accessors().each(|accessor| format!("{name}{accessor}")))
         }
         (Pattern::Tuple(patterns, _), Layout::Tuple(parts)) if patterns.len() == parts.len() => {
             let names = patterns.iter().zip(parts).map(|(pattern, part)| leaf_names(pattern, part, diagnostics));

@@ -1,6 +1,6 @@
 //! Symmetries that the user offers: `|S: SO<3>, q, F| (q′, F′)`, checked to be actions that agree with the action of the system.
 
-use clebsch_symbolic::{Expr, Group, Role, identity};
+use clebsch_symbolic::{Elements, Expr, Group, Role, identity};
 use syn::Type;
 
 use super::action_errors::{ascii, first_difference};
@@ -86,7 +86,7 @@ impl<'g> ActedSystem<'_, '_, 'g> {
             syn::Expr::Tuple(tuple) if tuple.elems.len() == 2 => [&tuple.elems[0], &tuple.elems[1]],
             other => [other, other],
         };
-        let elements = Space { layout: self.element.clone(), leaves: self.factors.iter().map(as_leaf).collect() };
+        let elements = Space { layout: self.element.clone(), leaves: self.factors.each(as_leaf) };
         let key = &closure.key;
         let points = self.space.leaves_of((key, first), point, &new_value_of(configuration), diagnostics);
         let moved = elements.leaves_of((key, second), moved, &new_value_of(element), diagnostics);
@@ -127,7 +127,7 @@ impl<'g> ActedSystem<'_, '_, 'g> {
         // (Φ_F q)′ and Φ_{F′}(q′)
         let substituted = |images: &[Expr<'g>], values: &[Expr<'g>]| -> Vec<Expr<'g>> {
             let rules: Vec<_> = leaves.iter().map(|leaf| leaf.symbol).zip(values.iter().copied()).collect();
-            images.iter().map(|image| image.substitute(&rules)).collect()
+            images.each(|image| image.substitute(&rules))
         };
         let stepped_then_moved = substituted(points, self.action);
         let moved_then_stepped = substituted(self.action, &value);

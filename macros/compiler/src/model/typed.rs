@@ -1,6 +1,6 @@
 //! The factors of the group, the leaves of the configuration and velocities: their symbols, and what they are in closures.
 
-use clebsch_symbolic::{Block, Expr, Graph, Group, Property, Role, Shape};
+use clebsch_symbolic::{Block, Elements, Expr, Graph, Group, Property, Role, Shape};
 use syn::Type;
 
 use super::arguments::TypedArguments;
@@ -56,7 +56,7 @@ impl<'g> Typed<'g> {
     pub fn arguments<'d>(&self, graph: &'g Graph, names: TypedArguments<'d>) -> Arguments<'d, 'g> {
         let element = |all: &Vec<Factor<'g>>| {
             let leaf = |factor: &Factor<'g>| Value::leaf(factor.symbol, factor.group == Group::UnitQuaternions);
-            Value::nested(&self.element, &all.iter().map(leaf).collect::<Vec<_>>())
+            Value::nested(&self.element, &all.each(leaf))
         };
         let is_power = names.sites.is_some() && self.space.is_some();
         let mut members = Vec::new();
@@ -159,7 +159,7 @@ impl<'g> Velocity<'_, 'g> {
             (Pattern::Tuple(patterns, _), Layout::Leaf(k))
                 if patterns.len() > 1 && self.graph.blocks(self.factors[*k].group).len() == patterns.len() =>
             {
-                let names: Vec<String> = pattern.names().iter().map(ToString::to_string).collect();
+                let names: Vec<String> = pattern.names().each(ToString::to_string);
                 let symbol = self.symbol(*k, &names.join("_"));
                 let part = |block: &Block| symbol.block(block.offset, 0, Shape::vector(block.algebra.dimension));
                 let blocks = self.graph.blocks(self.factors[*k].group);

@@ -1,6 +1,6 @@
 //! What an expression of a closure may be: a matrix, the identity of a size that is still open, a tuple, an array.
 
-use clebsch_symbolic::Expr;
+use clebsch_symbolic::{Elements, Expr};
 
 use super::Layout;
 use super::power::{Range, Term};
@@ -39,7 +39,7 @@ impl<'g> Value<'g> {
 
     /// Nests values as a layout says.
     pub fn nested(layout: &Layout, leaves: &[Value<'g>]) -> Value<'g> {
-        let parts = |parts: &[Layout]| parts.iter().map(|part| Value::nested(part, leaves)).collect();
+        let parts = |parts: &[Layout]| parts.each(|part| Value::nested(part, leaves));
         match layout {
             Layout::Leaf(leaf) => leaves[*leaf].clone(),
             Layout::Tuple(inner) => Value::Tuple(parts(inner)),

@@ -1,5 +1,6 @@
 //! Methods, further ways to step the same system: `method NAME = (order = 6, discretization = exact)`.
 
+use clebsch_symbolic::IntoElements;
 use proc_macro2::Ident;
 use syn::ext::IdentExt;
 use syn::parse::{ParseBuffer, ParseStream};
@@ -76,7 +77,7 @@ pub(super) fn checked(system: &Ident, keys: Vec<(Ident, Keys)>, diagnostics: &Di
         report!(diagnostics, name.span(), "the method `{system}` is the system itself";
             help "write a unit struct beside it, as in `struct Fine;` and `method Fine = (…)`");
     }
-    keys.into_iter().map(|(name, keys)| DeclaredMethod { name, dials: keys.dials }).collect()
+    keys.into_each(|(name, keys)| DeclaredMethod { name, dials: keys.dials })
 }
 
 impl Declaration {

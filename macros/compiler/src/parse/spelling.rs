@@ -9,7 +9,11 @@ const LEVELS: usize = 100;
 
 /// The texts of several things, separated by commas.
 pub(crate) fn joined<T: ToString>(items: impl IntoIterator<Item = T>) -> String {
-    items.into_iter().map(|item| item.to_string()).collect::<Vec<_>>().join(", ")
+    let mut texts = Vec::new();
+    for item in items {
+        texts.push(item.to_string());
+    }
+    texts.join(", ")
 }
 
 /// The names of several things in backticks, separated by commas.

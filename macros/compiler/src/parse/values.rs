@@ -1,5 +1,6 @@
 //! The values of keys, each read as its key asks.
 
+use clebsch_symbolic::Elements;
 use proc_macro2::Ident;
 use proc_macro2::extra::DelimSpan;
 use quote::ToTokens;
@@ -122,13 +123,18 @@ impl Reader<'_, '_> {
 
     /// The value that a name stands for, or an error that lists the names.
     fn choose<T: Copy>(&self, name: &Ident, table: &[(&str, T)]) -> Option<T> {
-        if let Some((_, value)) = table.iter().find(|(word, _)| name == word) {
-            return Some(*value);
+        let words = table.each(|(word, _)| *word);
+        self.position(name, &words).map(|position| table[position].1)
+    }
+
+    fn position(&self, name: &Ident, words: &[&str]) -> Option<usize> {
+        let found = words.iter().position(|word| name == word);
+        if found.is_some() {
+            return found;
         }
-        let words = table.iter().map(|&(word, _)| word);
-        let help = match nearest(&name.to_string(), words.clone()) {
+        let help = match nearest(&name.to_string(), words.iter().copied()) {
             Some(similar) => format!("write `{similar}`"),
-            None => format!("it is {}", words.map(|word| format!("`{word}`")).collect::<Vec<_>>().join(" or ")),
+            None => format!("it is {}", words.each(|word| format!("`{word}`")).join(" or ")),
         };
         refuse!(self.diagnostics, name, "unknown {} `{name}`", self.name; help "{help}")
     }

@@ -2,7 +2,7 @@
 
 use super::{Block, Group};
 use crate::algebra::{Sparse, unit_vectors};
-use crate::{Graph, Rational, Shape, integer, rational};
+use crate::{Elements, Graph, Rational, Shape, indexed, integer, rational};
 
 pub(super) fn blocks(graph: &Graph, group: Group) -> Vec<Block> {
     let whole = |elements: Vec<Sparse>| vec![(group.element_shape(), elements, 0, 0)];
@@ -13,7 +13,7 @@ pub(super) fn blocks(graph: &Graph, group: Group) -> Vec<Block> {
         Group::PseudoOrthogonal(p, q) => whole(pseudo_rotations(p, q)),
         Group::SpecialEuclidean(n) => vec![square(n, rotations(n)), column(n)],
         Group::Similarity(n) => {
-            let dilation = vec![(0..n).map(|i| one(i, i)).collect()];
+            let dilation = vec![indexed(n, |i| one(i, i))];
             vec![square(n, rotations(n)), square(n, dilation), column(n)]
         }
         Group::Affine(n) => vec![square(n, entries(n)), column(n)],
@@ -23,7 +23,7 @@ pub(super) fn blocks(graph: &Graph, group: Group) -> Vec<Block> {
         Group::Symplectic(n) => whole(hamiltonian(n / 2)),
         Group::Unitary(n) => whole(anti_hermitian(n, (0..n).map(|i| vec![one(i, i)]))),
         Group::SpecialUnitary(n) => whole(anti_hermitian(n, differences(n))),
-        Group::UnitQuaternions => whole((0..3).map(|i| vec![(i, 0, rational(1, 2))]).collect()),
+        Group::UnitQuaternions => whole(indexed(3, |i| vec![(i, 0, rational(1, 2))])),
         Group::Heisenberg(n) => whole(heisenberg(n)),
         Group::Declared(declared) => {
             let algebra = graph.definition(declared).algebra;
@@ -90,19 +90,19 @@ fn hamiltonian(n: usize) -> Vec<Sparse> {
     let pairs = (0..n).flat_map(|i| (0..=i).map(move |j| (i, j)));
     let element = |(i, j)| if i == j { vec![one(i, n + j)] } else { vec![one(i, n + j), one(j, n + i)] };
     let symmetric: Vec<Sparse> = pairs.map(element).collect();
-    let transpose = |element: &Sparse| element.iter().map(|(i, j, value)| (*j, *i, value.clone())).collect();
-    let transposed: Vec<Sparse> = symmetric.iter().map(transpose).collect();
+    let transpose = |element: &Sparse| element.each(|(i, j, value)| (*j, *i, value.clone()));
+    let transposed: Vec<Sparse> = symmetric.each(transpose);
     linear.chain(symmetric).chain(transposed).collect()
 }
 
 /// (A −B; B A) with A = Eji − Eij, then with B = Eji + Eij, i < j, then with the diagonal matrices B that are given.
 fn anti_hermitian(n: usize, diagonal: impl Iterator<Item = Sparse>) -> Vec<Sparse> {
     let real = |matrix: Sparse| -> Sparse {
-        let lower: Sparse = matrix.iter().map(|(i, j, value)| (n + i, n + j, value.clone())).collect();
+        let lower: Sparse = matrix.each(|(i, j, value)| (n + i, n + j, value.clone()));
         matrix.into_iter().chain(lower).collect()
     };
     let imaginary = |matrix: Sparse| -> Sparse {
-        let upper: Sparse = matrix.iter().map(|(i, j, value)| (*i, n + j, -value.clone())).collect();
+        let upper: Sparse = matrix.each(|(i, j, value)| (*i, n + j, -value.clone()));
         let lower = matrix.into_iter().map(|(i, j, value)| (n + i, j, value));
         lower.chain(upper).collect()
     };

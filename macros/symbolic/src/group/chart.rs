@@ -4,7 +4,7 @@ use super::motion::{blocks, left_matrix, motion};
 use super::{Block, Group};
 use crate::memory::Map;
 use crate::node::{Analytic, ExprNode, Operation};
-use crate::{Expr, Function, Graph, Shape, identity, rational};
+use crate::{Elements, Expr, Function, Graph, IntoElements, Shape, identity, indexed, rational};
 
 /// Coordinates of a group near the identity: F as a function of x, with F = I at x = 0.
 #[derive(Copy, Clone, PartialEq, Eq, Hash, PartialOrd, Ord, Debug)]
@@ -261,7 +261,7 @@ fn determinant_excess(z: Expr<'_>) -> Expr<'_> {
     let n = z.shape().rows;
     let mut powers: Vec<Expr<'_>> = vec![z];
     (2..=n).for_each(|_| powers.push(powers[powers.len() - 1] * z));
-    let mut traces: Vec<Expr<'_>> = powers.into_iter().map(Expr::trace).collect();
+    let mut traces: Vec<Expr<'_>> = powers.into_each(Expr::trace);
     if identity::vanishes(traces[0]) {
         traces[0] = graph.integer(0);
     }
@@ -316,7 +316,7 @@ fn dual(z: Expr<'_>) -> Expr<'_> {
 
 fn dual_coordinates(x: Expr<'_>) -> Expr<'_> {
     let entries = [(5, 1), (4, -1), (3, 1), (2, 1), (1, -1), (0, 1)];
-    x.graph().stack(x.shape(), entries.into_iter().map(|(k, sign)| sign * x.entry(k, 0)).collect())
+    x.graph().stack(x.shape(), entries.each(|&(k, sign)| sign * x.entry(k, 0)))
 }
 
 impl Group {
@@ -345,7 +345,7 @@ impl Group {
             let entries = Shape::square(m).positions().filter_map(|at| Some((at.0, at.1, number(at)?)));
             entries.filter(|(_, _, value)| !value.is_zero()).collect()
         };
-        xi.wedge(graph.algebra(Shape::square(m), (0..m).map(structure).collect()))
+        xi.wedge(graph.algebra(Shape::square(m), indexed(m, structure)))
     }
 
     /// dexp_ξ = φ(ad_ξ), the right trivialisation of the derivative of exp: (d exp ξ) exp(−ξ) = dexp_ξ dξ.

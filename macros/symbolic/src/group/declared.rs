@@ -6,7 +6,7 @@ use super::chart::Chart;
 use super::{Declared, Group, sample};
 use crate::algebra::{Sparse, dense};
 use crate::node::Id;
-use crate::{Algebra, Expr, Graph, Rational, Shape};
+use crate::{Algebra, Elements, Expr, Graph, Rational, Shape};
 
 /// What a graph keeps of a declared group.
 #[derive(Debug)]
@@ -87,7 +87,7 @@ impl Graph {
     /// The span of a basis.
     pub fn span(&self, algebra: Algebra) -> Span {
         let shape = algebra.shape;
-        Span::of(self.basis(algebra).elements.iter().map(|element| dense(shape, element.iter().cloned())).collect())
+        Span::of(self.basis(algebra).elements.each(|element| dense(shape, element.iter().cloned())))
     }
 }
 

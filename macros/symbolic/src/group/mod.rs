@@ -12,7 +12,7 @@ pub(crate) mod sample;
 use std::rc::Rc;
 
 use crate::algebra::Sparse;
-use crate::{Algebra, Expr, Graph, Property, Shape, integer};
+use crate::{Algebra, Elements, Expr, Graph, IntoElements, Property, Shape, integer};
 
 pub use chart::Chart;
 pub(crate) use declared::Definition;
@@ -80,7 +80,7 @@ impl Group {
             Group::Declared(declared) => graph.definition(declared).name.clone(),
             _ => {
                 let (name, sizes) = self.symbol();
-                let sizes: Vec<String> = sizes.iter().map(usize::to_string).collect();
+                let sizes: Vec<String> = sizes.each(usize::to_string);
                 format!("{name}<{}>", sizes.join(", "))
             }
         }
@@ -211,7 +211,7 @@ impl Graph {
         let placed = |block: &Block| -> Vec<Sparse> {
             let moved = |(i, j, value): &(usize, usize, _)| (i + block.row, j + block.column, Clone::clone(value));
             let basis = self.basis(block.algebra);
-            basis.elements.iter().map(|element| element.iter().map(moved).collect()).collect()
+            basis.elements.each(|element| element.each(moved))
         };
         self.blocks(group).iter().flat_map(placed).collect()
     }
@@ -219,7 +219,7 @@ impl Graph {
     /// The basis of a group's Lie algebra as literal matrices.
     pub fn matrices(&self, group: Group) -> Vec<Expr<'_>> {
         let shape = group.element_shape();
-        self.elements(group).into_iter().map(|element| self.sparse_literal(shape, element)).collect()
+        self.elements(group).into_each(|element| self.sparse_literal(shape, element))
     }
 
     /// (0 I; −I 0) of size 2n.

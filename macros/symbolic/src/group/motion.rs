@@ -2,7 +2,7 @@
 
 use super::{Block, Group};
 use crate::algebra::Sparse;
-use crate::{Expr, Graph, Rational, Shape, integer};
+use crate::{Expr, Graph, Rational, Shape, indexed, integer};
 
 impl Group {
     /// The identity element.
@@ -245,7 +245,7 @@ fn multiplication(from_left: bool) -> Vec<Sparse> {
         let (row, sign) = if from_left { unit(a, b) } else { unit(b, a) };
         (row, b, integer(sign))
     };
-    (0..4).map(|a| (0..4).map(|b| column(a, b)).collect()).collect()
+    indexed(4, |a| indexed(4, |b| column(a, b)))
 }
 
 /// The matrix of q ↦ a q.

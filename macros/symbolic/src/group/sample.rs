@@ -5,7 +5,7 @@ use crate::algebra::Sparse;
 use crate::evaluate::{Matrix, Number, negative, one, power, zero};
 use crate::identity::Residue;
 use crate::node::Exponent;
-use crate::{Graph, Shape, rational};
+use crate::{Elements, Graph, Shape, rational};
 
 type Field = Matrix<Residue>;
 
@@ -48,7 +48,7 @@ pub(super) fn is_cayley_tangent(graph: &Graph, group: Group) -> bool {
     let left = identity_plus(&z, negative(one())).inverse().0;
     let right = identity_plus(&z, one()).inverse().0;
     let shape = group.element_shape();
-    let basis: Vec<Field> = graph.elements(group).iter().map(|element| dense(shape, element)).collect();
+    let basis: Vec<Field> = graph.elements(group).each(|element| dense(shape, element));
     let moved = basis.iter().map(|element| left.multiply(element).multiply(&right));
     let entries: Vec<Residue> = basis.iter().cloned().chain(moved).flat_map(|matrix| matrix.entries).collect();
     let mut rows = Matrix::new(Shape::new(2 * basis.len(), shape.len()), entries);

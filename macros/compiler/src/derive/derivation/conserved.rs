@@ -3,7 +3,6 @@
 use super::{bounds, inputs};
 use crate::derive::{MOST_LISTED, MechanicsFormulas, Substep};
 use crate::model::{Isotropy, Order};
-
 pub(super) fn forces(formulas: &MechanicsFormulas<'_>) -> String {
     let model = &formulas.model;
     if model.force.is_none() {

@@ -1,6 +1,6 @@
 //! How momentum equations are solved, in words.
 
-use clebsch_symbolic::Chart;
+use clebsch_symbolic::{Chart, Elements};
 
 use super::Iteration;
 use crate::derive::{MechanicsFormulas, MomentumEquation, Solution, Structure};
@@ -8,7 +8,7 @@ use crate::derive::{MechanicsFormulas, MomentumEquation, Solution, Structure};
 /// The factors of an equation, with the components that are meant where it holds not all of them.
 pub(super) fn part<'g>(formulas: &MechanicsFormulas<'g>, equation: &MomentumEquation<'g>) -> String {
     let whole: usize = equation.factors.iter().map(|&k| formulas.model.factors[k].group.dimension()).sum();
-    let names: Vec<&str> = equation.factors.iter().map(|&k| formulas.model.factors[k].name.as_str()).collect();
+    let names: Vec<&str> = equation.factors.each(|&k| formulas.model.factors[k].name.as_str());
     let names = names.join(", ");
     if equation.residual.shape().rows == whole {
         return names;
@@ -74,7 +74,7 @@ fn structure(structure: &Structure) -> String {
         Structure::Dense => String::new(),
         Structure::Symmetric => "; its Jacobian is symmetric, LDLᵀ where it is definite".to_string(),
         Structure::Triangular(blocks) => {
-            let sizes: Vec<String> = blocks.iter().map(|block| block.len().to_string()).collect();
+            let sizes: Vec<String> = blocks.each(|block| block.len().to_string());
             format!("; its Jacobian is block triangular, with blocks of {} unknowns", sizes.join(", "))
         }
         Structure::Sylvester(n) => {

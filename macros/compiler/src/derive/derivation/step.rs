@@ -1,6 +1,6 @@
 //! How a step goes and how accurate it is, in words.
 
-use clebsch_symbolic::Group;
+use clebsch_symbolic::{Group, IntoElements};
 
 use super::Lowered;
 use super::equations::{how, part};
@@ -126,7 +126,7 @@ fn spaces(formulas: &MechanicsFormulas<'_>) -> String {
 fn tolerance(formulas: &MechanicsFormulas<'_>) -> String {
     let Some(tolerance) = &formulas.model.dials.tolerance else { return String::new() };
     let kept = formulas.conserved_by_any_element();
-    let kept: Vec<&str> = kept.into_iter().map(|momentum| momentum.name.as_str()).collect();
+    let kept: Vec<&str> = kept.into_each(|momentum| momentum.name.as_str());
     let kept = if kept.is_empty() {
         "No momentum is conserved to rounding".to_string()
     } else {

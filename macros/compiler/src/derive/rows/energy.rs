@@ -1,6 +1,6 @@
 //! The rows of the energies, as functions of the velocity and of the momentum, and of the discrete Lagrangian.
 
-use clebsch_symbolic::{Expr, Property, Role, Shape, identity};
+use clebsch_symbolic::{Elements, Expr, Property, Role, Shape, identity};
 
 use super::{Names, tuple};
 use crate::derive::formula::Wording;
@@ -14,8 +14,8 @@ impl<'g> MechanicsFormulas<'g> {
         let slopes = self.symbols.algebra.iter().map(|xi| self.energy.kinetic.gradient(*xi).expand());
         let slopes: Vec<Expr<'g>> = slopes.collect();
         let general: Vec<Expr<'g>> = self.energy.general.into_iter().collect();
-        let gradient: Vec<_> = general.iter().map(|lagrangian| self.symbols.slope(*lagrangian)).collect();
-        let hessian: Vec<_> = gradient.iter().map(|gradient| self.symbols.slopes(*gradient)).collect();
+        let gradient: Vec<_> = general.each(|lagrangian| self.symbols.slope(*lagrangian));
+        let hessian: Vec<_> = gradient.each(|gradient| self.symbols.slopes(*gradient));
         let linear = self.symbols.slope(self.energy.gyroscopic);
         let gyroscopic = if identity::vanishes(linear) { Vec::new() } else { vec![linear] };
         let parts = [Some(self.energy.kinetic), Some(self.energy.gyroscopic), self.energy.general];

@@ -1,6 +1,6 @@
 //! The rows of small motions: how they retract, follow each other, and move a configuration.
 
-use clebsch_symbolic::{Chart, Expr};
+use clebsch_symbolic::{Chart, Expr, IntoElements, indexed};
 
 use super::Names;
 use crate::derive::moves::from_increment;
@@ -19,10 +19,10 @@ impl<'g> SystemFormulas<'g> {
     pub fn orbit_metric(&self) -> MatrixForm<'g> {
         let column = |motion: Vec<(Expr<'g>, Expr<'g>)>| {
             let momenta = self.momenta_of(motion.into_iter().map(|(_, velocity)| velocity));
-            momenta.into_iter().map(Expr::expand).collect()
+            momenta.into_each(Expr::expand)
         };
         let motions = self.symbols.along_basis(&self.leaves_by_generator());
-        MatrixForm::Columns(motions.into_iter().map(column).collect())
+        MatrixForm::Columns(motions.into_each(column))
     }
 }
 
@@ -50,7 +50,7 @@ impl<'g> MechanicsFormulas<'g> {
         let mut increments = Vec::new();
         for sign in [1, -1] {
             for (k, factor) in self.model.factors.iter().enumerate() {
-                let coordinates: Vec<_> = self.symbols.coordinates(k).into_iter().map(|x| sign * x).collect();
+                let coordinates: Vec<_> = self.symbols.coordinates(k).into_each(|x| sign * x);
                 increments.push(self.retraction(k).increment(factor.group, &coordinates));
             }
         }
@@ -79,7 +79,7 @@ impl<'g> MechanicsFormulas<'g> {
             let product = factor.group.compose(left, right);
             (product - factor.group.identity(self.model.graph)).expand()
         };
-        (0..self.model.factors.len()).map(product).collect()
+        indexed(self.model.factors.len(), product)
     }
 
     /// The matrix of ξ ↦ ξ_Q(q), a row for each entry of the configuration. Any momentum of a factor that moves nothing is one of a motion: behind

@@ -1,6 +1,6 @@
 //! The rows of a step: kicks, the momentum equation, the momentum after the move, splittings and collocation.
 
-use clebsch_symbolic::{Expr, Property, Role};
+use clebsch_symbolic::{Elements, Expr, Property, Role};
 
 use super::Names;
 use crate::derive::{Formula, Id, MechanicsFormulas, MomentumEquation, Solution};
@@ -100,7 +100,7 @@ impl<'g> MechanicsFormulas<'g> {
             if held.len() == block.dimension() {
                 return block.coordinates.to_string();
             }
-            held.iter().map(entry).collect::<Vec<_>>().join(", ")
+            held.each(entry).join(", ")
         };
         let names = self.symbols.blocks_of(&equation.components).into_iter().map(name);
         names.collect::<Vec<_>>().join(", ")

@@ -1,7 +1,7 @@
 //! Which entries of a Jacobian vanish, are constant, and agree with those on the other side of its diagonal.
 
 use clebsch_symbolic::identity::{self, Point, Residue};
-use clebsch_symbolic::{Expr, Matrix, Number, Shape};
+use clebsch_symbolic::{Elements, Expr, Matrix, Number, Shape};
 
 use crate::derive::equation::{MomentumEquation, Sources, Structure};
 
@@ -40,7 +40,7 @@ pub(super) fn is_inertial_as_a_whole(sources: &Sources<'_, '_>, equation: &Momen
         return false;
     }
     let direction = |&i: &usize| symbols.blocks[i].direction / sources.chart_step(i, sources.divisor);
-    let direction = sources.model.graph.below(&blocks.iter().map(direction).collect::<Vec<_>>());
+    let direction = sources.model.graph.below(&blocks.each(direction));
     let slope = equation.directional.substitute(&symbols.at_rest());
     identity::equal(&[slope], &[sources.inertia * direction])
 }

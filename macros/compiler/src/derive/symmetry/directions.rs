@@ -1,6 +1,6 @@
 //! The directions in which a system may be moved: its own group's, those of commuting sides, and offered ones.
 
-use clebsch_symbolic::{Chart, Expr, Group, Shape, identity};
+use clebsch_symbolic::{Chart, Elements, Expr, Group, Shape, identity};
 
 use super::{Direction, Family};
 use crate::derive::SystemFormulas;
@@ -62,7 +62,7 @@ impl<'a, 'g> Directions<'a, 'g> {
     }
 
     fn no_motion(&self) -> Vec<Expr<'g>> {
-        self.model.factors.iter().map(|factor| self.model.graph.zero(factor.group.element_shape())).collect()
+        self.model.factors.each(|factor| self.model.graph.zero(factor.group.element_shape()))
     }
 
     /// q ↦ Φ_g q with F ↦ gFg⁻¹ (left) or g⁻¹Fg (right).
@@ -108,7 +108,7 @@ impl<'a, 'g> Directions<'a, 'g> {
     /// Whether a motion of leaf j is carried along by the action: DΦ_F(q)·δq = δq at Φ_F(q).
     fn commutes(&self, j: usize, motion: Expr<'g>) -> bool {
         let leaf = self.model.configurations[j].symbol;
-        let images: Vec<_> = self.model.action.iter().map(|image| image.differential(&[(leaf, motion)])).collect();
+        let images: Vec<_> = self.model.action.each(|image| image.differential(&[(leaf, motion)]));
         identity::equal(&images, &alone(&images, j, motion.substitute(&moved(self.model))))
     }
 
@@ -130,9 +130,8 @@ impl<'a, 'g> Directions<'a, 'g> {
         let offered = &self.model.symmetries[offer];
         let one = [(offered.symbol, offered.group.identity(self.model.graph))];
         let along = [(offered.symbol, offered.group.wedge(self.basis_element(offered.group, index)))];
-        let motions = |images: &[Expr<'g>]| -> Vec<Expr<'g>> {
-            images.iter().map(|image| image.differential(&along).substitute(&one)).collect()
-        };
+        let motions =
+            |images: &[Expr<'g>]| -> Vec<Expr<'g>> { images.each(|image| image.differential(&along).substitute(&one)) };
         let (leaves, factors) = (motions(&offered.configurations), motions(&offered.elements));
         let velocity = self.velocity_of(&leaves)?;
         let pairs = self.system.symbols.momenta.iter().zip(&velocity);
@@ -158,13 +157,13 @@ impl<'a, 'g> Directions<'a, 'g> {
             start += xi.shape().rows;
             solved.block(start - xi.shape().rows, 0, xi.shape())
         };
-        Some(self.system.symbols.algebra.iter().map(part).collect())
+        Some(self.system.symbols.algebra.each(part))
     }
 }
 
 /// The motion of part j alone, of parts with these shapes.
 fn alone<'g>(parts: &[Expr<'g>], j: usize, motion: Expr<'g>) -> Vec<Expr<'g>> {
-    let mut motions: Vec<_> = parts.iter().map(|part| part.graph().zero(part.shape())).collect();
+    let mut motions: Vec<_> = parts.each(|part| part.graph().zero(part.shape()));
     motions[j] = motion;
     motions
 }

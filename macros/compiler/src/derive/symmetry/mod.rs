@@ -9,7 +9,7 @@ mod directions;
 mod large;
 mod special;
 
-use clebsch_symbolic::{Expr, Group, Rational, Shape, identity};
+use clebsch_symbolic::{Elements, Expr, Group, IntoElements, Rational, Shape, identity};
 
 use super::equation::Sources;
 use super::power::{self, SiteTerm};
@@ -105,8 +105,7 @@ fn variations<'g>(
 ) -> Expr<'g> {
     let (model, graph) = (sources.model, sources.model.graph);
     let parts = [lagrangian.kinetic, lagrangian.start, lagrangian.end];
-    let logarithms: Vec<Expr<'g>> =
-        sources.symbols.logarithms.iter().map(|y| lagrangian.kinetic.gradient(*y)).collect();
+    let logarithms: Vec<Expr<'g>> = sources.symbols.logarithms.each(|y| lagrangian.kinetic.gradient(*y));
     let gradients = parts.map(|part| -> (Vec<Expr<'g>>, Vec<Expr<'g>>) {
         let factors = model.factors.iter().map(|factor| part.gradient(factor.symbol));
         (sources.gradients(part), factors.collect())
@@ -131,7 +130,7 @@ fn variations<'g>(
         column.extend(power::moved(model, links, &direction.leaves));
         column
     };
-    of_columns(graph, &directions.iter().map(column).collect::<Vec<_>>())
+    of_columns(graph, &directions.each(column))
 }
 
 /// Everything that names and checks directions.
@@ -194,7 +193,7 @@ impl<'g> Finder<'_, 'g> {
         if is_diagonal && parts.len() == self.sources.model.factors.len() {
             return format!("{} of all factors, {frames}", parts[0].0);
         }
-        let parts: Vec<String> = parts.into_iter().map(|(words, of)| words + &of).collect();
+        let parts: Vec<String> = parts.into_each(|(words, of)| words + &of);
         format!("{}, {frames}", parts.join(" + "))
     }
 

@@ -1,7 +1,7 @@
 //! Symmetries beyond constant directions: along vector parameters, along the configuration, and for special parameters.
 
 use clebsch_symbolic::identity::Point;
-use clebsch_symbolic::{Expr, Group, Property, Rational, Role, Shape, identity, integer};
+use clebsch_symbolic::{Elements, Expr, Group, IntoElements, Property, Rational, Role, Shape, identity, integer};
 
 use super::{ConservedMomentum, Direction, Family, Finder, holds};
 use crate::derive::naming;
@@ -13,7 +13,7 @@ impl<'g> Finder<'_, 'g> {
         let (model, graph) = (self.sources.model, self.sources.model.graph);
         let is_turn = |family: &usize| turns_in_space(self.families[*family].group);
         let turns: Vec<usize> = (0..self.families.len()).filter(is_turn).collect();
-        let mut choices: Vec<Vec<usize>> = turns.iter().map(|&family| vec![family]).collect();
+        let mut choices: Vec<Vec<usize>> = turns.each(|&family| vec![family]);
         if turns.len() > 1 {
             choices.push(turns);
         }
@@ -33,7 +33,7 @@ impl<'g> Finder<'_, 'g> {
                         let is_of_choice = choice.contains(&direction.family);
                         if is_of_choice { leaf.symbol.entry(direction.index, 0) } else { graph.integer(0) }
                     };
-                    let weights: Vec<_> = self.directions.iter().map(weight).collect();
+                    let weights: Vec<_> = self.directions.each(weight);
                     let change = self.matrix * graph.stack(Shape::vector(weights.len()), weights.clone());
                     if !identity::vanishes(change) {
                         continue;
@@ -128,7 +128,7 @@ impl<'g> Finder<'_, 'g> {
         }
         let regular = identity::rank_where(self.sources.inertia, &|point| set(&special, point))
             == self.sources.inertia.shape().rows;
-        let texts: Vec<String> = special.into_iter().map(|special| special.text).collect();
+        let texts: Vec<String> = special.into_each(|special| special.text);
         (regular && !texts.is_empty()).then(|| texts.join(" and "))
     }
 }

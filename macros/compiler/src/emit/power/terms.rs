@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use clebsch_symbolic::{Expr, Role, Shape, joined};
+use clebsch_symbolic::{Elements, Expr, Role, Shape, joined};
 use proc_macro2::{Ident, TokenStream};
 use quote::{format_ident, quote};
 
@@ -195,7 +195,7 @@ impl<'e, 'a, 'g> Terms<'e, 'a, 'g> {
 
     /// A statement for all indices of a term, with the configurations that it reads.
     fn loops(&self, link: &SiteTerm<'g>, kernel: &Kernel, body: TokenStream) -> TokenStream {
-        let places: Vec<usize> = link.gradient.iter().map(|(place, _)| *place).collect();
+        let places: Vec<usize> = link.gradient.each(|(place, _)| *place);
         let statement = self.reading((&self.power.places, None), &places, kernel, quote!(continue), body);
         let ranges = link.term.ranges.iter().enumerate();
         if link.term.ranges.is_empty() {

@@ -1,6 +1,6 @@
 //! Values that are computed less often than the kernels that use them: of a value and its negative, one.
 
-use clebsch_symbolic::{integer, work};
+use clebsch_symbolic::{Elements, integer, work};
 
 use super::{Hoisting, kernel};
 use crate::lower::entries::Grid;
@@ -55,12 +55,12 @@ impl Hoisted {
     /// Computes what is kept, one output each.
     pub(in crate::lower) fn kernel(&self, scalars: &mut Scalars, hoisting: Hoisting<'_>) -> Kernel {
         // with those that are not kept: what they share with others decides how these are rounded
-        let outputs: Vec<Grid> = self.met.iter().map(|met| Grid::scalar(met.scalar)).collect();
+        let outputs: Vec<Grid> = self.met.each(|met| Grid::scalar(met.scalar));
         let Kernel { locals, outputs } = kernel(scalars, &outputs, hoisting);
         let signed = |(number, met): (usize, &Met)| {
             let (shape, entries) = &outputs[number];
             let signed = |code: &Code| if met.is_negative { signs::negative(code.clone()) } else { code.clone() };
-            (*shape, entries.iter().map(signed).collect())
+            (*shape, entries.each(signed))
         };
         let outputs = self.first().map(signed).collect();
         Kernel { locals, outputs }.without_unused()
@@ -76,7 +76,7 @@ impl Scalars {
                 Some(terms[0].0)
             }
             ScalarNode::Sum(constant, terms) => {
-                let terms = terms.iter().map(|(term, weight)| (*term, weight * &minus)).collect();
+                let terms = terms.each(|(term, weight)| (*term, weight * &minus));
                 self.known(&ScalarNode::Sum(constant * &minus, terms))
             }
             _ => self.known(&ScalarNode::Sum(integer(0), vec![(scalar, minus)])),

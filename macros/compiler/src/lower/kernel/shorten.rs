@@ -1,6 +1,6 @@
 //! Fewer operations for the same outputs, and when each of them is done.
 
-use clebsch_symbolic::{Rational, Table, integer};
+use clebsch_symbolic::{Elements, Rational, Table, integer};
 
 use super::{Builder, Id, Operation};
 use crate::lower::scalar::is_unit;
@@ -51,7 +51,7 @@ impl Builder<'_, '_> {
         };
         for &id in &used {
             let Operation::Sum(_, terms) = self.operations.value(id) else { continue };
-            let separated: Vec<_> = terms.iter().map(separate).collect();
+            let separated: Vec<_> = terms.each(separate);
             if separated != *terms {
                 sums.insert(id, separated);
             }

@@ -1,6 +1,6 @@
 //! Matrices of blocks, such as those of SE(n), entry by entry: what a person writes in place of views and embeddings.
 
-use clebsch_symbolic::{Expr, Operation, Rational, Shape, integer};
+use clebsch_symbolic::{Elements, Expr, Operation, Rational, Shape, integer};
 
 use super::{Matrices, entry, linear};
 use crate::lower::{Code, Input, MatrixOperation, Whole};
@@ -78,9 +78,7 @@ impl Matrices {
             let is_hat = |part| self.operation_of(part).is_some_and(|whole| whole.operation == MatrixOperation::Hat);
             listed.all(|listed| listed) && !parts.iter().all(|(_, part)| is_hat(part))
         };
-        let sum = |(i, j): (usize, usize)| {
-            total(parts.iter().map(|(weight, part)| (weight.clone(), self.entry(part, i, j))).collect())
-        };
+        let sum = |(i, j): (usize, usize)| total(parts.each(|(weight, part)| (weight.clone(), self.entry(part, i, j))));
         (self.joins_blocks && is_joined).then(|| shape.positions().map(sum).collect())
     }
 }

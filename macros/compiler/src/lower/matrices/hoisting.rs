@@ -1,6 +1,6 @@
 //! What of an iteration is computed once a solve, where whole matrices are kept.
 
-use clebsch_symbolic::{Role, Shape};
+use clebsch_symbolic::{Elements, Role, Shape};
 
 use crate::lower::{Code, Kernel};
 
@@ -32,7 +32,7 @@ pub(in crate::lower) fn hoisted(kernel: Kernel) -> (Kernel, Kernel) {
             prepare.locals.push(code.with_locals(&before));
         }
     }
-    prepare.outputs = terms.iter().map(|&index| (shape(index), vec![before(index)])).collect();
+    prepare.outputs = terms.each(|&index| (shape(index), vec![before(index)]));
     rest.outputs = kernel.outputs_by(|entry| entry.with_locals(&after));
     (prepare, rest)
 }

@@ -1,6 +1,6 @@
 //! A group by a basis of its Lie algebra: matrices of numbers, independent, with brackets in their span.
 
-use clebsch_symbolic::{Graph, Group, Rational, Shape, Sparse, reduce};
+use clebsch_symbolic::{Elements, Graph, Group, Rational, Shape, Sparse, indexed, reduce};
 use quote::ToTokens;
 use syn::Expr as Syntax;
 
@@ -22,7 +22,7 @@ pub(super) fn read(graph: &Graph, name: &str, elements: &[Syntax], place: Locati
     let shape = common_shape(name, &matrices, elements)?;
     check_size(name, shape.rows, place.start)?;
     independent(name, &matrices, elements)?;
-    let basis: Vec<Sparse> = matrices.iter().map(|(_, entries)| sparse(shape, entries)).collect();
+    let basis: Vec<Sparse> = matrices.each(|(_, entries)| sparse(shape, entries));
     closed(graph, name, shape, &basis, place)?;
     Ok(Group::declare(graph, name, shape, basis, None))
 }
@@ -64,8 +64,7 @@ fn common_shape(name: &str, matrices: &[Matrix], elements: &[Syntax]) -> Result<
 fn independent(name: &str, matrices: &[Matrix], elements: &[Syntax]) -> Result<(), Diagnostics> {
     // the columns are the matrices; one without a pivot is a combination of those before, with the entries above as coefficients
     let length = matrices[0].1.len();
-    let mut rows: Vec<Vec<Rational>> =
-        (0..length).map(|entry| matrices.iter().map(|(_, entries)| entries[entry].clone()).collect()).collect();
+    let mut rows: Vec<Vec<Rational>> = indexed(length, |entry| matrices.each(|(_, entries)| entries[entry].clone()));
     let pivots = reduce(&mut rows);
     let Some(k) = (0..matrices.len()).find(|k| !pivots.contains(k)) else { return Ok(()) };
     let terms = pivots.iter().zip(&rows).filter(|(pivot, _)| **pivot < k).map(|(pivot, row)| (*pivot, row[k].clone()));

@@ -1,7 +1,7 @@
 //! A group by an equation: the identity satisfies it, its Lie algebra is the kernel of the derivative there, and the equation holds
 //! along the group that this algebra generates.
 
-use clebsch_symbolic::{Expr, Graph, Group, Property, Rational, Role, Shape, Sparse, reduce};
+use clebsch_symbolic::{Elements, Expr, Graph, Group, Property, Rational, Role, Shape, Sparse, indexed, reduce};
 use quote::ToTokens;
 use syn::Expr as Syntax;
 
@@ -89,7 +89,7 @@ impl<'g> GroupEquation<'_, 'g> {
 
     /// The group, unless something is wrong with the equation.
     fn group(&self, sides: &[(Expr<'g>, Expr<'g>)]) -> Result<Group, Diagnostic> {
-        let expressions: Vec<Expr<'g>> = sides.iter().map(|(left, right)| *left - *right).collect();
+        let expressions: Vec<Expr<'g>> = sides.each(|(left, right)| *left - *right);
         let equation = self.joined(&expressions);
         self.is_rational(equation)?;
         self.holds_at_identity(sides)?;
@@ -147,7 +147,7 @@ impl<'g> GroupEquation<'_, 'g> {
         let by_rows = |columns: &Vec<Rational>| -> Vec<Rational> {
             shape.positions().map(|(i, j)| columns[j * shape.rows + i].clone()).collect()
         };
-        Ok(kernel.iter().map(|element| sparse(shape, &by_rows(element))).collect())
+        Ok(kernel.each(|element| sparse(shape, &by_rows(element))))
     }
 
     /// Brackets of the kernel stay in the kernel.
@@ -197,7 +197,7 @@ impl<'g> GroupEquation<'_, 'g> {
 /// and zero in the others.
 pub(super) fn kernel(rows: &[Vec<Rational>], length: usize) -> Vec<Vec<Rational>> {
     // a pivot is determined by the entries behind it, so entries are taken from the last to the first
-    let mut reversed: Vec<Vec<Rational>> = rows.iter().map(|row| row.iter().rev().cloned().collect()).collect();
+    let mut reversed: Vec<Vec<Rational>> = rows.each(|row| row.iter().rev().cloned().collect());
     let pivots = reduce(&mut reversed);
     let row_of = |entry: usize| pivots.iter().position(|&pivot| pivot == length - 1 - entry);
     let vector = |one: usize| {
@@ -206,7 +206,7 @@ pub(super) fn kernel(rows: &[Vec<Rational>], length: usize) -> Vec<Vec<Rational>
             None if entry == one => Rational::one(),
             None => Rational::zero(),
         };
-        (0..length).map(entry).collect()
+        indexed(length, entry)
     };
     (0..length).filter(|&entry| row_of(entry).is_none()).map(vector).collect()
 }

@@ -2,7 +2,7 @@
 //! derivative suggests.
 
 use clebsch_symbolic::identity::{self, Residue};
-use clebsch_symbolic::{Expr, Matrix, Number, Rational, Shape, Sparse, rational};
+use clebsch_symbolic::{Elements, Expr, Matrix, Number, Rational, Shape, Sparse, rational};
 
 use super::numbers::{Exact, Series};
 
@@ -26,7 +26,7 @@ pub(super) fn derivative<'g>(equation: Expr<'g>, symbol: Expr<'g>) -> Option<Vec
         values.into_iter().map(|value| value.0[1].rational()).collect()
     };
     let columns: Vec<Vec<Rational>> = (0..n * n).map(slopes).collect::<Option<_>>()?;
-    let row = |row: usize| columns.iter().map(|column| column[row].clone()).collect();
+    let row = |row: usize| columns.each(|column| column[row].clone());
     Some((0..equation.shape().len()).map(row).collect())
 }
 

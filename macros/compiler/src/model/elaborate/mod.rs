@@ -17,7 +17,7 @@ mod tables;
 #[cfg(test)]
 mod tests;
 
-use clebsch_symbolic::{Expr, Graph, Group, Shape, Table};
+use clebsch_symbolic::{Elements, Expr, Graph, Group, Shape, Table};
 use quote::ToTokens;
 use syn::Expr as Syntax;
 
@@ -241,7 +241,18 @@ impl<'e, 'c, 'g> Elaborator<'e, 'c, 'g> {
         growth: Growth,
         make: impl FnOnce() -> Expr<'g>,
     ) -> Option<Expr<'g>> {
-        let sizes: Vec<Size> = operands.iter().map(|&operand| self.size(operand)).collect();
+        let size = self.grown(at, operands, growth)?;
+        let expr = make();
+        // a number is as large as its digits, however it was made
+        if expr.as_number().is_none() {
+            self.sizes.insert(expr, size);
+        }
+        Some(expr)
+    }
+
+    /// The size of what is made of some operands, unless it is too large.
+    fn grown(&mut self, at: &dyn ToTokens, operands: &[Expr<'g>], growth: Growth) -> Option<Size> {
+        let sizes: Vec<Size> = operands.each(|&operand| self.size(operand));
         let nesting = sizes.iter().map(|size| size.nesting).max().unwrap_or(0);
         let weights = sizes.iter().map(|size| size.weight);
         let sum = weights.clone().fold(0, u64::saturating_add);
@@ -255,12 +266,7 @@ impl<'e, 'c, 'g> Elaborator<'e, 'c, 'g> {
             refuse!(self, at, "this expression grows too large";
                 note "written out, it has more terms, factors or digits than a formula should have");
         }
-        let expr = make();
-        // a number is as large as its digits, however it was made
-        if expr.as_number().is_none() {
-            self.sizes.insert(expr, size);
-        }
-        Some(expr)
+        Some(size)
     }
 }
 

@@ -1,6 +1,6 @@
 //! Powers: `0..N`, `(0..N).map(|i| …)`, sums over sites, `q[(i + 1) % N]`.
 
-use clebsch_symbolic::{Expr, Property, Role, Shape};
+use clebsch_symbolic::{Expr, IntoElements, Property, Role, Shape};
 use syn::{BinOp, Expr as Syntax, ExprBinary, ExprIndex, ExprMethodCall, ExprRange, RangeLimits};
 
 use super::super::power::{Linear, Range, SiteIndex, Term, index_name, is_inside};
@@ -15,7 +15,7 @@ const SUMS: usize = 4;
 
 /// All terms, times a factor.
 pub(super) fn scaled<'g>(terms: Vec<Term<'g>>, factor: Expr<'g>) -> Vec<Term<'g>> {
-    terms.into_iter().map(|term| Term { value: factor * term.value, ..term }).collect()
+    terms.into_each(|term| Term { value: factor * term.value, ..term })
 }
 
 impl<'g> Elaborator<'_, '_, 'g> {
