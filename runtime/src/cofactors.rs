@@ -89,12 +89,12 @@ impl<T: Scalar> Inverse<T> {
         let reciprocal = T::one() / determinant;
         let [la, lb, lc] = [norm(a), norm(b), norm(c)];
         let least = T::EPSILON * T::EPSILON * T::EPSILON * T::EPSILON;
+        let most = T::one() / least;
         // comparisons with NaN are false
-        let is_safe = |product: T| least.at_most(product) & (product * least).at_most(T::one());
+        let is_safe = |product: T| least.at_most(product) & product.at_most(most);
         let is_regular = (cancelled::<T>() * (la * (lb * lc))).at_most(determinant.abs());
-        // neither is below the normal numbers where four times the other does not overflow
-        let four = T::from_ratio(4, 1);
-        let is_normal = (four * determinant).finite() & (four * reciprocal).finite();
+        // Neither is below the normal numbers where four times the other does not overflow. Their sum is the larger one, where that is so large.
+        let is_normal = (T::from_ratio(4, 1) * (determinant + reciprocal)).finite();
         let known = is_regular & is_safe(la * lb) & is_safe(lb * lc) & is_safe(lc * la) & is_normal;
         Self { adjugate, reciprocal, known }
     }
