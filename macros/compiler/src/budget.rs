@@ -3,8 +3,8 @@
 use std::cell::Cell;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
-use clebsch_symbolic::Graph;
 use clebsch_symbolic::work::{self, Exhausted};
+use clebsch_symbolic::{Graph, IntoList};
 use proc_macro2::{Span, TokenStream, TokenTree};
 use syn::{Expr, Type};
 
@@ -108,7 +108,7 @@ fn smaller(declaration: &Declaration) -> Vec<&'static str> {
         (is_other_lagrangian, "write `discretization = exponential`, whose formulas are often much shorter"),
         (is_high, "write `order = 2`"),
     ];
-    rows.into_iter().filter_map(|(applies, text)| applies.then_some(text)).collect()
+    rows.into_iter().filter_map(|(applies, text)| applies.then_some(text)).into_list()
 }
 
 /// What is made, or the error that a panic of ours becomes: it is our fault, and the user's item is where it shows.

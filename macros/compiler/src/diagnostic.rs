@@ -1,5 +1,6 @@
 //! Errors that help: what is wrong, what to type instead, and why; collected, so that a stage reports all of its errors.
 
+use clebsch_symbolic::IntoList;
 use std::cell::RefCell;
 use std::fmt;
 
@@ -245,8 +246,8 @@ pub fn meant<'a>(name: &str, synonyms: &[(&str, &'a str)], all: impl IntoIterato
 
 /// The number of insertions, deletions, replacements and swaps of neighbours that turn one word into the other.
 fn edit_distance(left: &str, right: &str) -> usize {
-    let (left, right): (Vec<char>, Vec<char>) = (left.chars().take(64).collect(), right.chars().take(64).collect());
-    let mut rows = vec![(0..=right.len()).collect::<Vec<usize>>()];
+    let (left, right): (Vec<char>, Vec<char>) = (left.chars().take(64).into_list(), right.chars().take(64).into_list());
+    let mut rows = vec![(0..=right.len()).into_list()];
     for i in 1..=left.len() {
         let mut row = vec![i];
         for j in 1..=right.len() {

@@ -6,7 +6,6 @@
 mod tests;
 
 use crate::{model, parse};
-
 /// The page, with a declaration and the code that it expands to.
 pub fn reference(declaration: &str, expansion: &str) -> String {
     let keys = parse::keys_as_markdown(model::arguments_of, model::refused_with);

@@ -4,7 +4,7 @@ use std::rc::Rc;
 
 use crate::memory::Map;
 use crate::node::{ExprNode, Operation, Term};
-use crate::{Elements, Expr, Graph, Group, Rational, Shape, indexed, integer};
+use crate::{Elements, Expr, Graph, Group, IntoList, Rational, Shape, indexed, integer};
 
 /// The entries (row, column, value) of a matrix that are not zero.
 pub type Sparse = Vec<(usize, usize, Rational)>;
@@ -79,7 +79,7 @@ impl Basis {
         let square_of = |element: &Sparse| element.iter().map(|(_, _, value)| value * value).sum::<Rational>();
         let square = square_of(self.elements.first()?);
         // those of large bases have no entry in common
-        let mut places: Vec<(usize, usize)> = self.elements.iter().flatten().map(|(i, j, _)| (*i, *j)).collect();
+        let mut places: Vec<(usize, usize)> = self.elements.iter().flatten().map(|(i, j, _)| (*i, *j)).into_list();
         places.sort_unstable();
         let is_apart = places.windows(2).all(|pair| pair[0] != pair[1]);
         let are_orthogonal = || {
@@ -199,7 +199,7 @@ impl<'g> Expr<'g> {
         let one_at = |(i, j)| if i == j { Rational::one() } else { Rational::zero() };
         match &*self.node() {
             ExprNode::Literal(entries) => Some(entries.clone()),
-            _ => self.is_identity().then(|| self.shape().positions().map(one_at).collect()),
+            _ => self.is_identity().then(|| self.shape().positions().map(one_at).into_list()),
         }
     }
 }
@@ -218,6 +218,6 @@ impl Graph {
     }
 
     fn gram_matrix(&self, basis: &Basis) -> Expr<'_> {
-        self.literal(Shape::square(basis.elements.len()), basis.gram().into_iter().flatten().collect())
+        self.literal(Shape::square(basis.elements.len()), basis.gram().into_iter().flatten().into_list())
     }
 }

@@ -8,7 +8,7 @@ use std::ops::Range;
 
 use crate::memory::Images;
 use crate::node::{ExprNode, Id, Operation, Term};
-use crate::{Expr, Shape, integer};
+use crate::{Expr, IntoList, Shape, integer};
 
 impl<'g> Expr<'g> {
     /// The entry in row i and column j, counted from zero.
@@ -18,7 +18,7 @@ impl<'g> Expr<'g> {
 
     /// All entries, row by row.
     pub fn entries(self) -> Vec<Expr<'g>> {
-        self.shape().positions().map(|(i, j)| self.entry(i, j)).collect()
+        self.shape().positions().map(|(i, j)| self.entry(i, j)).into_list()
     }
 
     /// The block of the given shape whose first entry is (row, column).
@@ -38,8 +38,8 @@ impl<'g> Expr<'g> {
         let columns = self.shape().columns;
         let positions = || shape.positions().map(move |(i, j)| (row + i) * columns + column + j);
         match &*self.node() {
-            ExprNode::Literal(entries) => graph.literal(shape, positions().map(|k| entries[k].clone()).collect()),
-            ExprNode::Stack(entries) => graph.stack(shape, positions().map(|k| graph.expr(entries[k])).collect()),
+            ExprNode::Literal(entries) => graph.literal(shape, positions().map(|k| entries[k].clone()).into_list()),
+            ExprNode::Stack(entries) => graph.stack(shape, positions().map(|k| graph.expr(entries[k])).into_list()),
             ExprNode::Hadamard(a, b) => {
                 let [a, b] = [a, b].map(|factor| graph.expr(*factor).block(row, column, shape));
                 a.hadamard(b)
@@ -62,7 +62,7 @@ impl<'g> Expr<'g> {
             }
             ExprNode::Sum(terms) if terms.len() == 1 && terms[0].word.is_empty() => {
                 let one_at = |(i, j): (usize, usize)| integer((row + i == column + j) as i64);
-                graph.literal(shape, shape.positions().map(one_at).collect())
+                graph.literal(shape, shape.positions().map(one_at).into_list())
             }
             _ => self.atom_of(Operation::Block(row, column), shape),
         }

@@ -2,7 +2,7 @@
 
 use crate::blocks::common;
 use crate::node::{Analytic, ExprNode, Id, Operation, Term};
-use crate::{Expr, Graph, Group, Property, Rational, Shape};
+use crate::{Expr, Graph, Group, IntoList, Property, Rational, Shape};
 
 impl<'g> Expr<'g> {
     /// The operation on this expression as a node of its own.
@@ -41,8 +41,8 @@ impl<'g> Expr<'g> {
         let positions = || shape.positions().map(|(i, j)| j * shape.rows + i);
         match &*self.node() {
             ExprNode::Sum(_) => self.transpose(),
-            ExprNode::Literal(entries) => graph.literal(shape, positions().map(|k| entries[k].clone()).collect()),
-            ExprNode::Stack(entries) => graph.stack(shape, positions().map(|k| graph.expr(entries[k])).collect()),
+            ExprNode::Literal(entries) => graph.literal(shape, positions().map(|k| entries[k].clone()).into_list()),
+            ExprNode::Stack(entries) => graph.stack(shape, positions().map(|k| graph.expr(entries[k])).into_list()),
             ExprNode::Hadamard(a, b) => graph.expr(*a).transpose().hadamard(graph.expr(*b).transpose()),
             ExprNode::Symbol(symbol) if matches!(symbol.property, Property::Symmetric | Property::Diagonal) => self,
             ExprNode::Symbol(symbol) if symbol.property == Property::Skew => -self,
@@ -114,11 +114,11 @@ impl<'g> Expr<'g> {
     fn inverse_of_literal(self, entries: &[Rational]) -> Option<Expr<'g>> {
         let n = self.shape().rows;
         let unit = |i: usize, j: usize| if i == j { Rational::one() } else { Rational::zero() };
-        let row = |(i, row): (usize, &[Rational])| row.iter().cloned().chain((0..n).map(|j| unit(i, j))).collect();
-        let mut rows: Vec<Vec<Rational>> = entries.chunks(n).enumerate().map(row).collect();
+        let row = |(i, row): (usize, &[Rational])| row.iter().cloned().chain((0..n).map(|j| unit(i, j))).into_list();
+        let mut rows: Vec<Vec<Rational>> = entries.chunks(n).enumerate().map(row).into_list();
         crate::reduce(&mut rows).iter().copied().take(n).eq(0..n).then(|| {
             let entries = rows.into_iter().flat_map(|row| row.into_iter().skip(n));
-            self.graph.literal(self.shape(), entries.collect())
+            self.graph.literal(self.shape(), entries.into_list())
         })
     }
 

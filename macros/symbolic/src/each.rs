@@ -31,6 +31,22 @@ impl<A> IntoElements<A> for Vec<A> {
     }
 }
 
+/// An iterator that ends in a list.
+pub trait IntoList: Iterator {
+    /// Everything that is left of it, in order.
+    fn into_list(self) -> Vec<Self::Item>;
+}
+
+impl<I: Iterator> IntoList for I {
+    fn into_list(self) -> Vec<I::Item> {
+        let mut list = Vec::new();
+        for element in self {
+            list.push(element);
+        }
+        list
+    }
+}
+
 /// f(0), f(1), …, as many as there are said to be.
 pub fn indexed<B>(count: usize, mut f: impl FnMut(usize) -> B) -> Vec<B> {
     counted(count, &mut f)

@@ -1,7 +1,7 @@
 //! Evaluation of expressions over any field of numbers: the oracle of the tests, and the basis of identity testing.
 
 use crate::node::{Analytic, Exponent, ExprNode, Function, Id, Operation};
-use crate::{Elements, Expr, Graph, Rational, Shape, Sparse, Table, work};
+use crate::{Elements, Expr, Graph, IntoList, Rational, Shape, Sparse, Table, work};
 
 /// A field of numbers with elementary functions.
 pub trait Number: Copy + PartialEq {
@@ -123,7 +123,7 @@ impl<K: Number> Matrix<K> {
     /// The matrix whose entries a function gives.
     pub fn from_fn(shape: Shape, entry: impl FnMut((usize, usize)) -> K) -> Matrix<K> {
         work::spend(1 + shape.len() / 4);
-        Matrix::new(shape, shape.positions().map(entry).collect())
+        Matrix::new(shape, shape.positions().map(entry).into_list())
     }
 
     /// `scale` times the identity.
@@ -195,12 +195,12 @@ impl<K: Number> Matrix<K> {
         // (A I) becomes (I A⁻¹)
         let unit = |i: usize| (0..n).map(move |j| if i == j { one() } else { zero() });
         let rows = self.entries.chunks(n).enumerate().flat_map(|(i, row)| row.iter().copied().chain(unit(i)));
-        let mut both = Matrix::new(Shape::new(n, 2 * n), rows.collect());
+        let mut both = Matrix::new(Shape::new(n, 2 * n), rows.into_list());
         let (pivots, determinant) = both.reduce(n);
         if pivots.len() < n {
             return (Matrix::new(self.shape, vec![zero::<K>().reciprocal(); n * n]), zero());
         }
-        let entries = both.entries.chunks(2 * n).flat_map(|row| &row[n..]).copied().collect();
+        let entries = both.entries.chunks(2 * n).flat_map(|row| &row[n..]).copied().into_list();
         (Matrix::new(self.shape, entries), determinant)
     }
 

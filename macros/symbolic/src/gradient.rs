@@ -2,7 +2,7 @@
 
 use crate::memory::{self, Images, Map};
 use crate::node::{Analytic, Exponent, ExprNode, Function, Id, Operation, Term};
-use crate::{Elements, Expr, Graph, Rational, Shape, Table, indexed};
+use crate::{Elements, Expr, Graph, IntoList, Rational, Shape, Table, indexed};
 
 impl<'g> Expr<'g> {
     /// The gradient of a scalar with respect to a symbol: the matrix G of the symbol's shape with df = ⟨G, dx⟩ = tr(GᵀdX).
@@ -210,7 +210,7 @@ impl<'g> Expr<'g> {
         }
         let column = |j| self.differential(&[(vector, graph.unit(vector.shape(), j, 0))]);
         let columns: Vec<Expr<'g>> = indexed(shape.columns, column);
-        graph.stack(shape, shape.positions().map(|(i, j)| columns[j].entry(i, 0)).collect())
+        graph.stack(shape, shape.positions().map(|(i, j)| columns[j].entry(i, 0)).into_list())
     }
 
     /// s, where the expression is the multiple s·v of a vector v that s does not depend on, as it is written.

@@ -11,7 +11,7 @@ use crate::evaluate::{Matrix, Number, Values, negative, one, zero};
 use crate::group::sample;
 use crate::node::{Analytic, Function, Term};
 use crate::table::hash_of;
-use crate::{Expr, Group, Property, Rational, Shape, Table};
+use crate::{Expr, Group, IntoList, Property, Rational, Shape, Table};
 
 pub(crate) const PRIME: u64 = (1 << 61) - 1;
 
@@ -198,7 +198,7 @@ fn stereographic(shape: Shape, random: impl Fn(usize, usize) -> Residue) -> Matr
     let scale = square.add(one()).reciprocal();
     let double = |k: usize| random(k, 0).add(random(k, 0));
     let numerators = (0..last).map(double).chain([square.add(negative(one()))]);
-    Matrix::new(shape, numerators.map(|numerator| numerator.multiply(scale)).collect())
+    Matrix::new(shape, numerators.map(|numerator| numerator.multiply(scale)).into_list())
 }
 
 /// Whether the expressions are equal, pair by pair, for all values of their symbols that the properties allow.
@@ -267,7 +267,7 @@ pub fn null_space(matrix: Expr<'_>) -> Vec<Vec<Rational>> {
         };
         (0..columns).map(entry).collect()
     };
-    free.filter_map(vector).collect()
+    free.filter_map(vector).into_list()
 }
 
 impl Residue {

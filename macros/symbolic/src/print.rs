@@ -3,7 +3,7 @@
 use std::fmt;
 
 use crate::node::{Analytic, Exponent, ExprNode, Function, Id, Operation, Term};
-use crate::{Elements, Expr, Graph, Rational, Shape, work};
+use crate::{Elements, Expr, Graph, IntoList, Rational, Shape, work};
 
 /// A notation of formulas.
 #[derive(Copy, Clone, PartialEq, Eq, Debug)]
@@ -144,7 +144,7 @@ impl Printer<'_> {
 
     fn rows(&self, shape: Shape, entries: Vec<String>) -> String {
         let rows: Vec<String> =
-            entries.chunks(shape.columns).map(|row| row.join(self.notation.either(", ", " & "))).collect();
+            entries.chunks(shape.columns).map(|row| row.join(self.notation.either(", ", " & "))).into_list();
         let text = rows.join(self.notation.either("; ", " \\\\ "));
         self.enclosed(&text, ["[", "]"], ["\\begin{pmatrix}", "\\end{pmatrix}"])
     }
@@ -166,7 +166,7 @@ impl Printer<'_> {
             return ("0".into(), Binding::Atom);
         }
         let constant = |term: &&Term| term.word.is_empty() && term.scalars.is_empty();
-        let mut ordered: Vec<&Term> = terms.iter().collect();
+        let mut ordered: Vec<&Term> = terms.iter().into_list();
         ordered.sort_by_key(|term| (term.coefficient.is_negative(), constant(term)));
         let signed = ordered.into_iter().map(|term| (term.coefficient.is_negative(), self.term(term, shape)));
         // names may hold signs too

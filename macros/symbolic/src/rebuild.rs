@@ -2,7 +2,7 @@
 
 use crate::memory::{self, Images, Map};
 use crate::node::{Exponent, ExprNode, Id, Operation, Term};
-use crate::{Elements, Expr, Graph, Rational, Shape, work};
+use crate::{Elements, Expr, Graph, IntoList, Rational, Shape, work};
 
 impl<'g> Expr<'g> {
     /// All nodes that this expression is made of, children before parents, itself last.
@@ -48,7 +48,7 @@ impl<'g> Expr<'g> {
     /// The symbols that occur, in the order of their creation.
     pub fn symbols(self) -> Vec<Expr<'g>> {
         let reachable = self.reachable().into_iter().map(|id| self.graph.expr(id));
-        reachable.filter(|expr| matches!(&*expr.node(), ExprNode::Symbol(_))).collect()
+        reachable.filter(|expr| matches!(&*expr.node(), ExprNode::Symbol(_))).into_list()
     }
 
     /// Whether the symbol occurs.

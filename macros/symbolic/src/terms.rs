@@ -5,7 +5,7 @@ use std::cmp::Ordering;
 use crate::blocks::common;
 use crate::node::{Exponent, ExprNode, Id, Operation, Term};
 use crate::rational::product;
-use crate::{Expr, Graph, Group, Property, Rational, Shape, integer, work};
+use crate::{Expr, Graph, Group, IntoList, Property, Rational, Shape, integer, work};
 
 impl Term {
     pub(crate) fn number(coefficient: Rational) -> Term {
@@ -262,7 +262,7 @@ impl Graph {
                 let inner = a.len() / shape.rows;
                 let product = |i: usize, j: usize, k: usize| &a[i * inner + k] * &b[k * shape.columns + j];
                 let entry = |(i, j)| (0..inner).map(|k| product(i, j, k)).sum::<Rational>();
-                Some(self.literal(shape, shape.positions().map(entry).collect()))
+                Some(self.literal(shape, shape.positions().map(entry).into_list()))
             }
             (ExprNode::Of(first, a), ExprNode::Of(second, b)) => {
                 let ((a, row, column), (b, other_row, other_column)) =

@@ -1,7 +1,7 @@
 //! Price, bounds and the price of the end, each with its derivatives. The kernels of a choice of inputs compute matrices over the motions
 //! of a configuration and the entries of the input.
 
-use clebsch_symbolic::{Expr, Shape};
+use clebsch_symbolic::{Expr, IntoList, Shape};
 
 use super::matrices::Inserted;
 use super::{Bend, Id, InputStep, MatrixForm, MechanicsFormulas, SteeredFormulas, SystemFormulas};
@@ -70,9 +70,9 @@ impl<'g> Jet<'g> {
         };
         let curvature = (0..directions.len()).map(|i| {
             let entry = |j: usize| if i == j { second(i, i) } else { (second(i, j) + second(j, i)) / 2 };
-            (0..=i).map(entry).collect()
+            (0..=i).map(entry).into_list()
         });
-        Jet { value, curvature: curvature.collect(), slope: slope.collect() }
+        Jet { value, curvature: curvature.into_list(), slope: slope.into_list() }
     }
 }
 

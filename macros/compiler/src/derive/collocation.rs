@@ -1,6 +1,6 @@
 //! Steps of order 16: Hamilton's equations on T*Q in the form of the Clebsch problem, to be collocated at the nodes of Gauss and Legendre.
 
-use clebsch_symbolic::{Elements, Expr, IntoElements, Property, Role, Shape, identity};
+use clebsch_symbolic::{Elements, Expr, IntoElements, IntoList, Property, Role, Shape, identity};
 
 use super::Energy;
 use super::equation::Sources;
@@ -80,10 +80,10 @@ pub(super) fn collocation<'g>(
 fn velocities<'g>(sources: &Sources<'_, 'g>, momentum: &[Expr<'g>], slope: Expr<'g>) -> Vec<(Expr<'g>, Expr<'g>)> {
     let (graph, inertia) = (sources.model.graph, sources.inertia);
     let free = entries(momentum).into_iter().enumerate().map(|(i, entry)| entry - slope.entry(i, 0));
-    let free: Vec<_> = free.collect();
+    let free: Vec<_> = free.into_list();
     let mut entries = by_inertia(inertia, || inertia_inverse(graph, inertia.shape()), &free).into_iter();
     let parts = sources.symbols.algebra.iter();
-    parts.map(|xi| (*xi, graph.stack(xi.shape(), entries.by_ref().take(xi.shape().rows).collect()))).collect()
+    parts.map(|xi| (*xi, graph.stack(xi.shape(), entries.by_ref().take(xi.shape().rows).into_list()))).into_list()
 }
 
 /// p = Σ λ_k (μ_k)_Q(q), the motion of q by the components of μ for a velocity: J(q, p) = μ where the columns of the generator of each factor are
@@ -101,7 +101,7 @@ fn lift<'g>(sources: &Sources<'_, 'g>) -> Result<Vec<Expr<'g>>, Diagnostics> {
     let scales: Option<Vec<_>> = (0..momentum_map.len()).map(scale).collect();
     let lifted = scales.and_then(|scales| {
         let scaled = |parts: &[Expr<'g>]| -> Vec<Expr<'g>> {
-            scales.iter().zip(parts).map(|(scale, part)| *scale * *part).collect()
+            scales.iter().zip(parts).map(|(scale, part)| *scale * *part).into_list()
         };
         identity::equal(&returned(&scaled(momentum_map)), momentum_map)
             .then(|| sources.motion_by(&scaled(&sources.symbols.momenta)))
@@ -133,7 +133,7 @@ fn check<'g>(sources: &Sources<'_, 'g>, energy: &Energy<'g>, is_free: bool) -> R
 /// J is quadratic in (q, p), and kept, where ξ_Q(q) is linear in q or affine.
 fn check_linear<'g>(sources: &Sources<'_, 'g>, general: &[(Expr<'g>, Expr<'g>)]) -> Result<(), Diagnostics> {
     let leaves = general.iter().zip(&sources.symbols.covectors);
-    let directions: Vec<_> = leaves.map(|((_, q), direction)| (*q, *direction)).collect();
+    let directions: Vec<_> = leaves.map(|((_, q), direction)| (*q, *direction)).into_list();
     let slope = |velocity: &Expr<'g>| velocity.substitute(general).differential(&directions).expand();
     let bends = |velocity: &Expr<'g>| general.iter().any(|(_, q)| slope(velocity).depends_on(*q));
     if !sources.generator.iter().any(bends) {

@@ -4,7 +4,7 @@
 //! exp η′ = (F⁻¹ exp(η) F)(F⁻¹ F(w)) for a right action and (F(w) F⁻¹)(F exp(η) F⁻¹) for a left one, w = (η, u): to first order
 //! η′ = Ad η + b(w), and to second order ½ b″ + ½ [Ad η, b] or ½ [b, Ad η] more (Baker, Campbell, Hausdorff).
 
-use clebsch_symbolic::{Block, Chart, Elements, Expr, Property, Role, Shape, indexed};
+use clebsch_symbolic::{Block, Chart, Elements, Expr, IntoList, Property, Role, Shape, indexed};
 
 use super::SystemFormulas;
 use super::choice::{Direction, Endpoint, Jet, Steering};
@@ -69,7 +69,7 @@ fn element<'g>(model: &Steered<'g>) -> Vec<Expr<'g>> {
         Motion::Controls { velocity, discretization } => (velocity, *discretization),
         Motion::Dynamics(next) => {
             let leaves = model.configurations.iter().zip(next);
-            return leaves.map(|(leaf, next)| *next - leaf.symbol).collect();
+            return leaves.map(|(leaf, next)| *next - leaf.symbol).into_list();
         }
     };
     let increment = |(factor, xi): (&Factor<'g>, &Expr<'g>)| {
@@ -86,7 +86,7 @@ fn element<'g>(model: &Steered<'g>) -> Vec<Expr<'g>> {
         let coordinates: Vec<_> = model.graph.blocks(factor.group).each(coordinates);
         chart.increment(factor.group, &coordinates)
     };
-    model.factors.iter().zip(velocity).map(increment).collect()
+    model.factors.iter().zip(velocity).map(increment).into_list()
 }
 
 /// The coordinates of the logarithmic derivative b along a direction: of F⁻¹δF for a right action, of δF F⁻¹ for a left one.
@@ -111,13 +111,13 @@ pub(super) fn step<'g>(model: &Steered<'g>, formulas: &SystemFormulas<'g>) -> In
         let changes = directions.each(|direction| increment[k].differential(direction));
         Factored { factor: factor.clone(), costate: formulas.symbols.momenta[k], moved, changes }
     };
-    let parts: Vec<Factored<'g>> = model.factors.iter().enumerate().map(factored).collect();
+    let parts: Vec<Factored<'g>> = model.factors.iter().enumerate().map(factored).into_list();
     let column = |i: usize| {
         let of_factor = parts.iter().map(|part| {
             let change = logarithmic(&part.factor, part.changes[i]);
             if i < dimension { part.moved[i] + change } else { change }
         });
-        graph.below(&of_factor.collect::<Vec<_>>())
+        graph.below(&of_factor.into_list())
     };
     let second =
         |i: usize, j: usize| graph.total(Shape::scalar(), parts.iter().map(|part| part.curvature(&directions, i, j)));
@@ -130,8 +130,8 @@ pub(super) fn step<'g>(model: &Steered<'g>, formulas: &SystemFormulas<'g>) -> In
     });
     InputStep {
         by_place: indexed(dimension, column),
-        by_input: (dimension..directions.len()).map(column).collect(),
-        curvature: indexed(directions.len(), |i| (0..=i).map(|j| second(i, j)).collect()),
+        by_input: (dimension..directions.len()).map(column).into_list(),
+        curvature: indexed(directions.len(), |i| (0..=i).map(|j| second(i, j)).into_list()),
         by_time,
         increment,
     }

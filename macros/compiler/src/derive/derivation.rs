@@ -4,7 +4,7 @@ mod conserved;
 mod equations;
 mod step;
 
-use clebsch_symbolic::{Elements, joined};
+use clebsch_symbolic::{Elements, IntoList, joined};
 
 use super::symbols::subscript;
 use super::{MechanicsFormulas, SteeredFormulas, Structure};
@@ -158,7 +158,7 @@ fn frames(model: &System<'_>) -> String {
 fn energy(formulas: &MechanicsFormulas<'_>, lowered: &Lowered) -> String {
     let velocities = formulas.symbols.algebra.iter();
     let names: Vec<String> =
-        velocities.flat_map(|xi| (1..=xi.shape().rows).map(move |i| format!("{xi}{}", subscript(i)))).collect();
+        velocities.flat_map(|xi| (1..=xi.shape().rows).map(move |i| format!("{xi}{}", subscript(i)))).into_list();
     let term = |(i, j, text): &(usize, usize, String)| {
         let square = if i == j { format!("{}²", names[*i]) } else { format!("{} {}", names[*i], names[*j]) };
         let size = text.strip_prefix('-').filter(|size| is_one_term(size));

@@ -1,7 +1,7 @@
 //! The discrete Lagrangian ℓd(t, h, q, F) = K(t, h, q, F) + U₀(t, q) + U₁(t + h, Φ_F q): separated, tested for time symmetry, and
 //! composed with its adjoint where that fails.
 
-use clebsch_symbolic::{Elements, Expr, identity};
+use clebsch_symbolic::{Elements, Expr, IntoList, identity};
 
 use super::symbols::{identities, logarithm, moved, moved_on};
 use super::{exact, trivialisation, velocity};
@@ -93,12 +93,12 @@ impl<'g> DiscreteLagrangian<'g> {
         let adjoint = self.adjoint(model);
         let leaves = || model.configurations.iter().map(|leaf| leaf.symbol);
         let potentials = |lagrangian: &DiscreteLagrangian<'g>| -> Vec<Expr<'g>> {
-            leaves().flat_map(|q| [lagrangian.start.gradient(q), lagrangian.end.gradient(q)]).collect()
+            leaves().flat_map(|q| [lagrangian.start.gradient(q), lagrangian.end.gradient(q)]).into_list()
         };
         let variations = |kinetic: Expr<'g>| -> Vec<Expr<'g>> {
             let (before, _) = trivialisation::of_all(model, kinetic);
             let factors = trivialisation::components(model, &before).into_iter();
-            factors.chain(leaves().map(|q| kinetic.gradient(q))).collect()
+            factors.chain(leaves().map(|q| kinetic.gradient(q))).into_list()
         };
         let kinetic = identity::equal(&[self.kinetic], &[adjoint.kinetic])
             || identity::equal(&variations(self.kinetic), &variations(adjoint.kinetic));

@@ -1,6 +1,6 @@
 //! The kinetic energy ½ ξ·Σξ, the Hessian of the cost at the identity, with the checks that it exists and is regular.
 
-use clebsch_symbolic::{Elements, Expr, Shape, identity, integer};
+use clebsch_symbolic::{Elements, Expr, IntoList, Shape, identity, integer};
 
 use super::symbols::{at_zero, identities};
 use super::{DiscreteLagrangian, Symbols, SystemFormulas, naming};
@@ -24,7 +24,7 @@ pub(super) fn kinetic<'g>(
     cost: Expr<'g>,
 ) -> Result<Energy<'g>, Diagnostics> {
     if let Kinetic::Lagrangian { energy, velocities, .. } = &model.kinetic {
-        let replaced: Vec<_> = velocities.iter().copied().zip(system.symbols.algebra.iter().copied()).collect();
+        let replaced: Vec<_> = velocities.iter().copied().zip(system.symbols.algebra.iter().copied()).into_list();
         return declared(system, energy.substitute(&replaced));
     }
     let derivatives = along_exponential(system, cost);
@@ -42,7 +42,7 @@ fn general<'g>(system: &SystemFormulas<'g>, cost: Expr<'g>) -> Result<Expr<'g>, 
     let along = |(factor, xi): (&Factor<'g>, &Expr<'g>)| {
         (factor.symbol, factor.group.identity(model.graph) + h * factor.group.wedge(*xi))
     };
-    let elements: Vec<_> = model.factors.iter().zip(&system.symbols.algebra).map(along).collect();
+    let elements: Vec<_> = model.factors.iter().zip(&system.symbols.algebra).map(along).into_list();
     let action = cost.substitute(&elements) - cost.substitute(&identities(model));
     if let Some(limit) = limit(action.expand_all() / h, h) {
         return Ok(limit);
@@ -88,7 +88,7 @@ fn along_exponential<'g>(system: &SystemFormulas<'g>, cost: Expr<'g>) -> [Expr<'
     let along = |(factor, xi): (&Factor<'g>, &Expr<'g>)| {
         (factor.symbol, factor.group.translate_left(factor.symbol, factor.group.wedge(*xi)))
     };
-    let directions: Vec<_> = system.model.factors.iter().zip(&system.symbols.algebra).map(along).collect();
+    let directions: Vec<_> = system.model.factors.iter().zip(&system.symbols.algebra).map(along).into_list();
     let at_identity = identities(&system.model);
     let mut derivative = cost;
     std::array::from_fn(|_| {
@@ -189,7 +189,7 @@ fn check_rank<'g>(system: &SystemFormulas<'g>, energy: Expr<'g>) -> Result<(), D
         }
     }
     let is_lost = |j: &usize| rank > 0 && identity::vanishes(inertia.block(0, *j, shape));
-    let directions: Vec<_> = (0..dimension).filter(is_lost).map(|j| naming::basis_direction(model, j)).collect();
+    let directions: Vec<_> = (0..dimension).filter(is_lost).map(|j| naming::basis_direction(model, j)).into_list();
     let why = format!("has rank {rank} of {dimension}, so the momentum cannot be inverted for {name}");
     if directions.is_empty() {
         bail!(place, "the cost does not fix the group element";

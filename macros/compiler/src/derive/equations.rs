@@ -1,6 +1,6 @@
 //! The implicit equation in the chart: both trivialisations of ∂_F ℓd, denominators cleared, coupled blocks together.
 
-use clebsch_symbolic::{Chart, Elements, Expr, Shape, identity, indexed};
+use clebsch_symbolic::{Chart, Elements, Expr, IntoList, Shape, identity, indexed};
 
 use super::clearing;
 use super::closed_form::{closed_form, is_solved_by_predictor};
@@ -35,7 +35,7 @@ pub(super) fn equations<'g>(sources: &Sources<'_, 'g>, momentum: &Momentum<'g>) 
         .into_iter()
         .map(|group| equation(sources, momentum, &residuals, group))
         .flat_map(|equation| structure::specialised(sources, equation))
-        .collect()
+        .into_list()
 }
 
 /// The residual of one block.
@@ -96,7 +96,7 @@ fn residual<'g>(sources: &Sources<'_, 'g>, momentum: &Momentum<'g>, k: usize) ->
     // F = I + D in a chart with roots: what cancels in F − I does so before D(x) is put in
     let is_late = |j: &usize| is_kept(symbols.charts[*j], coupling.is_some());
     let late = (0..model.factors.len()).filter(is_late).map(|j| (symbols.increments[j], sources.chart_increment(j)));
-    let late: Vec<(Expr<'g>, Expr<'g>)> = late.collect();
+    let late: Vec<(Expr<'g>, Expr<'g>)> = late.into_list();
     let by_increment = |j: usize| model.factors[j].group.identity(model.graph) + symbols.increments[j];
     let element = |j: usize| if is_late(&j) { by_increment(j) } else { sources.chart_element(j) };
     let mut elements: Vec<_> = indexed(model.factors.len(), |j| (model.factors[j].symbol, element(j)));
@@ -145,7 +145,7 @@ fn equation<'g>(
     {
         return exact::equation(sources, only);
     }
-    let components: Vec<usize> = blocks.iter().flat_map(|&i| symbols.blocks[i].components()).collect();
+    let components: Vec<usize> = blocks.iter().flat_map(|&i| symbols.blocks[i].components()).into_list();
     let rows: Vec<_> = blocks.each(|&i| residuals[i].rows);
     let residual = sources.model.graph.below(&rows);
     let cleared = blocks.iter().all(|&i| residuals[i].cleared);

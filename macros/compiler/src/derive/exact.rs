@@ -1,6 +1,6 @@
 //! The free motion of rigid bodies and of translations, which needs no equation to be solved by iteration.
 
-use clebsch_symbolic::{Expr, Graph, Group, Property, Role, Shape, indexed};
+use clebsch_symbolic::{Expr, Graph, Group, IntoList, Property, Role, Shape, indexed};
 
 use super::equation::{MomentumEquation, Solution, Sources, is_diagonal};
 use super::velocity;
@@ -86,14 +86,14 @@ pub(super) fn equation<'g>(sources: &Sources<'_, 'g>, i: usize) -> MomentumEquat
         let d = letter("d", Shape::square(3), Property::Symmetric);
         d * block.coordinates - Group::SpecialOrthogonal(3).wedge(m) * block.coordinates - m
     };
-    let equation = MomentumEquation::new(sources, block.components().collect(), residual, true);
+    let equation = MomentumEquation::new(sources, block.components().into_list(), residual, true);
     MomentumEquation { solution: Solution::FreeRotation, ..equation }
 }
 
 /// Σ⁻¹μ, by divisions where Σ is diagonal, else by `inverse`, its inverse.
 pub(super) fn by_inertia<'g>(inertia: Expr<'g>, inverse: impl FnOnce() -> Expr<'g>, mu: &[Expr<'g>]) -> Vec<Expr<'g>> {
     if is_diagonal(inertia) {
-        return mu.iter().enumerate().map(|(i, mu)| *mu / inertia.entry(i, i).expand()).collect();
+        return mu.iter().enumerate().map(|(i, mu)| *mu / inertia.entry(i, i).expand()).into_list();
     }
     let inverse = inverse();
     let row = |i: usize| {

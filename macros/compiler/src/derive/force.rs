@@ -3,7 +3,7 @@
 //! r(F) = N + h/2 f(t, q, ξ) and N⁺ = r⁺(F) + h/2 f(t + h, q⁺, ξ), with the velocity ξ = ξ(F)/h of the step at both ends. The part of f at
 //! ξ = 0 is a kick; the rest joins the momentum equation as the coupling of a cost does.
 
-use clebsch_symbolic::{Elements, Expr, identity};
+use clebsch_symbolic::{Elements, Expr, IntoList, identity};
 
 use super::symbols::at_zero;
 use super::{SystemFormulas, velocity};
@@ -30,7 +30,7 @@ pub(super) fn covector<'g>(model: &Mechanics<'g>, system: &SystemFormulas<'g>) -
 /// The sum of two impulses.
 pub(super) fn total<'g>(one: Option<Vec<Expr<'g>>>, other: Option<Vec<Expr<'g>>>) -> Option<Vec<Expr<'g>>> {
     match (one, other) {
-        (Some(one), Some(other)) => Some(one.into_iter().zip(other).map(|(a, b)| a + b).collect()),
+        (Some(one), Some(other)) => Some(one.into_iter().zip(other).map(|(a, b)| a + b).into_list()),
         (one, other) => one.or(other),
     }
 }
@@ -74,5 +74,5 @@ fn moving<'g>(model: &Mechanics<'g>, part: Expr<'g>) -> Vec<(Expr<'g>, Expr<'g>)
         _ => Discretization::Exponential,
     };
     let velocity = |(k, xi): (usize, &Expr<'g>)| (*xi, velocity::of_element(model, k, part, discretization));
-    velocities(model).iter().enumerate().map(velocity).collect()
+    velocities(model).iter().enumerate().map(velocity).into_list()
 }

@@ -3,7 +3,7 @@
 use std::cell::OnceCell;
 use std::fmt;
 
-use clebsch_symbolic::{Elements, Expr, Notation, Shape};
+use clebsch_symbolic::{Elements, Expr, IntoList, Notation, Shape};
 
 use super::{Entry, Id, Reference, latex};
 
@@ -115,8 +115,8 @@ impl<'g> Formula<'g> {
         let write = |value: Expr<'g>| without_embeddings(value).written(notation);
         let values = self.expressions().iter().copied();
         let mut written: Vec<String> = match &self.wording {
-            Wording::AsIs => values.map(write).collect(),
-            Wording::Shorter => values.map(|value| write(shorter(value))).collect(),
+            Wording::AsIs => values.map(write).into_list(),
+            Wording::Shorter => values.map(|value| write(shorter(value))).into_list(),
             Wording::Words(unicode, latex) => vec![notation.either(unicode, latex).clone()],
             Wording::AndKick(place, kicks) => {
                 let with_kick = |(value, kick): (Expr<'g>, &Expr<'g>)| {
@@ -124,7 +124,7 @@ impl<'g> Formula<'g> {
                     let latex = format!("{value} + \\left[{kick}\\right]_{{{}}}", place.replace('⁺', "^+"));
                     notation.either(format!("{value} + [{kick}] at {place}"), latex)
                 };
-                values.zip(kicks).map(with_kick).collect()
+                values.zip(kicks).map(with_kick).into_list()
             }
         };
         for (k, mu, f) in &self.free {

@@ -3,7 +3,7 @@
 use std::fmt;
 use std::ops::Deref;
 
-use clebsch_symbolic::{Chart, Expr, Group};
+use clebsch_symbolic::{Chart, Expr, Group, IntoList};
 
 use super::energy::is_multiple_of_identity;
 use super::{
@@ -135,7 +135,7 @@ impl MechanicsFormulas<'_> {
     /// The factors whose chart coordinates x/w are given by x and w, so that F − I = 2 (w x^ + (x^)²)/(w² + |x|²) holds the only division.
     pub fn weighted(&self) -> Vec<usize> {
         let rotates = |k: &usize| self.model.factors[*k].group == Group::SpecialOrthogonal(3);
-        (0..self.model.factors.len()).filter(|k| rotates(k) && exact::is_free_rotation(&self.model, *k)).collect()
+        (0..self.model.factors.len()).filter(|k| rotates(k) && exact::is_free_rotation(&self.model, *k)).into_list()
     }
 
     /// Whether the step is found as F − I and the next momentum themselves, not by chart coordinates.

@@ -1,6 +1,6 @@
 //! Matrices of derivatives at F = I + D: those of the kernels of an edge, of prices and of bounds.
 
-use clebsch_symbolic::{Elements, Expr, Shape};
+use clebsch_symbolic::{Elements, Expr, IntoList, Shape};
 
 use super::moves::{inserted, inverse_by};
 use super::{EdgeDerivatives, Id, MechanicsFormulas, SystemFormulas};
@@ -20,7 +20,7 @@ pub enum MatrixForm<'g> {
 impl<'g> MatrixForm<'g> {
     /// A matrix whose columns are one vector each.
     pub fn of_columns(columns: impl IntoIterator<Item = Expr<'g>>) -> MatrixForm<'g> {
-        MatrixForm::Columns(columns.into_iter().map(|column| vec![column]).collect())
+        MatrixForm::Columns(columns.into_iter().map(|column| vec![column]).into_list())
     }
 
     /// One expression for each matrix, where they are such.
@@ -59,7 +59,7 @@ impl<'g> Inserted<'g> {
     /// A matrix of scalars.
     pub(super) fn entries(&self, shape: Shape, entry: impl Fn(usize, usize) -> Expr<'g>) -> MatrixForm<'g> {
         let entries = shape.positions().map(|(i, j)| entry(i, j).substitute(&self.elements));
-        MatrixForm::Entries(shape, entries.collect())
+        MatrixForm::Entries(shape, entries.into_list())
     }
 }
 

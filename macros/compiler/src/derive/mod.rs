@@ -40,6 +40,7 @@ mod trivialisation;
 mod variation;
 mod velocity;
 
+use clebsch_symbolic::IntoList;
 use std::rc::Rc;
 
 use crate::diagnostic::{Diagnostics, bail};
@@ -110,7 +111,7 @@ fn mechanics(model: Mechanics<'_>) -> Result<MechanicsFormulas<'_>, Diagnostics>
         let force = if index < stepped { forces(divisor) } else { None };
         Substep::new(sources(divisor), &variations, lagrangian, begins, force)
     };
-    let mut substeps: Vec<Substep<'_>> = edges.into_iter().enumerate().map(substep).collect();
+    let mut substeps: Vec<Substep<'_>> = edges.into_iter().enumerate().map(substep).into_list();
     let legendre_kick = system.impulse(lagrangian.end);
     let (legendre, legendre_next) = substep::legendre(&model, &system, &lagrangian);
     let is_first = model.order == Order::First;

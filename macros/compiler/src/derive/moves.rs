@@ -1,6 +1,6 @@
 //! What a move runs: elements as increments D = F − I and in the chart, so that what is near the identity is written without cancellation.
 
-use clebsch_symbolic::{Chart, Elements, Expr, Group, IntoElements, Property, Role, Shape, identity};
+use clebsch_symbolic::{Chart, Elements, Expr, Group, IntoElements, IntoList, Property, Role, Shape, identity};
 
 use super::{MechanicsFormulas, Substep, SystemFormulas, cayley};
 use crate::model::{Factor, Isotropy};
@@ -96,7 +96,7 @@ impl<'g> MechanicsFormulas<'g> {
             let hat = factor.group.wedge(x);
             2 * (w * hat + hat * hat) / (w * w + x.dot(x))
         };
-        self.model.factors.iter().enumerate().map(increment).collect()
+        self.model.factors.iter().enumerate().map(increment).into_list()
     }
 
     /// q⁺ = Φ_F(q) with F = I + D: for linear actions q + D q, without cancellation. Where sums keep their rests, what is added to q.

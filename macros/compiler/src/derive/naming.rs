@@ -1,6 +1,6 @@
 //! Directions of Lie algebras in words.
 
-use clebsch_symbolic::{Group, Rational, integer, joined};
+use clebsch_symbolic::{Group, IntoList, Rational, integer, joined};
 
 use crate::model::System;
 
@@ -84,7 +84,7 @@ fn entries(model: &System<'_>, group: Group, weights: &[Rational]) -> Vec<(usize
         element.iter().for_each(|(i, j, value)| sum[i * shape.columns + j] += weight * value);
     }
     let entries = shape.positions().zip(sum).filter(|(_, value)| !value.is_zero());
-    entries.map(|((i, j), value)| (i, j, value)).collect()
+    entries.map(|((i, j), value)| (i, j, value)).into_list()
 }
 
 fn signed(parts: impl Iterator<Item = (Rational, String)>) -> String {

@@ -1,6 +1,6 @@
 //! What ties the sites of a power to each other: the gradient of each term, differentiated once for all indices.
 
-use clebsch_symbolic::{Elements, Expr, Role};
+use clebsch_symbolic::{Elements, Expr, IntoList, Role};
 
 use crate::model::{Configuration, Linear, Mechanics, Power, SiteIndex, Term};
 
@@ -61,7 +61,7 @@ pub fn stencil<'g>(model: &Mechanics<'g>, links: &[SiteTerm<'g>]) -> Option<Sten
     let mut stencil = Stencil { places: Vec::new(), gradient, others: Vec::new() };
     for (term, link) in links.iter().enumerate() {
         for (number, (home, (_, slopes))) in link.homes(power)?.iter().zip(&link.gradient).enumerate() {
-            let symbols: Vec<Expr<'g>> = slopes.iter().flat_map(|slope| slope.symbols()).collect();
+            let symbols: Vec<Expr<'g>> = slopes.iter().flat_map(|slope| slope.symbols()).into_list();
             let moved =
                 home.index.filter(|_| home.is_everywhere && !symbols.iter().any(|symbol| is_of_term(power, *symbol)));
             let Some(own) = moved else {
@@ -71,7 +71,7 @@ pub fn stencil<'g>(model: &Mechanics<'g>, links: &[SiteTerm<'g>]) -> Option<Sten
             let moved: Vec<(Expr<'g>, Expr<'g>)> = symbols
                 .iter()
                 .filter_map(|symbol| Some((*symbol, stencil.moved(model, *symbol, (own, home.wraps))?)))
-                .collect();
+                .into_list();
             for (sum, slope) in stencil.gradient.iter_mut().zip(slopes) {
                 *sum = *sum + slope.substitute(&moved);
             }
@@ -118,7 +118,7 @@ pub(super) fn links<'g>(model: &Mechanics<'g>) -> Vec<SiteTerm<'g>> {
         };
         let leaves = 0..model.configurations.len();
         let read = (0..power.places.len()).filter(|&place| leaves.clone().any(|leaf| at(place, leaf).is_some()));
-        let gradient = read.map(|place| (place, leaves.clone().map(|leaf| slope(place, leaf)).collect())).collect();
+        let gradient = read.map(|place| (place, leaves.clone().map(|leaf| slope(place, leaf)).into_list())).into_list();
         SiteTerm { term: term.clone(), gradient }
     };
     power.terms.each(link)
@@ -138,7 +138,7 @@ pub(super) fn moved<'g>(model: &Mechanics<'g>, links: &[SiteTerm<'g>], motion: &
         for (place, gradient) in &link.gradient {
             let there: Vec<(Expr<'g>, Expr<'g>)> = (model.configurations.iter().enumerate())
                 .filter_map(|(leaf, configuration)| Some((configuration.symbol, symbol_at(&symbols, *place, leaf)?)))
-                .collect();
+                .into_list();
             for (slope, motion) in gradient.iter().zip(motion) {
                 change = change + slope.pairing(motion.substitute(&there));
             }

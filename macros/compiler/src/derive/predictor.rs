@@ -1,6 +1,6 @@
 //! What iterations start from, and equations in the form in which they are solved.
 
-use clebsch_symbolic::{Elements, Expr, IntoElements, Shape};
+use clebsch_symbolic::{Elements, Expr, IntoElements, IntoList, Shape};
 
 use super::exact::{by_inertia, inertia_inverse};
 use super::symbols::{at_zero, entries, rows_at};
@@ -21,7 +21,7 @@ impl<'g> MechanicsFormulas<'g> {
         let shape = Shape::square(components.len());
         let block = |matrix: Expr<'g>| {
             let entry = |(i, j): (usize, usize)| matrix.entry(components[i], components[j]);
-            graph.stack(shape, shape.positions().map(entry).collect())
+            graph.stack(shape, shape.positions().map(entry).into_list())
         };
         let inertia = block(self.inertia);
         let momenta = entries(&self.symbols.momenta);
@@ -30,7 +30,7 @@ impl<'g> MechanicsFormulas<'g> {
         let velocity = by_inertia(inertia, inverse, &momentum);
         let coordinate =
             |(velocity, component): (Expr<'g>, usize)| self.step_of_component(component, substep.divisor) * velocity;
-        velocity.into_iter().take(count).zip(components).map(coordinate).collect()
+        velocity.into_iter().take(count).zip(components).map(coordinate).into_list()
     }
 
     /// The same for all components of each block at once, as code with whole matrices computes it; `None` where there is none.
@@ -60,7 +60,7 @@ impl<'g> MechanicsFormulas<'g> {
             // an equation may be about some components of a block
             let block = self.symbols.blocks[i].components();
             let within = equation.components.iter().filter(|component| block.contains(component));
-            let positions: Vec<usize> = within.map(|component| component - start).collect();
+            let positions: Vec<usize> = within.map(|component| component - start).into_list();
             self.chart_step(i, substep.divisor) * rows_at(velocity, &positions)
         };
         self.symbols.blocks_of(&equation.components).into_each(part)
@@ -69,7 +69,7 @@ impl<'g> MechanicsFormulas<'g> {
     /// The chart coordinates of the motion by the velocity of the start of a step that is collocated, to first order in h.
     pub(super) fn guess(&self) -> Option<Vec<Expr<'g>>> {
         let velocities = entries(&self.collocation.as_ref()?.algebra).into_iter().enumerate();
-        Some(velocities.map(|(component, velocity)| self.step_of_component(component, 1) * velocity).collect())
+        Some(velocities.map(|(component, velocity)| self.step_of_component(component, 1) * velocity).into_list())
     }
 
     /// −ρ(0) and Dρ(0), of an equation that is linear in the chart: column by column, or along one direction.
@@ -103,7 +103,7 @@ impl<'g> MechanicsFormulas<'g> {
             };
             [x, -x].into_iter().filter_map(by_halves)
         });
-        let slopes: Vec<_> = slopes.collect();
+        let slopes: Vec<_> = slopes.into_list();
         if slopes.is_empty() { equation.residual } else { equation.residual.substitute(&slopes) }
     }
 

@@ -4,7 +4,7 @@ mod energy;
 mod motions;
 mod steps;
 
-use clebsch_symbolic::{Elements, Expr, Property, indexed};
+use clebsch_symbolic::{Elements, Expr, IntoList, Property, indexed};
 
 use super::moves::inverse_by;
 use super::{Formula, FormulaTable, Id, MechanicsFormulas, SteeredFormulas, SystemFormulas};
@@ -152,7 +152,7 @@ impl<'g> MechanicsFormulas<'g> {
         let coadjoint = coadjoint.computed_as(self.with_inverses(&self.coadjoint));
         let membership = self.row_of_membership();
         let matrices = factors.iter().zip(&symbols.momenta).map(|(factor, mu)| factor.group.momentum_matrix(*mu));
-        let matrices: Vec<_> = matrices.collect();
+        let matrices: Vec<_> = matrices.into_list();
         let components = factors.iter().zip(&symbols.momentum_matrices).map(|(factor, m)| factor.group.components(*m));
         [
             Formula::new(Id::MomentumMap, format!("J({q}, {p})"), self.momentum_map.clone()),
@@ -160,7 +160,7 @@ impl<'g> MechanicsFormulas<'g> {
             Formula::new(Id::CotangentLift, format!("(TΦ_{f})^-* {p} at {q}⁺"), self.cotangent_lift.clone()),
             membership,
             Formula::new(Id::MomentumMatrix, "M", matrices),
-            Formula::new(Id::MomentumComponents, mu, components.collect::<Vec<_>>()),
+            Formula::new(Id::MomentumComponents, mu, components.into_list()),
         ]
     }
 
@@ -204,6 +204,6 @@ impl<'g> MechanicsFormulas<'g> {
 }
 
 fn tuple(names: impl Iterator<Item = String>) -> String {
-    let names: Vec<String> = names.collect();
+    let names: Vec<String> = names.into_list();
     if names.len() == 1 { names.concat() } else { format!("({})", names.join(", ")) }
 }

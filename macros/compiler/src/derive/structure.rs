@@ -6,7 +6,7 @@
 mod pattern;
 mod sylvester;
 
-use clebsch_symbolic::{Elements, Expr, IntoElements, Shape, identity};
+use clebsch_symbolic::{Elements, Expr, IntoElements, IntoList, Shape, identity};
 
 use super::equation::{MomentumEquation, Solution, Sources};
 use super::symbols::{ChartBlock, rows_at};
@@ -68,7 +68,7 @@ impl<'a, 'b, 'g> Reduced<'a, 'b, 'g> {
                 Some(equation.formula?.entry(row, 0))
             })
         };
-        let values: Vec<Expr<'g>> = self.equation.components.iter().filter_map(value).collect();
+        let values: Vec<Expr<'g>> = self.equation.components.iter().filter_map(value).into_list();
         let formula = self.sources.model.graph.stack(Shape::vector(values.len()), values);
         Some(MomentumEquation { solution: Solution::Explicit, formula: Some(formula), ..self.equation.clone() })
     }
@@ -88,7 +88,7 @@ impl<'a, 'b, 'g> Reduced<'a, 'b, 'g> {
     /// The positions of the coordinates whose equations hold no other and have a constant slope.
     fn leaves(&self) -> Vec<usize> {
         let is_leaf = |i: &usize| self.may_go(*i) && self.pattern.is_alone(*i) && self.is_uncoupled(*i);
-        (0..self.columns.len()).filter(is_leaf).collect()
+        (0..self.columns.len()).filter(is_leaf).into_list()
     }
 
     /// The chart blocks whose equations have a constant multiple of each of their coordinates, and nothing else of them.
@@ -98,7 +98,7 @@ impl<'a, 'b, 'g> Reduced<'a, 'b, 'g> {
         let block = |i: usize| symbols.blocks[i].components().map(position).collect::<Option<Vec<usize>>>();
         let uncouples = |block: &[usize], i: usize| block.iter().all(|&j| i == j || self.pattern.is_zero(i, j));
         let is_constant = |block: &Vec<usize>| block.iter().all(|&i| self.may_go(i) && uncouples(block, i));
-        symbols.blocks_of(components).into_iter().filter_map(block).filter(is_constant).collect()
+        symbols.blocks_of(components).into_iter().filter_map(block).filter(is_constant).into_list()
     }
 
     /// Whether a coordinate has a constant slope that is its inertia: any other may vanish at some step size.
@@ -126,13 +126,13 @@ impl<'a, 'b, 'g> Reduced<'a, 'b, 'g> {
         let formula = if positions.iter().all(|&i| identity::equal(&[self.slope(i)], &[first])) {
             -(rest / first)
         } else {
-            graph.stack(Shape::vector(positions.len()), positions.iter().enumerate().map(value).collect())
+            graph.stack(Shape::vector(positions.len()), positions.iter().enumerate().map(value).into_list())
         };
         let own = identity::without_vanishing_terms(rows_at(whole.residual, positions));
         let own = MomentumEquation::new(sources, gone.clone(), own, whole.cleared);
         let mut eliminated = self.eliminated.clone();
         eliminated.push(MomentumEquation { solution: Solution::Explicit, formula: Some(formula), ..own });
-        let left: Vec<usize> = (0..self.columns.len()).filter(|i| !positions.contains(i)).collect();
+        let left: Vec<usize> = (0..self.columns.len()).filter(|i| !positions.contains(i)).into_list();
         let residual = self.with(&gone, formula, rows_at(whole.residual, &left)).expand();
         let residual = identity::without_vanishing_terms(residual);
         let left = left.into_each(|i| whole.components[i]);
@@ -164,11 +164,11 @@ impl<'a, 'b, 'g> Reduced<'a, 'b, 'g> {
             };
             match first {
                 Some(first) => values.block(first, 0, block.coordinates.shape()),
-                None => values.graph().stack(block.coordinates.shape(), block.components().map(entry).collect()),
+                None => values.graph().stack(block.coordinates.shape(), block.components().map(entry).into_list()),
             }
         };
         let blocks = symbols.blocks_of(components).into_iter().map(|i| &symbols.blocks[i]);
-        expression.substitute(&blocks.map(|block| (block.coordinates, value(block))).collect::<Vec<_>>())
+        expression.substitute(&blocks.map(|block| (block.coordinates, value(block))).into_list())
     }
 
     /// Whether a path from the identity leads to the solution, as it is affine in the momentum, or none is needed, as a linear equation
@@ -183,7 +183,7 @@ impl<'a, 'b, 'g> Reduced<'a, 'b, 'g> {
     fn is_affine_in_momenta(&self) -> bool {
         let scaled = |factor: i64| {
             let momenta = self.sources.symbols.momenta.iter().map(|mu| (*mu, factor * *mu));
-            self.equation.residual.substitute(&momenta.collect::<Vec<_>>())
+            self.equation.residual.substitute(&momenta.into_list())
         };
         identity::equal(&[scaled(2) + scaled(0)], &[2 * scaled(1)])
     }
@@ -193,7 +193,7 @@ impl<'a, 'b, 'g> Reduced<'a, 'b, 'g> {
         let inertia = self.sources.inertia;
         let meets = |i: usize| self.equation.components.iter().any(|&j| !identity::vanishes(inertia.entry(i, j)));
         let gone = self.eliminated.iter().flat_map(|eliminated| eliminated.components.iter().copied());
-        gone.filter(|&component| meets(component)).collect()
+        gone.filter(|&component| meets(component)).into_list()
     }
 
     /// One equation for each set of coordinates that depend on each other.
@@ -215,7 +215,7 @@ impl<'a, 'b, 'g> Reduced<'a, 'b, 'g> {
     fn part(&self, positions: &[usize]) -> MomentumEquation<'g> {
         let (sources, whole) = (self.sources, &self.equation);
         let is_other = |i: &usize| !positions.contains(i);
-        let others: Vec<usize> = (0..self.columns.len()).filter(is_other).map(|i| whole.components[i]).collect();
+        let others: Vec<usize> = (0..self.columns.len()).filter(is_other).map(|i| whole.components[i]).into_list();
         let absent = sources.model.graph.zero(Shape::vector(others.len()));
         let residual = self.with(&others, absent, rows_at(whole.residual, positions)).expand();
         let residual = identity::without_vanishing_terms(residual);

@@ -1,6 +1,6 @@
 //! A substep: one discrete Lagrangian with what a step of it needs.
 
-use clebsch_symbolic::{Chart, Elements, Expr, IntoElements, identity, indexed};
+use clebsch_symbolic::{Chart, Elements, Expr, IntoElements, IntoList, identity, indexed};
 
 use super::equation::{Momentum, MomentumEquation, Solution, Sources};
 use super::force::total;
@@ -120,7 +120,7 @@ fn at_rest<'g>(model: &System<'g>, before: &[Covector<'g>], coupling: Option<&[E
         let value = whole.substitute(&at_identity).expand();
         if identity::vanishes(value) { value.graph().zero(value.shape()) } else { -value }
     };
-    let rest: Vec<_> = model.factors.iter().enumerate().map(of_factor).collect();
+    let rest: Vec<_> = model.factors.iter().enumerate().map(of_factor).into_list();
     rest.iter().any(|part| !identity::vanishes(*part)).then_some(rest)
 }
 
@@ -199,7 +199,7 @@ pub(super) fn check_tolerance(
     collocates: bool,
 ) -> Result<(), Diagnostics> {
     let solutions: Vec<Solution> =
-        substeps.iter().flat_map(|s| &s.equations).map(|equation| equation.solution).collect();
+        substeps.iter().flat_map(|s| &s.equations).map(|equation| equation.solution).into_list();
     let is_iterated = collocates || solutions.contains(&Solution::Newton);
     if let Some(iterations) = &model.dials.iterations {
         let asked = (Feature::Iterations, Found::at(iterations.span));

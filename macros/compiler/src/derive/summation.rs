@@ -8,7 +8,7 @@
 //!
 //! Source: Hairer, Lubich and Wanner, *Geometric Numerical Integration*, §VIII.5 (compensated summation, Kahan 1965, Møller 1965).
 
-use clebsch_symbolic::{Expr, Property, Role, WordTerm, identity};
+use clebsch_symbolic::{Expr, IntoList, Property, Role, WordTerm, identity};
 
 use super::moves::inverse_by;
 use super::{MechanicsFormulas, Substep};
@@ -29,7 +29,7 @@ impl<'g> MechanicsFormulas<'g> {
             let change = || self.beside(self.carried(k, *m), *m).substitute(&inverses);
             if substep.unchanged[k] { self.model.graph.zero(m.shape()) } else { change() }
         };
-        substep.unchanged.contains(&false).then(|| self.symbols.momenta.iter().enumerate().map(added).collect())
+        substep.unchanged.contains(&false).then(|| self.symbols.momenta.iter().enumerate().map(added).into_list())
     }
 
     /// Whether the move leaves the momentum as it is.
@@ -46,13 +46,13 @@ impl<'g> MechanicsFormulas<'g> {
             if substep.unchanged[k] { m } else { self.carried(k, m) }
         };
         let changes = substep.unchanged.contains(&false) || substep.rest.is_some();
-        changes.then(|| self.symbols.momenta.iter().enumerate().map(carried).collect())
+        changes.then(|| self.symbols.momenta.iter().enumerate().map(carried).into_list())
     }
 
     /// Φ_{I+D}(q) − q for each leaf of the configuration, where letters stand for F⁻¹.
     pub(super) fn displacements(&self) -> Vec<Expr<'g>> {
         let leaves = self.model.configurations.iter().zip(&self.model.action);
-        leaves.map(|(leaf, image)| self.beside(*image, leaf.symbol)).collect()
+        leaves.map(|(leaf, image)| self.beside(*image, leaf.symbol)).into_list()
     }
 
     /// `moved` − `from` with F = I + D and I − D S for F⁻¹.

@@ -1,6 +1,6 @@
 //! The symbols of the derivation: covectors, momenta, algebra elements, chart coordinates, increments.
 
-use clebsch_symbolic::{Block, Chart, Elements, Expr, Graph, Property, Role, Shape, indexed};
+use clebsch_symbolic::{Block, Chart, Elements, Expr, Graph, IntoList, Property, Role, Shape, indexed};
 
 use crate::model::{ChartChoice, Configuration, Discretization, Factor, System};
 
@@ -60,13 +60,13 @@ impl ChartBlock<'_> {
 impl<'g> Symbols<'g> {
     /// The chart coordinates of a factor, one vector for each of its blocks.
     pub fn coordinates(&self, factor: usize) -> Vec<Expr<'g>> {
-        self.blocks.iter().filter(|block| block.factor == factor).map(|block| block.coordinates).collect()
+        self.blocks.iter().filter(|block| block.factor == factor).map(|block| block.coordinates).into_list()
     }
 
     /// The blocks that some components lie in, by index.
     pub fn blocks_of(&self, components: &[usize]) -> Vec<usize> {
         let holds_one = |i: &usize| components.iter().any(|component| self.blocks[*i].components().contains(component));
-        (0..self.blocks.len()).filter(holds_one).collect()
+        (0..self.blocks.len()).filter(holds_one).into_list()
     }
 
     /// The chart coordinates of a factor in one vector.
@@ -120,12 +120,12 @@ impl<'g> Symbols<'g> {
             let symbol = |(index, shape): (usize, &Shape)| {
                 graph.symbol(&subscripted(letter, index, shapes.len()), *shape, role(index), Property::General)
             };
-            shapes.iter().enumerate().map(symbol).collect()
+            shapes.iter().enumerate().map(symbol).into_list()
         };
         let leaves: Vec<Shape> = model.configurations.each(|leaf| leaf.shape);
         let groups = || model.factors.iter().map(|factor| factor.group);
-        let vectors: Vec<Shape> = groups().map(|group| Shape::vector(group.dimension())).collect();
-        let matrices: Vec<Shape> = groups().map(|group| group.element_shape()).collect();
+        let vectors: Vec<Shape> = groups().map(|group| Shape::vector(group.dimension())).into_list();
+        let matrices: Vec<Shape> = groups().map(|group| group.element_shape()).into_list();
         // q⁺ lies in the same space as q
         let image = |(i, leaf): (usize, &Configuration<'g>)| {
             graph.symbol(&format!("{}⁺", leaf.name), leaf.shape, Role::Image(i), leaf.symbol.property())
@@ -145,7 +145,7 @@ impl<'g> Symbols<'g> {
             logarithms: indexed(model.factors.len(), |k| logarithm(model, k)),
             increments: numbered(&["D", "Δ", "B"], Role::Increment, &matrices),
             following: numbered(&["D⁺"], Role::Following, &matrices),
-            images: model.configurations.iter().enumerate().map(image).collect(),
+            images: model.configurations.iter().enumerate().map(image).into_list(),
             momentum_matrices: numbered(&["M", "N", "P"], Role::MomentumMatrix, &matrices),
         }
     }
@@ -155,17 +155,17 @@ impl<'g> Symbols<'g> {
 pub(super) fn identities<'g>(model: &System<'g>) -> Vec<(Expr<'g>, Expr<'g>)> {
     let elements = model.factors.iter().map(|factor| (factor.symbol, factor.group.identity(model.graph)));
     let logarithms = (0..model.factors.len()).map(|k| logarithm(model, k));
-    elements.chain(logarithms.map(|y| (y, model.graph.zero(y.shape())))).collect()
+    elements.chain(logarithms.map(|y| (y, model.graph.zero(y.shape())))).into_list()
 }
 
 /// The replacement of q by Φ_F(q).
 pub(super) fn moved<'g>(model: &System<'g>) -> Vec<(Expr<'g>, Expr<'g>)> {
-    model.configurations.iter().zip(&model.action).map(|(leaf, image)| (leaf.symbol, *image)).collect()
+    model.configurations.iter().zip(&model.action).map(|(leaf, image)| (leaf.symbol, *image)).into_list()
 }
 
 /// The replacement of (t, q) by (t + h, Φ_F(q)).
 pub(super) fn moved_on<'g>(model: &System<'g>) -> Vec<(Expr<'g>, Expr<'g>)> {
-    moved(model).into_iter().chain([(model.time, model.time + model.step_size)]).collect()
+    moved(model).into_iter().chain([(model.time, model.time + model.step_size)]).into_list()
 }
 
 /// Some rows of a vector.
@@ -179,17 +179,17 @@ pub(super) fn rows_at<'g>(vector: Expr<'g>, positions: &[usize]) -> Expr<'g> {
 
 pub(super) fn of_columns<'g>(graph: &'g Graph, columns: &[Vec<Expr<'g>>]) -> Expr<'g> {
     let shape = Shape::new(columns[0].len(), columns.len());
-    graph.stack(shape, shape.positions().map(|(i, j)| columns[j][i]).collect())
+    graph.stack(shape, shape.positions().map(|(i, j)| columns[j][i]).into_list())
 }
 
 /// The entries of vectors, one after the other.
 pub(super) fn entries<'g>(vectors: &[Expr<'g>]) -> Vec<Expr<'g>> {
-    vectors.iter().flat_map(|vector| vector.entries()).collect()
+    vectors.iter().flat_map(|vector| vector.entries()).into_list()
 }
 
 /// The replacement of symbols by zero.
 pub(super) fn at_zero<'g>(symbols: impl IntoIterator<Item = Expr<'g>>) -> Vec<(Expr<'g>, Expr<'g>)> {
-    symbols.into_iter().map(|symbol| (symbol, symbol.graph().zero(symbol.shape()))).collect()
+    symbols.into_iter().map(|symbol| (symbol, symbol.graph().zero(symbol.shape()))).into_list()
 }
 
 /// The symbol of the coordinates of log F.
@@ -239,7 +239,7 @@ fn taken(model: &System<'_>) -> Vec<String> {
     let leaves = model.configurations.iter().map(|leaf| &leaf.name);
     let factors = model.factors.iter().map(|factor| &factor.name);
     let variables = leaves.chain(factors).map(|name| name.split('[').next().unwrap_or(name).to_string());
-    variables.chain(model.parameters.iter().map(|parameter| parameter.name.clone())).collect()
+    variables.chain(model.parameters.iter().map(|parameter| parameter.name.clone())).into_list()
 }
 
 /// The first letter that the user has not taken; the last one if all are.

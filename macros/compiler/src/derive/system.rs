@@ -4,7 +4,7 @@
 use std::cell::OnceCell;
 use std::rc::Rc;
 
-use clebsch_symbolic::{Elements, Expr, IntoElements, identity, indexed};
+use clebsch_symbolic::{Elements, Expr, IntoElements, IntoList, identity, indexed};
 
 use super::choice::{Endpoint, Steering};
 use super::symbols::{identities, of_columns};
@@ -83,13 +83,13 @@ impl<'g> SystemFormulas<'g> {
 
     /// J(q, p) of these covectors p.
     pub(super) fn momenta_of(&self, covectors: impl IntoIterator<Item = Expr<'g>>) -> Vec<Expr<'g>> {
-        let covectors: Vec<_> = self.symbols.covectors.iter().copied().zip(covectors).collect();
+        let covectors: Vec<_> = self.symbols.covectors.iter().copied().zip(covectors).into_list();
         self.momentum_map.each(|momentum| momentum.substitute(&covectors))
     }
 
     /// ξ_Q(q) for a velocity of all factors.
     pub(super) fn motion_by(&self, velocity: &[Expr<'g>]) -> Vec<Expr<'g>> {
-        let replaced: Vec<_> = self.symbols.algebra.iter().copied().zip(velocity.iter().copied()).collect();
+        let replaced: Vec<_> = self.symbols.algebra.iter().copied().zip(velocity.iter().copied()).into_list();
         self.generator.each(|motion| motion.substitute(&replaced))
     }
 
@@ -100,12 +100,12 @@ impl<'g> SystemFormulas<'g> {
 
     /// How q moves with ξ.
     pub(super) fn leaves_by_generator(&self) -> Vec<(Expr<'g>, Expr<'g>)> {
-        self.model.configurations.iter().map(|leaf| leaf.symbol).zip(self.generator.iter().copied()).collect()
+        self.model.configurations.iter().map(|leaf| leaf.symbol).zip(self.generator.iter().copied()).into_list()
     }
 
     /// The replacement of q by q⁺.
     pub(super) fn images_of_leaves(&self) -> Vec<(Expr<'g>, Expr<'g>)> {
-        self.model.configurations.iter().map(|leaf| leaf.symbol).zip(self.symbols.images.iter().copied()).collect()
+        self.model.configurations.iter().map(|leaf| leaf.symbol).zip(self.symbols.images.iter().copied()).into_list()
     }
 
     /// The gradients with respect to the leaves of the configuration.
@@ -116,7 +116,7 @@ impl<'g> SystemFormulas<'g> {
     /// Ad*_F μ.
     pub(super) fn coadjoint(&self) -> Vec<Expr<'g>> {
         let factors = self.model.factors.iter().zip(&self.symbols.momenta);
-        factors.map(|(factor, mu)| factor.group.coadjoint(factor.symbol, *mu)).collect()
+        factors.map(|(factor, mu)| factor.group.coadjoint(factor.symbol, *mu)).into_list()
     }
 
     /// Ad*_{F⁻¹} μ for a left action, Ad*_F μ for a right one: M⁺ of a factor whose momentum the drift carries along, of M = μ.
@@ -141,12 +141,12 @@ impl<'g> SystemFormulas<'g> {
     /// (TΦ_F)^{-*} p at q⁺: the gradient of ⟨p, Φ_{F⁻¹}(q⁺)⟩ with respect to q⁺.
     pub(super) fn cotangent_lift(&self) -> Vec<Expr<'g>> {
         let factors = self.model.factors.iter();
-        let inverses: Vec<_> = factors.map(|factor| (factor.symbol, factor.group.inverse(factor.symbol))).collect();
+        let inverses: Vec<_> = factors.map(|factor| (factor.symbol, factor.group.inverse(factor.symbol))).into_list();
         let images = self.model.action.iter().map(|image| image.substitute(&inverses));
         let pairing = images.zip(&self.symbols.covectors).map(|(image, p)| p.dot(image)).reduce(|a, b| a + b);
         let leaves =
             pairing.into_iter().flat_map(|pairing| self.model.configurations.iter().map(move |leaf| (pairing, leaf)));
-        leaves.map(|(pairing, leaf)| pairing.gradient(leaf.symbol).expand()).collect()
+        leaves.map(|(pairing, leaf)| pairing.gradient(leaf.symbol).expand()).into_list()
     }
 
     /// The components of −J(q, ∂_q K) for each factor.
@@ -165,7 +165,7 @@ impl<'g> SystemFormulas<'g> {
     pub(super) fn projection(&self) -> Option<Vec<Expr<'g>>> {
         let (momenta, momentum_map) = (&self.symbols.momenta, &self.momentum_map);
         let projection = self.momenta_of(self.motion_by(momenta));
-        let motions: Vec<_> = momenta.iter().zip(momentum_map).map(|(mu, momentum)| (*mu, *momentum)).collect();
+        let motions: Vec<_> = momenta.iter().zip(momentum_map).map(|(mu, momentum)| (*mu, *momentum)).into_list();
         let kept = |(k, momentum): (usize, &Expr<'g>)| {
             let twice = projection[k].substitute(&motions);
             let mut others = momenta.iter().enumerate().filter(|(j, _)| *j != k);
@@ -192,7 +192,7 @@ impl<'g> SystemFormulas<'g> {
     /// For each basis element of the algebra, the entries of (E_i)_Q(q), leaf after leaf.
     pub(super) fn generator_columns(&self) -> Vec<Vec<Expr<'g>>> {
         let column =
-            |motion: Vec<(Expr<'g>, Expr<'g>)>| motion.into_iter().flat_map(|(_, leaf)| leaf.entries()).collect();
+            |motion: Vec<(Expr<'g>, Expr<'g>)>| motion.into_iter().flat_map(|(_, leaf)| leaf.entries()).into_list();
         self.symbols.along_basis(&self.leaves_by_generator()).into_each(column)
     }
 }
@@ -200,7 +200,7 @@ impl<'g> SystemFormulas<'g> {
 /// ξ_Q(q) = d/dε Φ_{exp εξ}(q) at ε = 0.
 pub(super) fn generator<'g>(model: &System<'g>, symbols: &Symbols<'g>) -> Vec<Expr<'g>> {
     let factors = || model.factors.iter().zip(&symbols.algebra);
-    let directions: Vec<_> = factors().map(|(factor, xi)| (factor.symbol, factor.group.wedge(*xi))).collect();
+    let directions: Vec<_> = factors().map(|(factor, xi)| (factor.symbol, factor.group.wedge(*xi))).into_list();
     let at_identity = identities(model);
     model.action.each(|image| image.differential(&directions).substitute(&at_identity).expand())
 }

@@ -1,6 +1,6 @@
 //! The trivialised derivatives T*_id L_F ∂_F K and T*_id R_F ∂_F K.
 
-use clebsch_symbolic::{Expr, Group, Property, Role};
+use clebsch_symbolic::{Expr, Group, IntoList, Property, Role};
 
 use super::cayley;
 use super::symbols::logarithm;
@@ -53,5 +53,5 @@ fn of_factor<'g>(model: &System<'g>, kinetic: Expr<'g>, k: usize) -> (Covector<'
 }
 
 pub(super) fn components<'g>(model: &System<'g>, covectors: &[Covector<'g>]) -> Vec<Expr<'g>> {
-    model.factors.iter().zip(covectors).map(|(factor, covector)| covector.components(factor.group)).collect()
+    model.factors.iter().zip(covectors).map(|(factor, covector)| covector.components(factor.group)).into_list()
 }

@@ -1,7 +1,7 @@
 //! Second derivatives of a discrete Lagrangian: its Legendre transforms differentiated along the motions of both ends of an edge, and
 //! with respect to everything that is fixed during a step.
 
-use clebsch_symbolic::{Elements, Expr, Property, indexed};
+use clebsch_symbolic::{Elements, Expr, IntoList, Property, indexed};
 
 use super::choice::Direction;
 use super::force::total;
@@ -129,7 +129,7 @@ impl<'g> Source<'_, 'g> {
         derivatives.extend(after_by_start);
         let adjoint: Vec<_> = indexed(model.factors.len(), |k| system.adjoint(k));
         // how q and q⁺ move with η at q while F stays as it is: q⁺ by Ad η for each factor
-        let by_adjoint: Vec<_> = system.symbols.algebra.iter().copied().zip(adjoint.iter().copied()).collect();
+        let by_adjoint: Vec<_> = system.symbols.algebra.iter().copied().zip(adjoint.iter().copied()).into_list();
         let images = self.images_by_generator().into_iter();
         let mut together = system.leaves_by_generator();
         together.extend(images.map(|(image, part)| (image, part.substitute(&by_adjoint))));
@@ -157,7 +157,7 @@ impl<'g> Source<'_, 'g> {
     /// How q⁺ moves with η.
     fn images_by_generator(&self) -> Direction<'g> {
         let images = self.system.symbols.images.iter().zip(&self.system.generator);
-        images.map(|(image, part)| (*image, self.at_image(*part))).collect()
+        images.map(|(image, part)| (*image, self.at_image(*part))).into_list()
     }
 
     /// How q and F move with η at q: F exp(−η) for a left action, exp(−η) F for a right one.
@@ -187,6 +187,6 @@ impl<'g> Source<'_, 'g> {
             (group.translate_left(f, wedge), group.exponential_slope(-y))
         };
         let rational = cayley::motion(model, k, eta, from_left);
-        [(f, moved), (y, slope.inverse() * eta)].into_iter().chain(rational).collect()
+        [(f, moved), (y, slope.inverse() * eta)].into_iter().chain(rational).into_list()
     }
 }

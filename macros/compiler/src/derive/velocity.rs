@@ -1,6 +1,6 @@
 //! The velocity ξ, made from F and h.
 
-use clebsch_symbolic::{Elements, Expr, Group, IntoElements, Shape, identity, indexed, integer, reduce};
+use clebsch_symbolic::{Elements, Expr, Group, IntoElements, IntoList, Shape, identity, indexed, integer, reduce};
 
 use super::symbols::{at_zero, logarithm, of_columns};
 use crate::diagnostic::Diagnostics;
@@ -75,9 +75,9 @@ pub(super) fn mass_matrix<'g>(group: Group, inertia: Expr<'g>) -> Option<Expr<'g
     let unit = |(i, j): (usize, usize)| {
         if i == j { graph.unit(square, i, i) } else { graph.unit(square, i, j) + graph.unit(square, j, i) }
     };
-    let units: Vec<Expr<'g>> = square.positions().filter(|(i, j)| i <= j).map(unit).collect();
+    let units: Vec<Expr<'g>> = square.positions().filter(|(i, j)| i <= j).map(unit).into_list();
     let image = |unit: &Expr<'g>| -> Vec<Expr<'g>> {
-        basis.iter().flat_map(|a| basis.iter().map(|b| (*a * *unit).dot(*b).expand())).collect()
+        basis.iter().flat_map(|a| basis.iter().map(|b| (*a * *unit).dot(*b).expand())).into_list()
     };
     let (units, images) = independent(units.into_each(|unit| (unit, image(&unit))));
     let map = of_columns(graph, &images);

@@ -1,6 +1,6 @@
 //! The block that generated items stand in: its names, its types, and the struct that they are generated for.
 
-use clebsch_symbolic::Shape;
+use clebsch_symbolic::{IntoList, Shape};
 use proc_macro2::{Ident, TokenStream};
 use quote::{ToTokens, quote};
 use syn::parse_quote;
@@ -141,7 +141,7 @@ impl Target {
         let predicates = generics.where_clause.iter().flat_map(|clause| &clause.predicates);
         let predicates = predicates.map(|predicate| names.of_user(predicate.to_token_stream()));
         let predicates = predicates.chain(scalar.is_parameter().then(|| quote!(T: runtime::Scalar)));
-        let predicates: Vec<TokenStream> = predicates.collect();
+        let predicates: Vec<TokenStream> = predicates.into_list();
         let predicates = (!predicates.is_empty()).then(|| quote!(where #(#predicates),*));
         Target { name, ident, parameters, arguments, predicates, generics: generics.clone() }
     }

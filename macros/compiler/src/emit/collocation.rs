@@ -1,5 +1,6 @@
 //! Steps of order 16: Hamilton's equations at all stages, found by sweeps over them.
 
+use clebsch_symbolic::IntoList;
 use proc_macro2::{Literal, TokenStream};
 use quote::quote;
 
@@ -56,7 +57,7 @@ impl Emitter<'_, '_> {
             let (access, index) = (&leaf.accessor, index(leaf.shape.columns == 1, position));
             quote!(#name #access #index)
         });
-        entries.collect()
+        entries.into_list()
     }
 
     /// The configuration whose entries stand in the array `y` from `start` on.
@@ -65,7 +66,7 @@ impl Emitter<'_, '_> {
         nested(&self.model.configuration, &mut |leaf| {
             let offset = start + leaves[..leaf].iter().map(|leaf| leaf.shape.len()).sum::<usize>();
             let positions = (offset..offset + leaves[leaf].shape.len()).map(size);
-            let entries: Vec<TokenStream> = positions.map(|position| quote!(y[#position])).collect();
+            let entries: Vec<TokenStream> = positions.map(|position| quote!(y[#position])).into_list();
             let rows = entries.chunks(leaves[leaf].shape.columns).map(|row| quote!([#(#row),*]));
             match leaves[leaf].shape.columns {
                 _ if leaves[leaf].is_quaternion => quote!(runtime::quaternion([#(#entries),*])),

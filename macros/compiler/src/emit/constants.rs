@@ -1,6 +1,6 @@
 //! What a stepper computes once: its type, and the checks and code that make it.
 
-use clebsch_symbolic::Role;
+use clebsch_symbolic::{IntoList, Role};
 use proc_macro2::{Ident, TokenStream};
 use quote::{format_ident, quote};
 
@@ -52,7 +52,7 @@ impl Emitter<'_, '_> {
         let needs_step_size = formulas.splitting.is_some() || formulas.collocation.is_some() || self.keeps_matrices;
         let step_size = needs_step_size.then(|| [quote!(step_size), quote!(T), quote!(: h)]);
         let inverse = (!formulas.inertia_moves()).then(|| [quote!(inertia_inverse), self.inverse().0, quote!()]);
-        numbers.chain(orientations).chain(rotations).chain(step_size).chain(inverse).collect()
+        numbers.chain(orientations).chain(rotations).chain(step_size).chain(inverse).into_list()
     }
 
     /// The type of Σ⁻¹, and the function that makes it.

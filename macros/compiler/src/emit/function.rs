@@ -1,6 +1,6 @@
 //! How a generated function is written: its documentation, its signature and its body.
 
-use clebsch_symbolic::Elements;
+use clebsch_symbolic::{Elements, IntoList};
 use proc_macro2::TokenStream;
 use quote::{format_ident, quote};
 
@@ -217,6 +217,6 @@ pub(super) fn documentation(title: &str, formulas: &[Formula<'_>], kernel: Optio
     line.extend(kernel.map(|kernel| format!("Cost: {}.", kernel.cost())));
     line.extend(first.and_then(|formula| formula.source).map(|source| format!("Source: {source}.")));
     let equations = formulas.iter().map(|formula| format!("`{}`", formula.equation()));
-    let text: Vec<String> = [line.join(" ")].into_iter().chain(equations).collect();
+    let text: Vec<String> = [line.join(" ")].into_iter().chain(equations).into_list();
     lines(&text.join("\n"))
 }

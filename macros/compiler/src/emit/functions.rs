@@ -7,6 +7,7 @@
 
 use super::function::Function;
 use crate::derive::Id;
+use clebsch_symbolic::IntoList;
 
 macro_rules! kernel {
     ($kernel:expr $(=> $($shown:expr),*)?) => {
@@ -373,5 +374,5 @@ functions! {
 /// The generated functions whose documentation shows a formula.
 pub fn shown_by(id: Id) -> Vec<&'static str> {
     let documented = ALL.iter().copied().flatten().filter(|function| !function.title.is_empty());
-    documented.filter(|function| function.shows(id)).map(|function| function.name).collect()
+    documented.filter(|function| function.shows(id)).map(|function| function.name).into_list()
 }

@@ -1,6 +1,6 @@
 //! Tokens of operations on whole matrices: nalgebra's, and calls of the runtime's for those that it has not.
 
-use clebsch_symbolic::{Operation, Rational, Role, Shape, integer};
+use clebsch_symbolic::{IntoList, Operation, Rational, Role, Shape, integer};
 use proc_macro2::TokenStream;
 use quote::{format_ident, quote};
 
@@ -186,7 +186,7 @@ impl Scope<'_, '_> {
         }
         // by construction: kernels read what their vectors hold
         let of = |component: usize| held.iter().position(|&other| other == component).unwrap_or(0);
-        let positions: Vec<usize> = (first..first + shape.rows).map(of).collect();
+        let positions: Vec<usize> = (first..first + shape.rows).map(of).into_list();
         let start = positions.first().copied().unwrap_or(0);
         if positions.iter().copied().eq(start..start + shape.rows) {
             return Reached::Value(self.block(&quote!(#name), shape, (start, 0)));

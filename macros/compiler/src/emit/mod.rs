@@ -23,7 +23,7 @@ mod variation;
 use std::cell::RefCell;
 use std::ops::Deref;
 
-use clebsch_symbolic::Group;
+use clebsch_symbolic::{Group, IntoList};
 use proc_macro2::{Ident, Literal, TokenStream};
 use quote::{ToTokens, format_ident, quote};
 
@@ -205,7 +205,7 @@ impl<'a, 'g> SystemEmitter<'a, 'g> {
         let (model, symbols, item) = (&*formulas.model, &formulas.symbols, &formulas.model.item);
         // of a power the user's struct is another item than that of a site
         let mut users: Vec<TokenStream> =
-            [item].into_iter().chain(power.map(|power| &power.item)).map(of_item).collect();
+            [item].into_iter().chain(power.map(|power| &power.item)).map(of_item).into_list();
         users.extend(methods.iter().map(|method| method.name.to_token_stream()));
         users.extend(model.constants.iter().map(|constant| constant.path.to_token_stream()));
         users.extend(opaque.map(|Opaque { value, gradient, .. }| quote!(#value #gradient)));
@@ -269,7 +269,7 @@ impl<'a, 'g> SystemEmitter<'a, 'g> {
     }
 
     fn scope(&self, system: TokenStream, constants: Option<TokenStream>) -> Scope<'_, 'g> {
-        let [momenta, coordinates] = [(0..self.dimension).collect(), (0..self.dimension).collect()];
+        let [momenta, coordinates] = [(0..self.dimension).into_list(), (0..self.dimension).into_list()];
         let (reads, numbers) = (RefCell::default(), RefCell::default());
         Scope { emitter: self, system, constants, momenta, coordinates, reads, numbers }
     }

@@ -1,5 +1,6 @@
 //! How a step solves its equations, one after the other.
 
+use clebsch_symbolic::IntoList;
 use proc_macro2::{Ident, Literal, TokenStream};
 use quote::{format_ident, quote};
 
@@ -64,7 +65,7 @@ impl Emitter<'_, '_> {
             quote!(let #solution = #found #fails;)
         });
         let solutions = solutions.collect();
-        let components: Vec<usize> = (0..self.dimension).collect();
+        let components: Vec<usize> = (0..self.dimension).into_list();
         let entries = components.iter().map(entry);
         let x = if step.solves.len() == 1 { quote!(x1) } else { quote!(runtime::vector([#(#entries),*])) };
         let weights = (0..self.formulas.weighted().len()).map(weight_name);

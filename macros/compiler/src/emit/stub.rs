@@ -1,6 +1,7 @@
 //! What is emitted beside an error: an implementation with the right types, so that the user sees that error alone and the
 //! editor keeps working. It is never run, because the error is there.
 
+use clebsch_symbolic::IntoList;
 use proc_macro2::TokenStream;
 use quote::{ToTokens, quote};
 
@@ -18,7 +19,7 @@ pub fn stub(declaration: &Declaration, outline: &Outline) -> TokenStream {
     let Declaration { ident, generics, .. } = declaration;
     let predicates = &generics.where_clause;
     let users = declaration.methods.iter().map(|method| method.name.to_token_stream());
-    let users: Vec<TokenStream> = users.chain([quote!(#ident #generics #predicates)]).collect();
+    let users: Vec<TokenStream> = users.chain([quote!(#ident #generics #predicates)]).into_list();
     let Outline { configuration, element, input, dimension, .. } = outline;
     let names = Names::new(&outline.scalar, !configuration.1.is_empty(), &users);
     let of_sites = |ty: TokenStream| {

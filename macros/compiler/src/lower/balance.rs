@@ -1,6 +1,6 @@
 //! Sums in the order in which their terms are there: first those that are there first, so that the last one waits for one addition alone.
 
-use clebsch_symbolic::{Rational, integer};
+use clebsch_symbolic::{IntoList, Rational, integer};
 
 use super::Code;
 
@@ -16,9 +16,9 @@ type Part = (u32, usize, (Rational, Option<Code>));
 pub(super) fn balanced(constant: Rational, terms: impl Iterator<Item = ((Rational, Code), u32)>) -> Code {
     let numbered = terms.enumerate();
     let mut parts: Vec<Part> =
-        numbered.map(|(place, ((coefficient, term), delay))| (delay, place, (coefficient, Some(term)))).collect();
+        numbered.map(|(place, ((coefficient, term), delay))| (delay, place, (coefficient, Some(term)))).into_list();
     if parts.len() + usize::from(!constant.is_zero()) < 3 {
-        return Code::Sum(constant, parts.into_iter().filter_map(|(_, _, (c, term))| Some((c, term?))).collect());
+        return Code::Sum(constant, parts.into_iter().filter_map(|(_, _, (c, term))| Some((c, term?))).into_list());
     }
     if !constant.is_zero() {
         parts.push((0, parts.len(), (constant, None)));
@@ -36,7 +36,7 @@ pub(super) fn balanced(constant: Rational, terms: impl Iterator<Item = ((Rationa
 
 /// When a sum of terms is done that are there in these cycles.
 pub(super) fn delay(terms: impl Iterator<Item = u32>) -> u32 {
-    let mut delays: Vec<u32> = terms.collect();
+    let mut delays: Vec<u32> = terms.into_list();
     delays.sort_unstable_by_key(|delay| std::cmp::Reverse(*delay));
     while let [.., later, _] = delays[..] {
         delays.truncate(delays.len() - 2);

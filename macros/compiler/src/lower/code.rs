@@ -1,6 +1,6 @@
 //! Code: what kernels are made of, and what of each other and of their arguments they read.
 
-use clebsch_symbolic::{Elements, Function, IntoElements, Operation, Rational, Role, Shape, integer};
+use clebsch_symbolic::{Elements, Function, IntoElements, IntoList, Operation, Rational, Role, Shape, integer};
 
 use super::scalar::{Callee, Output, is_unit};
 use super::{Cost, Input};
@@ -176,7 +176,7 @@ impl Kernel {
     /// The same without terms that no output is made of; a term that is an output and stands nowhere else is written there.
     pub(super) fn without_unused(self) -> Kernel {
         let uses = self.uses(&self.outputs);
-        let outputs: Vec<usize> = self.entries().filter_map(Code::as_local).collect();
+        let outputs: Vec<usize> = self.entries().filter_map(Code::as_local).into_list();
         self.placed(|index| match uses[index] {
             0 => Place::Nowhere,
             1 if outputs.contains(&index) => Place::Inside,
@@ -189,7 +189,7 @@ impl Kernel {
         let uses = self.uses(&self.outputs);
         // the type of what is returned is known
         let outputs = self.outputs.iter().filter(|(_, entries)| entries.len() == 1);
-        let returned: Vec<usize> = outputs.flat_map(|(_, entries)| entries[0].as_local()).collect();
+        let returned: Vec<usize> = outputs.flat_map(|(_, entries)| entries[0].as_local()).into_list();
         let mut depths: Vec<usize> = Vec::new();
         self.placed(|index| {
             let code = &self.locals[index];

@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use clebsch_symbolic::{Operation, Shape};
+use clebsch_symbolic::{IntoList, Operation, Shape};
 
 use super::scalar::is_unit;
 use super::{Code, Kernel, MatrixOperation};
@@ -126,7 +126,7 @@ impl fmt::Display for Cost {
             (self.calls, "f"),
         ];
         let text: Vec<String> =
-            parts.iter().filter(|(count, _)| *count > 0).map(|(count, symbol)| format!("{count}{symbol}")).collect();
+            parts.iter().filter(|(count, _)| *count > 0).map(|(count, symbol)| format!("{count}{symbol}")).into_list();
         f.write_str(if text.is_empty() { "no operations".to_string() } else { text.join(" ") }.as_str())
     }
 }

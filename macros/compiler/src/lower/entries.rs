@@ -1,6 +1,6 @@
 //! Grids of scalars: what expressions are lowered to, and kernels are made of.
 
-use clebsch_symbolic::Shape;
+use clebsch_symbolic::{IntoList, Shape};
 
 /// The identity of a scalar in its arena.
 #[derive(Copy, Clone, PartialEq, Eq, Hash, PartialOrd, Ord, Debug)]
@@ -17,7 +17,7 @@ pub struct Grid {
 
 impl Grid {
     pub(super) fn from_fn(shape: Shape, entry: impl FnMut((usize, usize)) -> Scalar) -> Grid {
-        Grid { shape, entries: shape.positions().map(entry).collect() }
+        Grid { shape, entries: shape.positions().map(entry).into_list() }
     }
 
     /// A matrix of one entry.

@@ -1,6 +1,6 @@
 //! Whether the kernels of a system are written out, entry by entry, or keep whole matrices.
 
-use clebsch_symbolic::{Expr, Group, Interner, Operation, View};
+use clebsch_symbolic::{Expr, Group, Interner, IntoList, Operation, View};
 
 use super::{too_large, written_out_too_large};
 use crate::derive::{MechanicsFormulas, Solution};
@@ -153,7 +153,7 @@ fn estimate(formulas: &MechanicsFormulas<'_>) -> usize {
     let equations = formulas.substeps.iter().flat_map(|substep| &substep.equations);
     let iterated = equations.filter(|equation| matches!(equation.solution, Solution::Newton | Solution::Linear));
     let solves: usize = iterated.map(|equation| products(&[equation.directional]) * equation.components.len()).sum();
-    let moves: Vec<Expr<'_>> = formulas.model.action.iter().chain(&formulas.coadjoint).copied().collect();
+    let moves: Vec<Expr<'_>> = formulas.model.action.iter().chain(&formulas.coadjoint).copied().into_list();
     solves + products(&moves)
 }
 

@@ -7,8 +7,8 @@ use std::collections::BTreeMap;
 use std::rc::Rc;
 
 use clebsch_symbolic::{
-    Algebra, Basis, Elements, Expr, Graph, IntoElements, Operation, Property, Rational, Shape, Sparse, Symbol, View,
-    WordTerm, integer,
+    Algebra, Basis, Elements, Expr, Graph, IntoElements, IntoList, Operation, Property, Rational, Shape, Sparse,
+    Symbol, View, WordTerm, integer,
 };
 
 use super::entries::{Grid, Scalar};
@@ -67,7 +67,7 @@ impl<'g> Scalars {
             }
             Operation::Analytic(function) => self.call(Callee::Analytic(function), vec![a], 0, shape),
             Operation::Determinant => {
-                let all: Vec<usize> = (0..a.shape.rows).collect();
+                let all: Vec<usize> = (0..a.shape.rows).into_list();
                 Grid::scalar(self.determinant(&a, &all, &all))
             }
             Operation::Function(function) => Grid::scalar(self.function(function, a.entries[0])),
@@ -135,7 +135,7 @@ impl<'g> Scalars {
     fn multiply(&mut self, a: &Grid, b: &Grid) -> Grid {
         Grid::from_fn(Shape::new(a.shape.rows, b.shape.columns), |(i, j)| {
             let factors = (0..a.shape.columns).map(|k| [a.at(i, k), b.at(k, j)]);
-            let factors: Vec<_> = factors.filter(|pair| !pair.iter().any(|x| self.is_zero(*x))).collect();
+            let factors: Vec<_> = factors.filter(|pair| !pair.iter().any(|x| self.is_zero(*x))).into_list();
             let terms: Vec<Scalar> = factors.into_each(|pair| self.product(pair));
             self.total(terms)
         })
@@ -236,7 +236,7 @@ impl<'g> Scalars {
     fn inverse(&mut self, a: &Grid) -> Grid {
         let n = a.shape.rows;
         if n <= 3 {
-            let all: Vec<usize> = (0..n).collect();
+            let all: Vec<usize> = (0..n).into_list();
             let determinant = self.determinant(a, &all, &all);
             let reciprocal = self.reciprocal(determinant);
             return Grid::from_fn(a.shape, |(i, j)| {
@@ -300,7 +300,7 @@ impl<'g> Scalars {
 }
 
 fn without(indices: &[usize], index: usize) -> Vec<usize> {
-    indices.iter().copied().filter(|&other| other != index).collect()
+    indices.iter().copied().filter(|&other| other != index).into_list()
 }
 
 /// Terms by the bases whose components they are, in the order in which these come, and the other terms; for components that are meant.

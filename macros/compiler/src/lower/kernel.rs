@@ -3,7 +3,9 @@
 mod hoisted;
 mod shorten;
 
-use clebsch_symbolic::{Elements, Function, Interner, IntoElements, Rational, Role, Shape, Table, integer, work};
+use clebsch_symbolic::{
+    Elements, Function, Interner, IntoElements, IntoList, Rational, Role, Shape, Table, integer, work,
+};
 
 use super::balance;
 use super::code::DEEPEST_EXPRESSION;
@@ -40,7 +42,7 @@ pub fn kernel(scalars: &mut Scalars, outputs: &[Grid], hoisting: Hoisting<'_>) -
     }
     let (locals, entries) = builder.code();
     let mut entries = entries.into_iter();
-    let output = |grid: &Grid| (grid.shape, entries.by_ref().take(grid.entries.len()).collect());
+    let output = |grid: &Grid| (grid.shape, entries.by_ref().take(grid.entries.len()).into_list());
     signs::moved(Kernel { locals, outputs: outputs.each(output) })
 }
 
@@ -81,7 +83,7 @@ impl Operation {
             Operation::Product(factors) => factors.clone(),
             Operation::Reciprocal(x) | Operation::Root(x, _) | Operation::Function(_, x) => vec![*x],
             Operation::Call(_, arguments) => {
-                arguments.iter().flat_map(|(_, entries)| entries.iter().copied()).collect()
+                arguments.iter().flat_map(|(_, entries)| entries.iter().copied()).into_list()
             }
             Operation::Output(call, ..) => vec![*call],
         }
@@ -223,12 +225,12 @@ impl Builder<'_, '_> {
             let slow = self.scalars.sum(integer(0), slow);
             (self.scalars.product([slow].into_iter().chain(repeated(fast))), integer(1))
         };
-        groups.iter().map(collect).collect()
+        groups.iter().map(collect).into_list()
     }
 
     /// Slow factors together and with the magnitude of the coefficient, so that one multiplication is left of them.
     fn convert_product(&mut self, mut coefficient: Rational, factors: &[(Scalar, u32)]) -> (Rational, Id) {
-        let mut factors: Vec<Scalar> = repeated(factors).collect();
+        let mut factors: Vec<Scalar> = repeated(factors).into_list();
         let mut parts = Vec::new();
         for &rate in self.slow_rates() {
             let (slow, fast): (Vec<_>, Vec<_>) =
@@ -278,7 +280,7 @@ impl Builder<'_, '_> {
                 waiting.extend(self.operands(id));
             }
         }
-        (0..is_used.len()).filter(|&id| is_used[id]).collect()
+        (0..is_used.len()).filter(|&id| is_used[id]).into_list()
     }
 
     fn terms<'t>(&'t self, id: Id, terms: &'t [(Rational, Id)]) -> &'t [(Rational, Id)] {

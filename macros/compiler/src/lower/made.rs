@@ -1,6 +1,6 @@
 //! Kernels of given expressions: each by itself, one below the other in one vector, or as matrices.
 
-use clebsch_symbolic::{Elements, Expr, Shape};
+use clebsch_symbolic::{Elements, Expr, IntoList, Shape};
 
 use super::form::has_quaternions;
 use super::kernel::kernel;
@@ -134,12 +134,12 @@ fn output(scalars: &mut Scalars, matrix: &MatrixForm<'_>) -> Grid {
         MatrixForm::Columns(columns) => {
             let columns: Vec<Vec<Scalar>> = columns.each(|parts| entries(scalars, parts));
             let shape = Shape::new(columns.first().map_or(0, Vec::len), columns.len());
-            Grid { shape, entries: shape.positions().map(|(i, j)| columns[j][i]).collect() }
+            Grid { shape, entries: shape.positions().map(|(i, j)| columns[j][i]).into_list() }
         }
     }
 }
 
 /// The entries of expressions, one after the other.
 pub(super) fn entries(scalars: &mut Scalars, expressions: &[Expr<'_>]) -> Vec<Scalar> {
-    expressions.iter().flat_map(|&expr| scalars.grid(expr).entries.clone()).collect()
+    expressions.iter().flat_map(|&expr| scalars.grid(expr).entries.clone()).into_list()
 }

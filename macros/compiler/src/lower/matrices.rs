@@ -9,8 +9,8 @@ mod hoisting;
 mod words;
 
 use clebsch_symbolic::{
-    Algebra, Elements, Expr, Fraction, Function, Graph, Group, IntoElements, Operation, Rational, Role, Shape, Symbol,
-    Table, View, WordTerm, indexed, integer, work,
+    Algebra, Elements, Expr, Fraction, Function, Graph, Group, IntoElements, IntoList, Operation, Rational, Role,
+    Shape, Symbol, Table, View, WordTerm, indexed, integer, work,
 };
 
 use super::grid::by_components;
@@ -32,7 +32,7 @@ pub(super) fn short_kernel(expressions: &[Expr<'_>]) -> Kernel {
 
 /// Vectors as one.
 pub(super) fn below<'g>(vectors: &[Expr<'g>]) -> Vec<Expr<'g>> {
-    vectors.first().map(|first| first.graph().below(vectors)).into_iter().collect()
+    vectors.first().map(|first| first.graph().below(vectors)).into_iter().into_list()
 }
 
 /// Numbers, one after the other in one output, for a person to read.
@@ -55,7 +55,7 @@ pub(super) fn largest(expressions: &[Expr<'_>]) -> Kernel {
                 lowering.of_matrix(MatrixOperation::Largest, expr, Shape::scalar())
             }
         });
-        vec![column(largest.collect())]
+        vec![column(largest.into_list())]
     })
 }
 
@@ -248,7 +248,7 @@ impl Matrices {
     /// ⟨abᵀ, E⟩ of rotations, without the matrix.
     fn outer(&mut self, graph: &Graph, algebra: Algebra, a: Expr<'_>) -> Option<Code> {
         let (word, cut) = outer_product(graph, algebra, a)?;
-        let row: Vec<Expr<'_>> = word[cut..].iter().rev().map(|letter| letter.transpose()).collect();
+        let row: Vec<Expr<'_>> = word[cut..].iter().rev().map(|letter| letter.transpose()).into_list();
         let operands = vec![self.product(&word[..cut]), self.product(&row)];
         Some(self.operation(MatrixOperation::SkewOuter, operands, Shape::vector(algebra.dimension)))
     }
@@ -347,10 +347,10 @@ impl Matrices {
         let columns = numbers.len() / shape.rows;
         let row = |row: &[Rational]| {
             let terms = row.iter().enumerate().filter(|(_, number)| **number != integer(0));
-            let terms: Vec<_> = terms.map(|(j, number)| (number.clone(), self.entry(vector, j, 0))).collect();
+            let terms: Vec<_> = terms.map(|(j, number)| (number.clone(), self.entry(vector, j, 0))).into_list();
             linear(integer(0), terms)
         };
-        let entries: Vec<Code> = numbers.chunks(columns).map(row).collect();
+        let entries: Vec<Code> = numbers.chunks(columns).map(row).into_list();
         self.entries(shape, entries)
     }
 
@@ -418,7 +418,7 @@ impl Matrices {
                     let weight = linear(integer(0), vec![(coefficient, scale)]);
                     if self.joins_blocks && self.is_listed(&product) {
                         let entries = shape.positions().map(|(i, j)| times(&weight, self.entry(&product, i, j)));
-                        let entries = entries.collect();
+                        let entries = entries.into_list();
                         parts.push((integer(1), self.entries(shape, entries)));
                         continue;
                     }

@@ -23,7 +23,7 @@ mod stepping;
 mod sums;
 mod variation;
 
-use clebsch_symbolic::{Elements, Expr, IntoElements};
+use clebsch_symbolic::{Elements, Expr, IntoElements, IntoList};
 
 use crate::derive::{self, Formulas, Id, MechanicsFormulas, SteeredFormulas, Stencil};
 use crate::diagnostic::{Diagnostic, Diagnostics};
@@ -102,7 +102,7 @@ fn of_steps(formulas: &MechanicsFormulas<'_>) -> Vec<Id> {
     let lift = formulas.collocation.as_ref().map(|_| Id::Lift);
     let map = formulas.model.power.as_ref().map(|_| Id::MomentumMap);
     let coupled = (0..formulas.substeps.len()).filter(|&index| formulas.substeps[index].other.is_some());
-    lift.into_iter().chain(map).chain(coupled.map(Id::MomentumAfter)).collect()
+    lift.into_iter().chain(map).chain(coupled.map(Id::MomentumAfter)).into_list()
 }
 
 /// Code that is written out has a limit, as a whole and in one function.
@@ -167,7 +167,7 @@ impl<'g> Maker<'_, 'g> {
         let mut gradients = Vec::new();
         for (number, link) in formulas.links.iter().enumerate() {
             self.rows([Id::Term(number)]);
-            let slopes: Vec<Expr<'_>> = link.gradient.iter().flat_map(|(_, leaves)| leaves.iter().copied()).collect();
+            let slopes: Vec<Expr<'_>> = link.gradient.iter().flat_map(|(_, leaves)| leaves.iter().copied()).into_list();
             gradients.push((Id::TermGradients(number), plain(&mut self.scalars, &slopes)));
         }
         let stencil = derive::stencil(&formulas.model, &formulas.links);
@@ -190,7 +190,7 @@ impl<'g> Maker<'_, 'g> {
             (Id::TermGradient(term, *place), plain(&mut self.scalars, slopes))
         };
         let others = stencil.others.each(other);
-        [(Id::SiteGradient, common)].into_iter().chain(others).collect()
+        [(Id::SiteGradient, common)].into_iter().chain(others).into_list()
     }
 
     /// κ of an inertia κI, else Σ, with half of its diagonal for prints; where matrices are kept Σξ.
@@ -207,7 +207,7 @@ impl<'g> Maker<'_, 'g> {
     /// ℓ(ξ) with its gradient and its Hessian, where the Lagrangian is not quadratic.
     fn velocity(&mut self) {
         let parts = [Id::Lagrangian, Id::LagrangianGradient, Id::LagrangianHessian].map(|id| self.rows.value(id));
-        let parts: Vec<Expr<'_>> = parts.into_iter().flatten().flatten().copied().collect();
+        let parts: Vec<Expr<'_>> = parts.into_iter().flatten().flatten().copied().into_list();
         if !parts.is_empty() {
             self.add(Id::Lagrangian, |scalars, _| plain(scalars, &parts));
         }
@@ -220,7 +220,7 @@ impl<'g> Maker<'_, 'g> {
             return self.add(Id::Membership, |_, _| matrices::largest(equations));
         }
         let all = entries(&mut self.scalars, equations).into_iter();
-        let entries: Vec<Scalar> = all.filter(|&entry| !self.scalars.is_zero(entry)).collect();
+        let entries: Vec<Scalar> = all.filter(|&entry| !self.scalars.is_zero(entry)).into_list();
         if !entries.is_empty() {
             let equations = [Grid::vector(entries)];
             self.add(Id::Membership, |scalars, _| kernel::kernel(scalars, &equations, Hoisting::Nothing));

@@ -3,7 +3,7 @@
 //! Factors stand side by side, those below a fraction bar behind `per`; what is multiplied with a sum stands before `of`. A sum of entries of one
 //! field names the field once.
 
-use clebsch_symbolic::{Elements, Rational, Role, integer, work};
+use clebsch_symbolic::{Elements, IntoList, Rational, Role, integer, work};
 
 use super::scalar::{Factors, add as add_to};
 use super::{Callee, Hoisted, Input, Scalar, ScalarNode, Scalars};
@@ -108,10 +108,10 @@ impl Scalars {
             terms.iter().map(|(_, factors)| power(factors)).min().unwrap_or(0)
         };
         let common = factors.iter().map(|&(base, _)| (base, in_all(base))).filter(|(_, power)| *power > 0);
-        let common: Factors = common.collect();
+        let common: Factors = common.into_list();
         let rest = |(weight, factors): &Term| {
             let left = factors.iter().map(|&(base, power)| (base, power - in_all(base)));
-            (weight / &size, left.filter(|(_, power)| *power > 0).collect())
+            (weight / &size, left.filter(|(_, power)| *power > 0).into_list())
         };
         let rest = self.joined(constant, &terms.each(rest))?;
         if size.is_one() && common.is_empty() {

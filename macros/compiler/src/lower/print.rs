@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use clebsch_symbolic::{Analytic, Elements, Operation, Rational, integer, joined};
+use clebsch_symbolic::{Analytic, Elements, IntoList, Operation, Rational, integer, joined};
 
 use super::{Callee, Code, Form, Input, Kernel, KernelTable, LARGEST_UNROLLED, MOST_UNKNOWNS, MatrixOperation};
 use super::{MechanicsProgram, Program, Solve, Whole};
@@ -49,7 +49,7 @@ impl KernelTable {
         let upper = shape.positions().zip(entries).filter(|((i, j), _)| i <= j);
         let coefficients = upper.map(|((i, j), entry)| (i, j, inlined(kernel, entry)));
         let coefficients = coefficients.filter(|(_, _, code)| *code != Code::Number(integer(0)));
-        Some(coefficients.map(|(i, j, code)| (i, j, self.text(&code, 0))).collect())
+        Some(coefficients.map(|(i, j, code)| (i, j, self.text(&code, 0))).into_list())
     }
 
     /// The text of a code; `place` is 0 in a sum, 1 in a product, 2 below a fraction bar.
@@ -73,7 +73,7 @@ impl KernelTable {
             Code::Product(factors) => {
                 let product = |factors: &[&Code]| factors.each(|factor| self.text(factor, 1)).join("*");
                 let text = match Code::quotient(factors) {
-                    None => product(&factors.iter().collect::<Vec<_>>()),
+                    None => product(&factors.iter().into_list()),
                     Some((above, below)) => {
                         let above = if above.is_empty() { "1".to_string() } else { product(&above) };
                         below.iter().fold(above, |text, divisor| format!("{text}/{}", self.text(divisor, 2)))
@@ -88,7 +88,7 @@ impl KernelTable {
             Code::Call(callee, arguments) => {
                 let entries = |entries: &[Code]| entries.each(|entry| self.text(entry, 0));
                 let arguments = arguments.iter().map(|(_, argument)| format!("[{}]", entries(argument).join(", ")));
-                format!("{callee}({})", arguments.collect::<Vec<_>>().join(", "))
+                format!("{callee}({})", arguments.into_list().join(", "))
             }
             Code::Output(local, callee, output) => match callee {
                 Callee::Value(_) => format!("t{local}"),

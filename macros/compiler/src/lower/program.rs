@@ -1,6 +1,6 @@
 //! The value of this stage: a table of kernels, each with the id of what it computes.
 
-use clebsch_symbolic::Elements;
+use clebsch_symbolic::{Elements, IntoList};
 use std::ops::Deref;
 
 use super::{Cost, Form, Kernel, Solve};
@@ -154,7 +154,7 @@ impl KernelTable {
 
     /// Those that a system has of these kernels.
     fn named(&self, ids: impl IntoIterator<Item = (String, Id)>) -> Vec<(String, &Kernel)> {
-        ids.into_iter().filter_map(|(name, id)| Some((name, self.find(id)?))).collect()
+        ids.into_iter().filter_map(|(name, id)| Some((name, self.find(id)?))).into_list()
     }
 }
 
@@ -225,7 +225,7 @@ impl MechanicsProgram<'_> {
         };
         let others = self.gathered.iter().flat_map(|stencil| &stencil.others).map(of_place);
         let of_site = [("gradient_of_site".to_string(), Id::SiteGradient)];
-        (0..links.len()).flat_map(of_term).chain(of_site).chain(others).collect()
+        (0..links.len()).flat_map(of_term).chain(of_site).chain(others).into_list()
     }
 
     /// Whether a kernel is what a step or a method calls.

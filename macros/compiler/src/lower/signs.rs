@@ -6,7 +6,7 @@
 //! A shared term −a − b is computed as it is where a does not change in the loop of a solve: −a is made once. Where a changes, a + b is computed and
 //! then subtracted.
 
-use clebsch_symbolic::{Interner, IntoElements, Rational, Shape, integer, work};
+use clebsch_symbolic::{Interner, IntoElements, IntoList, Rational, Shape, integer, work};
 
 use super::{Code, Cost, Kernel, MatrixOperation, Whole};
 
@@ -32,7 +32,7 @@ pub(super) fn moved(kernel: Kernel) -> Kernel {
     let outputs = kernel.outputs.into_each(|(shape, entries)| (shape, whole(entries)));
     let locals = signs.locals.into_values().into_iter().zip(signs.are_negative);
     let locals = locals.map(|(code, is_negative)| if is_negative { negative(code) } else { code });
-    Kernel { locals: locals.collect(), outputs }
+    Kernel { locals: locals.into_list(), outputs }
 }
 
 /// The negative of a code whose signs have been moved.
@@ -43,7 +43,7 @@ pub(super) fn negative(code: Code) -> Code {
             terms.iter_mut().for_each(flip);
             match terms.pop() {
                 Some((weight, only)) if weight.is_one() => only,
-                term => Code::Sum(constant, term.into_iter().collect()),
+                term => Code::Sum(constant, term.into_iter().into_list()),
             }
         }
         Code::Sum(constant, terms) => negative_sum(constant, terms),
@@ -158,7 +158,7 @@ impl Signs {
         let Whole { operation, operands, shape, cost } = whole;
         match operation {
             MatrixOperation::Sum(weights) => {
-                let mut parts: Vec<_> = weights.into_iter().zip(operands).collect();
+                let mut parts: Vec<_> = weights.into_iter().zip(operands).into_list();
                 parts.sort_by_key(|(weight, _)| weight.is_negative());
                 let mut parts: Vec<_> = parts.into_each(|(weight, part)| self.weighted(weight, part, true));
                 let is_negative = parts.iter().all(|(weight, _)| weight.is_negative());

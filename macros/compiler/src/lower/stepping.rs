@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use clebsch_symbolic::{Elements, Role, indexed};
+use clebsch_symbolic::{Elements, IntoList, Role, indexed};
 
 use super::made::{Maker, of_matrices, plain, separate};
 use super::{Code, Hoisted, Hoisting, Kernel, MechanicsProgram, Step, matrices};
@@ -89,7 +89,7 @@ impl<'g> Maker<'_, 'g> {
     /// Hamilton's equations, q′ and p′ for each leaf, and the covector of a momentum.
     pub(super) fn collocation(&mut self, formulas: &MechanicsFormulas<'g>) {
         let Some(collocation) = &formulas.collocation else { return };
-        let slopes: Vec<_> = collocation.velocity.iter().chain(&collocation.force).copied().collect();
+        let slopes: Vec<_> = collocation.velocity.iter().chain(&collocation.force).copied().into_list();
         self.known_rows([Id::Guess]);
         for (id, expressions) in [(Id::HamiltonEquations, &slopes), (Id::Covector, &collocation.lift)] {
             self.add(id, |scalars, hoisted| separate(scalars, expressions, Hoisting::Constants(hoisted)));
@@ -112,7 +112,7 @@ impl<'g> Maker<'_, 'g> {
         };
         let predict = start.map(|start| self.stack(&start));
         let sine_squared = equation.sine_squared.map(|square| (Id::SineSquared(index, number), self.stack(&[square])));
-        let mut kernels: Vec<(Id, Kernel)> = sine_squared.into_iter().collect();
+        let mut kernels: Vec<(Id, Kernel)> = sine_squared.into_iter().into_list();
         let mut residual = None;
         match equation.solution {
             Solution::Explicit | Solution::ClosedForm | Solution::FreeRotation => {}
@@ -131,9 +131,9 @@ impl<'g> Maker<'_, 'g> {
         kernels.extend(predict.map(|kernel| (solved, kernel)));
         let (momenta, given) = read(formulas, &kernels);
         let is_other = |component: &usize| !equation.components.contains(component);
-        let given: Vec<usize> = given.into_iter().filter(is_other).collect();
+        let given: Vec<usize> = given.into_iter().filter(is_other).into_list();
         let momenta = equation.components.iter().copied().chain(momenta.into_iter().filter(is_other));
-        let momenta: Vec<usize> = momenta.collect();
+        let momenta: Vec<usize> = momenta.into_list();
         // Σ⁻¹ρ takes the components of its own unknowns alone
         let residual = residual.filter(|_| momenta.len() == equation.components.len() && given.is_empty());
         kernels.extend(residual.map(|kernel| (Id::Residual(index, number), kernel)));

@@ -1,6 +1,6 @@
 //! Sums within sums.
 
-use clebsch_symbolic::{Rational, Table, integer};
+use clebsch_symbolic::{IntoList, Rational, Table, integer};
 
 use super::kernel::Id;
 use super::scalar::is_unit;
@@ -41,7 +41,7 @@ fn shortest(
     }
     // of equals the shortest: what others are made of as well
     let is_part = |position: &usize| sums[*position].1 && sums[*position].2.len() > 1;
-    let mut parts: Vec<usize> = (0..sums.len()).filter(is_part).collect();
+    let mut parts: Vec<usize> = (0..sums.len()).filter(is_part).into_list();
     parts.sort_by_key(|&position| sums[position].2.len());
     let mut found: Table<usize, Vec<(Rational, Id)>> = Table::default();
     for part in parts {
@@ -94,7 +94,7 @@ fn replaced(whole: &[(Rational, Id)], part: &[(Rational, Id)], name: Id) -> Opti
         Some(taken) => (weight.clone() - taken * &sign, *term),
         None => (weight.clone(), *term),
     });
-    let left: Vec<_> = left.filter(|(weight, _)| !weight.is_zero()).chain([(sign.clone(), name)]).collect();
+    let left: Vec<_> = left.filter(|(weight, _)| !weight.is_zero()).chain([(sign.clone(), name)]).into_list();
     (work(&left) < work(whole)).then_some(left)
 }
 

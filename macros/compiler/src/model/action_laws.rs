@@ -1,7 +1,7 @@
 //! The laws of the action, checked exactly and factor by factor: the identity moves nothing, products act as one after the
 //! other, different factors do not meet, and every factor moves something. The side of each factor is found here.
 
-use clebsch_symbolic::{Chart, Elements, Expr, Graph, Group, Operation, Role, View, identity, indexed};
+use clebsch_symbolic::{Chart, Elements, Expr, Graph, Group, IntoList, Operation, Role, View, identity, indexed};
 
 use super::{Configuration, Factor, LeafSpace, Side};
 use crate::diagnostic::Diagnostics;
@@ -34,7 +34,7 @@ pub(super) fn check(action: &Action, diagnostics: &Diagnostics) -> Option<Vec<(S
     let is_of = |side| sides.iter().any(|(found, _)| *found == Some(side));
     let open = if is_of(Side::Right) && !is_of(Side::Left) { Side::Right } else { Side::Left };
     let laws = sides.iter().map(|&(side, moves)| (side.unwrap_or(open), moves));
-    (diagnostics.len() == before).then(|| laws.collect())
+    (diagnostics.len() == before).then(|| laws.into_list())
 }
 
 impl<'g> Action<'_, 'g> {
@@ -48,7 +48,7 @@ impl<'g> Action<'_, 'g> {
             let given = elements.iter().find(|(other, _)| *other == index).map(|&(_, element)| element);
             (factor.symbol, given.unwrap_or_else(|| factor.group.identity(self.graph)))
         };
-        let mut rules: Vec<(Expr<'g>, Expr<'g>)> = self.factors.iter().enumerate().map(at_factor).collect();
+        let mut rules: Vec<(Expr<'g>, Expr<'g>)> = self.factors.iter().enumerate().map(at_factor).into_list();
         rules.extend(self.points().into_iter().zip(point.iter().copied()));
         self.value.each(|expr| expr.substitute(&rules))
     }

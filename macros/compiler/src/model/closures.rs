@@ -1,6 +1,6 @@
 //! The closures as a whole: what each of them gives, and what it has to give.
 
-use clebsch_symbolic::{Expr, Graph, Shape};
+use clebsch_symbolic::{Expr, Graph, IntoList, Shape};
 use syn::{BinOp, Expr as Syntax, ExprBinary};
 
 use super::elaborate::{Context, Elaborator};
@@ -131,7 +131,7 @@ impl<'g> Closures<'_, '_, 'g> {
     fn opaque(&self, opaque: &Opaque) -> Option<Expr<'g>> {
         let time = opaque.takes_time.then_some(self.arguments.time);
         let points = self.typed.space.as_ref()?.leaves.iter().map(|leaf| leaf.symbol);
-        let arguments: Vec<Expr<'g>> = time.into_iter().chain(points).collect();
+        let arguments: Vec<Expr<'g>> = time.into_iter().chain(points).into_list();
         let method = opaque.value.segments.last().map(|segment| segment.ident.to_string()).unwrap_or_default();
         Some(self.context.graph.opaque(&method, 0, &arguments, Shape::scalar()))
     }

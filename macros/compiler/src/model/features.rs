@@ -7,7 +7,7 @@ mod rows;
 #[cfg(test)]
 mod tests;
 
-use clebsch_symbolic::{Elements, IntoElements};
+use clebsch_symbolic::{Elements, IntoElements, IntoList};
 use proc_macro2::Span;
 
 use crate::diagnostic::{Diagnostic, Diagnostics, Location, error};
@@ -166,7 +166,7 @@ fn markdown_row(row: &Row) -> String {
 /// Angles outside of code begin a tag of HTML in Markdown.
 fn without_tags(text: &str) -> String {
     let part = |(position, part): (usize, &str)| if position % 2 == 0 { part.replace('<', "\\<") } else { part.into() };
-    text.split('`').enumerate().map(part).collect::<Vec<_>>().join("`")
+    text.split('`').enumerate().map(part).into_list().join("`")
 }
 
 /// Few features by their words, else what stands for them.

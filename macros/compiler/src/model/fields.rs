@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use clebsch_symbolic::{Elements, Graph, Property, Role, Shape, indexed};
+use clebsch_symbolic::{Elements, Graph, IntoList, Property, Role, Shape, indexed};
 use proc_macro2::{Span, TokenStream, TokenTree};
 use quote::ToTokens;
 use syn::ext::IdentExt;
@@ -170,7 +170,7 @@ fn parameter<'g>(
         let symbol = graph.symbol(&format!("{name}{accessor}"), shape, role, property);
         Leaf { symbol, accessor, shape, is_scalar: ty.is_scalar }
     };
-    let leaves = ty.structure.accessors().into_iter().enumerate().map(leaf).collect();
+    let leaves = ty.structure.accessors().into_iter().enumerate().map(leaf).into_list();
     Ok(Parameter {
         field: field.member.clone(),
         name,
@@ -184,7 +184,7 @@ fn parameter<'g>(
 
 /// Where each field is first read: `self.name` anywhere in a closure, macros included.
 fn first_uses(stream: TokenStream, uses: &mut BTreeMap<String, Span>) {
-    let tokens: Vec<TokenTree> = stream.into_iter().collect();
+    let tokens: Vec<TokenTree> = stream.into_iter().into_list();
     for (position, token) in tokens.iter().enumerate() {
         if let TokenTree::Group(group) = token {
             first_uses(group.stream(), uses);

@@ -1,6 +1,6 @@
 //! Forces: the closures `force` and `force_on`, with the velocity and the input that they introduce.
 
-use clebsch_symbolic::{Elements, Expr, Graph, Role, Shape, indexed};
+use clebsch_symbolic::{Elements, Expr, Graph, IntoList, Role, Shape, indexed};
 
 use super::closures::{optional, written};
 use super::features::{self, Feature, Found};
@@ -41,7 +41,7 @@ impl<'g> ActedSystem<'_, '_, 'g> {
         let input = all.find_map(|read| read.input.clone()).unwrap_or_else(Space::point);
         // both closures speak of one velocity, each under its own name
         let renamed = |read: &ReadForce<'g>| -> Vec<Expr<'g>> {
-            let names: Vec<_> = read.velocities.iter().copied().zip(velocities.iter().flatten().copied()).collect();
+            let names: Vec<_> = read.velocities.iter().copied().zip(velocities.iter().flatten().copied()).into_list();
             read.value.each(|part| part.substitute(&names))
         };
         let closures = declaration.force.iter().chain(&declaration.force_on);
@@ -49,7 +49,7 @@ impl<'g> ActedSystem<'_, '_, 'g> {
             of_group: of_group.as_ref().map(renamed),
             on_configuration: on_leaves.as_ref().map(renamed),
             velocities,
-            written: closures.map(written).collect(),
+            written: closures.map(written).into_list(),
         });
         Some((force, input))
     }

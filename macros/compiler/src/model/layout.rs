@@ -1,6 +1,6 @@
 //! How the leaves of a product nest, and how each is reached.
 
-use clebsch_symbolic::Elements;
+use clebsch_symbolic::{Elements, IntoList};
 use std::fmt;
 
 /// The nesting of leaves, which are numbered from left to right.
@@ -24,7 +24,7 @@ impl Layout {
     pub(super) fn numbers(&self) -> Vec<usize> {
         match self {
             Layout::Leaf(leaf) => vec![*leaf],
-            Layout::Tuple(parts) | Layout::Array(parts) => parts.iter().flat_map(Layout::numbers).collect(),
+            Layout::Tuple(parts) | Layout::Array(parts) => parts.iter().flat_map(Layout::numbers).into_list(),
         }
     }
 
@@ -47,7 +47,7 @@ impl Layout {
         let within = |(position, part): (usize, &Layout)| -> Vec<Access> {
             part.accessors().each(|access| access.within(step(position)))
         };
-        parts.iter().enumerate().flat_map(within).collect()
+        parts.iter().enumerate().flat_map(within).into_list()
     }
 
     /// The same nesting with its leaves numbered from `offset` on.
@@ -102,7 +102,7 @@ impl Access {
     #[must_use]
     pub fn inside_site(&self) -> Access {
         let parts = self.0.iter().copied();
-        Access(parts.filter(|part| !matches!(part, Part::Site(_))).collect())
+        Access(parts.filter(|part| !matches!(part, Part::Site(_))).into_list())
     }
 }
 

@@ -46,7 +46,7 @@ pub use types::*;
 
 use std::rc::Rc;
 
-use clebsch_symbolic::{Expr, Graph};
+use clebsch_symbolic::{Expr, Graph, IntoList};
 
 use self::action_laws::Action;
 use self::closures::{Closures, optional};
@@ -74,7 +74,7 @@ pub fn model<'g>(graph: &'g Graph, declaration: &Declaration) -> Result<Model<'g
     let groups = types.and_then(|types| spaces::read_groups(types.group, names));
     let spaces = types.and_then(|types| spaces::read_spaces(types.space, names));
     let scalars: Vec<&syn::Type> =
-        spaces.iter().flat_map(|spaces| &spaces.leaves).filter_map(|(leaf, _)| leaf.scalar).collect();
+        spaces.iter().flat_map(|spaces| &spaces.leaves).filter_map(|(leaf, _)| leaf.scalar).into_list();
     let fields = fields::read(graph, declaration, &scalars, sites, &diagnostics);
     let (Some(types), Some(groups), Some(spaces)) = (types, groups, spaces) else { return Err(diagnostics) };
     let typed = Typed::new(graph, types, groups, spaces);
@@ -198,7 +198,7 @@ impl<'g> ClosureValues<'g> {
         let element = &typed.element;
         let mut system = ActedSystem { context, arguments, names, element, factors, space, action: &action };
         let offered = declaration.symmetries.iter().enumerate();
-        let symmetries = offered.filter_map(|symmetry| system.symmetry(symmetry)).collect();
+        let symmetries = offered.filter_map(|symmetry| system.symmetry(symmetry)).into_list();
         forces::check_dials(declaration, diagnostics);
         let endpoint = optional(declaration.endpoint.as_ref(), |closure| system.endpoint(closure));
         let forces = system.forces(declaration);

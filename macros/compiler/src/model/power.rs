@@ -7,7 +7,7 @@
 #[cfg(test)]
 mod tests;
 
-use clebsch_symbolic::{Expr, Rational, Role};
+use clebsch_symbolic::{Expr, IntoList, Rational, Role};
 
 /// One site that terms read.
 #[derive(Clone, PartialEq, Eq)]
@@ -34,7 +34,7 @@ impl Term<'_> {
     /// What its indices run through, `i in 0..N, j in i + 1..N`; nothing where there is no sum.
     pub fn indices(&self) -> String {
         let of_depth = |(depth, (from, to)): (usize, &Range<'_>)| format!("{} in {from}..{to}", index_name(depth));
-        self.ranges.iter().enumerate().map(of_depth).collect::<Vec<_>>().join(", ")
+        self.ranges.iter().enumerate().map(of_depth).into_list().join(", ")
     }
 }
 

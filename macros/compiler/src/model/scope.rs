@@ -1,6 +1,6 @@
 //! The names that an expression may use, and what is known about those that it may not.
 
-use clebsch_symbolic::{Expr, Group};
+use clebsch_symbolic::{Expr, Group, IntoList};
 use proc_macro2::Ident;
 use syn::ext::IdentExt;
 
@@ -36,14 +36,14 @@ pub(super) fn bindings<'g>(
         (Pattern::Name(ident), value) => vec![(ident.clone(), value)],
         (Pattern::Tuple(patterns, _), Some(Value::Tuple(parts))) if patterns.len() == parts.len() => {
             let parts = patterns.iter().zip(parts);
-            parts.flat_map(|(pattern, part)| bindings(pattern, Some(part), diagnostics)).collect()
+            parts.flat_map(|(pattern, part)| bindings(pattern, Some(part), diagnostics)).into_list()
         }
         (Pattern::Tuple(patterns, place), value) => {
             if let Some(value) = value {
                 report!(diagnostics, *place, "`{}` does not fit {}", pattern.spell(), value.describe();
                     help "write as many names as the tuple has parts, or one for all");
             }
-            patterns.iter().flat_map(|pattern| bindings(pattern, None, diagnostics)).collect()
+            patterns.iter().flat_map(|pattern| bindings(pattern, None, diagnostics)).into_list()
         }
     }
 }
@@ -88,7 +88,7 @@ impl<'g> Scope<'g> {
 
     /// Notes which symbols are velocities, each of one factor.
     pub fn set_velocities(&mut self, velocities: &[Expr<'g>], factors: &[Factor<'g>]) {
-        self.velocities = velocities.iter().copied().zip(factors.iter().map(|factor| factor.group)).collect();
+        self.velocities = velocities.iter().copied().zip(factors.iter().map(|factor| factor.group)).into_list();
     }
 
     /// The value of a name, the latest first.

@@ -1,7 +1,7 @@
 //! Sizes and shapes in types: `Vector3`, `Matrix2x3<f64>`, `SMatrix<f64, 2, 8>`, recognised by their last path segment; and the limits within
 //! which the compiler is sure to come to an end.
 
-use clebsch_symbolic::Shape;
+use clebsch_symbolic::{IntoList, Shape};
 use syn::{Expr, ExprLit, GenericArgument, GenericParam, Generics, Lit, LitInt, PathArguments, PathSegment, Type};
 
 use crate::diagnostic::{Diagnostic, Location, bail, error};
@@ -103,7 +103,7 @@ pub(super) fn last_name(ty: &Type) -> String {
 
 pub(super) fn arguments(segment: &PathSegment) -> Vec<&GenericArgument> {
     let PathArguments::AngleBracketed(arguments) = &segment.arguments else { return Vec::new() };
-    arguments.args.iter().collect()
+    arguments.args.iter().into_list()
 }
 
 /// The shape that a name like `Matrix2x3` stands for.

@@ -1,6 +1,6 @@
 //! The sites of a power while closures are read: what they meet, and what becomes of the model of one site.
 
-use clebsch_symbolic::{Elements, Expr, Graph, Property, Role, Shape};
+use clebsch_symbolic::{Elements, Expr, Graph, IntoList, Property, Role, Shape};
 use proc_macro2::Ident;
 
 use super::features::{self, Feature, Found};
@@ -49,7 +49,7 @@ impl<'g> Sites<'g> {
             let name = format!("{}[{text}]{}", self.pattern, leaf.accessor);
             Value::leaf(like(leaf.symbol, &name, Role::At(place, number)), leaf.is_quaternion)
         };
-        let leaves: Vec<Value<'g>> = self.space.leaves.iter().enumerate().map(leaf).collect();
+        let leaves: Vec<Value<'g>> = self.space.leaves.iter().enumerate().map(leaf).into_list();
         Value::nested(&self.space.layout, &leaves)
     }
 
@@ -65,7 +65,7 @@ impl<'g> Sites<'g> {
             let name = format!("{}[{text}]{}", parameter.name, leaf.accessor);
             like(leaf.symbol, &name, Role::Parameter(first + number))
         };
-        let leaves: Vec<Expr<'g>> = parameter.leaves.iter().enumerate().map(leaf).collect();
+        let leaves: Vec<Expr<'g>> = parameter.leaves.iter().enumerate().map(leaf).into_list();
         self.entries.push((field, place, leaves.clone()));
         leaves
     }
@@ -139,7 +139,7 @@ pub(super) fn power_of<'g>(
     let by_site =
         |field: &&Parameter<'g>| reads(energy, field) || system.action.iter().any(|image| reads(*image, field));
     let by_terms = |field: &&Parameter<'g>| !field.per_site && terms.iter().any(|term| reads(term.value, field));
-    let mut parameters: Vec<Parameter<'g>> = system.parameters.iter().filter(by_terms).cloned().collect();
+    let mut parameters: Vec<Parameter<'g>> = system.parameters.iter().filter(by_terms).cloned().into_list();
     for (field, place, leaves) in &sites.entries {
         let field = &system.parameters[*field];
         let leaf = |(leaf, symbol): (&Leaf<'g>, &Expr<'g>)| Leaf {
@@ -147,10 +147,10 @@ pub(super) fn power_of<'g>(
             accessor: leaf.accessor.within(Part::Site(*place)),
             ..leaf.clone()
         };
-        let leaves = field.leaves.iter().zip(leaves).map(leaf).collect();
+        let leaves = field.leaves.iter().zip(leaves).map(leaf).into_list();
         parameters.push(Parameter { leaves, ..field.clone() });
     }
-    let mut of_site: Vec<Parameter<'g>> = system.parameters.iter().filter(by_site).cloned().collect();
+    let mut of_site: Vec<Parameter<'g>> = system.parameters.iter().filter(by_site).cloned().into_list();
     let copied = of_site.each(|parameter| parameter.field.clone());
     for parameter in &mut of_site {
         if let syn::Member::Unnamed(index) = &parameter.field {

@@ -1,6 +1,6 @@
 //! Which argument stands for what: each is found by the name that the action gives, and they keep their order.
 
-use clebsch_symbolic::Elements;
+use clebsch_symbolic::{Elements, IntoList};
 use syn::ext::IdentExt;
 
 use super::arguments::TypedArguments;
@@ -136,7 +136,7 @@ impl<'d> Matched<'d> {
         }
         // a velocity before the other arguments is in another order
         let is_new = |position: &usize| taken[*position].is_none() && !names.is_known(&arguments[*position].pattern);
-        let new: Vec<usize> = (0..untyped).filter(is_new).collect();
+        let new: Vec<usize> = (0..untyped).filter(is_new).into_list();
         if let &[only] = new.as_slice()
             && slots.contains(&Slot::Velocity)
             && !taken.contains(&Some(Slot::Velocity))
@@ -276,7 +276,7 @@ impl<'d> Matched<'d> {
     }
 
     fn check_order(&self) {
-        let order: Vec<usize> = self.taken.iter().flatten().filter_map(|slot| self.index(*slot)).collect();
+        let order: Vec<usize> = self.taken.iter().flatten().filter_map(|slot| self.index(*slot)).into_list();
         if !self.has_error() && !order.is_sorted() {
             let key = &self.closure.key;
             report!(self.names.diagnostics, self.closure.head, "the arguments of the {key} are in another order";
@@ -304,7 +304,7 @@ impl<'d> Matched<'d> {
         let of_velocity = self.of_velocity().into_iter().flat_map(|(velocity, help)| {
             velocity.names().into_iter().map(move |ident| (ident.unraw().to_string(), help.clone()))
         });
-        missing.chain(of_velocity).collect()
+        missing.chain(of_velocity).into_list()
     }
 
     /// What the closure may depend on.

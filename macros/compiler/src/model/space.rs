@@ -1,6 +1,6 @@
 //! Products of spaces: their leaves, what a value gives for each, and the names that a pattern gives them.
 
-use clebsch_symbolic::{Elements, Expr, Graph, Role};
+use clebsch_symbolic::{Elements, Expr, Graph, IntoList, Role};
 use syn::ext::IdentExt;
 use syn::{Expr as Syntax, Ident};
 
@@ -33,7 +33,7 @@ impl<'g> Space<'g> {
             let SpaceType { space, shape, is_quaternion, .. } = *leaf;
             Configuration { symbol, name, space, shape, is_quaternion, accessor }
         });
-        Some(Space { leaves: leaves.collect(), layout })
+        Some(Space { leaves: leaves.into_list(), layout })
     }
 
     /// The space of a single point.

@@ -1,6 +1,6 @@
 //! The two typed arguments of the action: the group and the space of configurations, with products of both.
 
-use clebsch_symbolic::{Group, Property, Shape};
+use clebsch_symbolic::{Group, IntoList, Property, Shape};
 use syn::{GenericArgument, Type};
 
 use super::groups::{GroupNames, group, known_group, suggestion};
@@ -58,7 +58,7 @@ impl<'t, L: Clone> Product<'t, L> {
         let diagnostics = names.diagnostics;
         let product = match ty {
             Type::Tuple(tuple) if !tuple.elems.is_empty() => {
-                let factors: Vec<_> = tuple.elems.iter().filter_map(read).collect();
+                let factors: Vec<_> = tuple.elems.iter().filter_map(read).into_list();
                 (factors.len() == tuple.elems.len()).then(|| Product::of(factors, Layout::Tuple))?
             }
             Type::Array(array) => {

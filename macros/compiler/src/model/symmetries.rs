@@ -1,6 +1,6 @@
 //! Symmetries that the user offers: `|S: SO<3>, q, F| (q′, F′)`, checked to be actions that agree with the action of the system.
 
-use clebsch_symbolic::{Elements, Expr, Group, Role, identity};
+use clebsch_symbolic::{Elements, Expr, Group, IntoList, Role, identity};
 use syn::Type;
 
 use super::action_errors::{ascii, first_difference};
@@ -126,7 +126,7 @@ impl<'g> ActedSystem<'_, '_, 'g> {
         }
         // (Φ_F q)′ and Φ_{F′}(q′)
         let substituted = |images: &[Expr<'g>], values: &[Expr<'g>]| -> Vec<Expr<'g>> {
-            let rules: Vec<_> = leaves.iter().map(|leaf| leaf.symbol).zip(values.iter().copied()).collect();
+            let rules: Vec<_> = leaves.iter().map(|leaf| leaf.symbol).zip(values.iter().copied()).into_list();
             images.each(|image| image.substitute(&rules))
         };
         let stepped_then_moved = substituted(points, self.action);

@@ -1,6 +1,6 @@
 //! The factors of the group, the leaves of the configuration and velocities: their symbols, and what they are in closures.
 
-use clebsch_symbolic::{Block, Elements, Expr, Graph, Group, Property, Role, Shape};
+use clebsch_symbolic::{Block, Elements, Expr, Graph, Group, IntoList, Property, Role, Shape};
 use syn::Type;
 
 use super::arguments::TypedArguments;
@@ -47,7 +47,7 @@ impl<'g> Typed<'g> {
                 accessor,
                 ..Factor::new(graph, *leaf, name, Role::Element(k))
             });
-            factors.collect()
+            factors.into_list()
         });
         let space = Space::new(graph, typed.configuration, spaces, Role::Configuration, typed.diagnostics);
         Typed { element: groups.layout, factors, space }
@@ -164,12 +164,13 @@ impl<'g> Velocity<'_, 'g> {
                 let part = |block: &Block| symbol.block(block.offset, 0, Shape::vector(block.algebra.dimension));
                 let blocks = self.graph.blocks(self.factors[*k].group);
                 let parts = blocks.iter().map(|block| Value::Matrix(part(block)));
-                Some((Value::Tuple(parts.collect()), vec![symbol]))
+                Some((Value::Tuple(parts.into_list()), vec![symbol]))
             }
             _ => {
                 let names = leaf_names(pattern, layout, self.diagnostics)?;
                 let leaves = layout.numbers();
-                let symbols: Vec<Expr<'g>> = leaves.iter().zip(&names).map(|(k, name)| self.symbol(*k, name)).collect();
+                let symbols: Vec<Expr<'g>> =
+                    leaves.iter().zip(&names).map(|(k, name)| self.symbol(*k, name)).into_list();
                 // the leaves of a part of a product are numbered as in the whole
                 let mut values = vec![Value::Tuple(Vec::new()); self.factors.len()];
                 leaves.iter().zip(&symbols).for_each(|(k, symbol)| values[*k] = Value::Matrix(*symbol));

@@ -1,5 +1,6 @@
 //! Closures as values of keys: arguments that are names or tuples of names, and a body.
 
+use clebsch_symbolic::IntoList;
 use proc_macro2::Ident;
 use syn::ext::IdentExt;
 use syn::spanned::Spanned;
@@ -87,7 +88,7 @@ impl Pattern {
                 help "write `{}`", name.ident),
             Pat::Paren(inner) => Pattern::read(&inner.pat, diagnostics),
             Pat::Tuple(tuple) => {
-                let parts: Vec<_> = tuple.elems.iter().map(|part| Pattern::read(part, diagnostics)).collect();
+                let parts: Vec<_> = tuple.elems.iter().map(|part| Pattern::read(part, diagnostics)).into_list();
                 Some(Pattern::Tuple(parts.into_iter().collect::<Option<_>>()?, Location::from(pattern)))
             }
             Pat::Reference(reference) => Pattern::read(&reference.pat, diagnostics),
@@ -102,7 +103,7 @@ impl Pattern {
     pub fn names(&self) -> Vec<&Ident> {
         match self {
             Pattern::Name(ident) => vec![ident],
-            Pattern::Tuple(parts, _) => parts.iter().flat_map(Pattern::names).collect(),
+            Pattern::Tuple(parts, _) => parts.iter().flat_map(Pattern::names).into_list(),
         }
     }
 

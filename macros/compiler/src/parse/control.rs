@@ -1,5 +1,6 @@
 //! What is steered: `controls`, `dynamics` or `effort`, with `bounds` and `endpoint`.
 
+use clebsch_symbolic::IntoList;
 use proc_macro2::{Ident, Literal};
 use syn::ext::IdentExt;
 use syn::{Expr, ExprLit, GenericArgument, Lit, PathArguments, Type, parse_quote, parse_quote_spanned};
@@ -66,7 +67,7 @@ fn moved(keys: &mut Keys, mut dynamics: Closure) -> Option<Kinetic> {
         return None;
     }
     let example = "|h, x: Vector2, u: Vector1| x + h * vector![x.y, u.x]";
-    let typed: Vec<usize> = (0..dynamics.arguments.len()).filter(|&i| dynamics.arguments[i].ty.is_some()).collect();
+    let typed: Vec<usize> = (0..dynamics.arguments.len()).filter(|&i| dynamics.arguments[i].ty.is_some()).into_list();
     let &[state, _] = typed.as_slice() else {
         refuse!(keys.diagnostics, dynamics.head, "the dynamics have to introduce a configuration and an input, each with its type";
             help "write `dynamics = {example}`");
@@ -81,7 +82,7 @@ fn moved(keys: &mut Keys, mut dynamics: Closure) -> Option<Kinetic> {
     size.set_span(Location::from(&ty).start);
     let span = name.span();
     // a name for the translation that the closure does not use
-    let names: Vec<&Ident> = dynamics.arguments.iter().flat_map(|argument| argument.pattern.names()).collect();
+    let names: Vec<&Ident> = dynamics.arguments.iter().flat_map(|argument| argument.pattern.names()).into_list();
     let mut shift = String::from("shift");
     while names.iter().any(|name| name.unraw() == shift) {
         shift.push('_');

@@ -1,5 +1,6 @@
 //! What a declaration chooses from: its dials with their values, and the promises on its fields.
 
+use clebsch_symbolic::IntoList;
 use std::fmt;
 
 use proc_macro2::Ident;
@@ -52,7 +53,7 @@ pub(super) type Meanings = Vec<(String, &'static str)>;
 
 /// The words of a dial, each with its meaning.
 pub(super) fn meanings<T: Word>() -> Meanings {
-    T::WORDS.iter().zip(T::MEANINGS).map(|((word, _), meaning)| (word.to_string(), meaning.trim_start())).collect()
+    T::WORDS.iter().zip(T::MEANINGS).map(|((word, _), meaning)| (word.to_string(), meaning.trim_start())).into_list()
 }
 
 /// Values of a dial, each with its meaning and the word by which it is read and printed.
@@ -186,7 +187,7 @@ const ORDERS: [(Order, &str); 6] = [
 impl Order {
     /// The orders, each with its meaning.
     pub(super) fn meanings() -> Meanings {
-        ORDERS.iter().map(|(order, meaning)| (order.to_string(), *meaning)).collect()
+        ORDERS.iter().map(|(order, meaning)| (order.to_string(), *meaning)).into_list()
     }
 
     /// The exponent of h in the error at a fixed time.
@@ -240,7 +241,7 @@ pub(super) const EMITTED: [(&str, Emitted); 5] = [
 
 /// The words of `emit`, each with its meaning.
 pub(super) fn emitted_meanings() -> Meanings {
-    EMITTED.iter().map(|(word, emitted)| (word.to_string(), emitted.about)).collect()
+    EMITTED.iter().map(|(word, emitted)| (word.to_string(), emitted.about)).into_list()
 }
 
 impl Emit {

@@ -1,5 +1,6 @@
 //! Groups of the user's own: `group NAME = |F: Matrix4| a == b` and `group NAME = basis([…])`.
 
+use clebsch_symbolic::IntoList;
 use proc_macro2::Ident;
 use syn::ext::IdentExt;
 use syn::parse::ParseStream;
@@ -54,7 +55,7 @@ pub(super) fn read(word: &Ident, stream: ParseStream, keys: &mut Keys) -> Result
         bail!(span.join(), "the basis of `{name}` is a list of matrices";
             help "write `group {name} = basis([Matrix2::new(0, -1, 1, 0)])`");
     };
-    let definition = Definition::Basis(list.elems.iter().cloned().collect(), Location::from(list));
+    let definition = Definition::Basis(list.elems.iter().cloned().into_list(), Location::from(list));
     keys.groups.push(DeclaredGroup { name, definition });
     Ok(())
 }

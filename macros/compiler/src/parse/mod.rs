@@ -29,6 +29,7 @@ pub use opaque::Opaque;
 pub(crate) use spelling::{joined, listed, parenthesized, shortened, tail, tokens as spell_tokens};
 pub use spelling::{spell, spell_type};
 
+use clebsch_symbolic::IntoList;
 use proc_macro2::TokenStream;
 use syn::{Data, DeriveInput};
 
@@ -61,7 +62,7 @@ fn read(item: TokenStream) -> Result<(Option<Declaration>, Diagnostics), Diagnos
     let diagnostics = Diagnostics::new();
     let keys = attribute::read(&input, &diagnostics);
     let fields = fields.iter().enumerate();
-    let fields = fields.map(|(position, field)| field::read(position, field, &diagnostics)).collect();
+    let fields = fields.map(|(position, field)| field::read(position, field, &diagnostics)).into_list();
     let declaration = declaration::assemble(&input, keys, fields);
     Ok((declaration, diagnostics))
 }

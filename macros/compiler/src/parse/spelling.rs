@@ -1,5 +1,6 @@
 //! Expressions as the user would type them: messages quote these, so they must not depend on how tokens were spaced.
 
+use clebsch_symbolic::IntoList;
 use proc_macro2::{Delimiter, Spacing, TokenStream, TokenTree};
 use quote::ToTokens;
 use syn::{Expr, RangeLimits, Stmt, Type};
@@ -59,7 +60,7 @@ fn spell_within(expr: &Expr, levels: usize) -> String {
         }
         Expr::Block(block) => {
             let statements = block.block.stmts.iter().map(|statement| spell_statement(statement, levels));
-            format!("{{ {} }}", statements.collect::<Vec<_>>().join(" "))
+            format!("{{ {} }}", statements.into_list().join(" "))
         }
         Expr::Call(call) => format!("{}({})", spell(&call.func), list(&call.args, levels)),
         Expr::Cast(cast) => format!("{} as {}", spell(&cast.expr), spell_type(&cast.ty)),

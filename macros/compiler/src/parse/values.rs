@@ -1,6 +1,6 @@
 //! The values of keys, each read as its key asks.
 
-use clebsch_symbolic::Elements;
+use clebsch_symbolic::{Elements, IntoList};
 use proc_macro2::Ident;
 use proc_macro2::extra::DelimSpan;
 use quote::ToTokens;
@@ -61,7 +61,7 @@ impl Reader<'_, '_> {
     /// A closure, or `[closure, …]`.
     fn closures(&mut self) -> Result<Vec<Closure>, Diagnostic> {
         if !self.stream.peek(syn::token::Bracket) {
-            return self.closure(self.stream).map(|closure| closure.into_iter().collect());
+            return self.closure(self.stream).map(|closure| closure.into_iter().into_list());
         }
         let list = bracket(self.stream)?;
         let mut closures = Vec::new();
@@ -165,5 +165,5 @@ pub(super) fn arguments(stream: ParseStream) -> syn::Result<(Vec<Expr>, DelimSpa
     let content;
     let parenthesis = parenthesized!(content in stream);
     let arguments = Punctuated::<Expr, Token![,]>::parse_terminated_with(&content, Expr::parse)?;
-    Ok((arguments.into_iter().collect(), parenthesis.span))
+    Ok((arguments.into_iter().into_list(), parenthesis.span))
 }

@@ -4,7 +4,7 @@ use super::motion::{blocks, left_matrix, motion};
 use super::{Block, Group};
 use crate::memory::Map;
 use crate::node::{Analytic, ExprNode, Operation};
-use crate::{Elements, Expr, Function, Graph, IntoElements, Shape, identity, indexed, rational};
+use crate::{Elements, Expr, Function, Graph, IntoElements, IntoList, Shape, identity, indexed, rational};
 
 /// Coordinates of a group near the identity: F as a function of x, with F = I at x = 0.
 #[derive(Copy, Clone, PartialEq, Eq, Hash, PartialOrd, Ord, Debug)]
@@ -311,7 +311,7 @@ fn dual(z: Expr<'_>) -> Expr<'_> {
         _ => z.entry((j + 2) % 4, (i + 2) % 4),
     };
     let shape = Shape::square(4);
-    z.graph().stack(shape, shape.positions().map(entry).collect())
+    z.graph().stack(shape, shape.positions().map(entry).into_list())
 }
 
 fn dual_coordinates(x: Expr<'_>) -> Expr<'_> {
@@ -340,10 +340,10 @@ impl Group {
         };
         let structure = |i: usize| -> crate::Sparse {
             let columns = (0..m).map(|j| self.projected_coordinates(bracket(basis[i], basis[j])));
-            let columns: Vec<Expr<'g>> = columns.collect();
+            let columns: Vec<Expr<'g>> = columns.into_list();
             let number = |(row, column): (usize, usize)| columns[column].entry(row, 0).expand().as_number();
             let entries = Shape::square(m).positions().filter_map(|at| Some((at.0, at.1, number(at)?)));
-            entries.filter(|(_, _, value)| !value.is_zero()).collect()
+            entries.filter(|(_, _, value)| !value.is_zero()).into_list()
         };
         xi.wedge(graph.algebra(Shape::square(m), indexed(m, structure)))
     }

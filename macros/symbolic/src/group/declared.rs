@@ -6,7 +6,7 @@ use super::chart::Chart;
 use super::{Declared, Group, sample};
 use crate::algebra::{Sparse, dense};
 use crate::node::Id;
-use crate::{Algebra, Elements, Expr, Graph, Rational, Shape};
+use crate::{Algebra, Elements, Expr, Graph, IntoList, Rational, Shape};
 
 /// What a graph keeps of a declared group.
 #[derive(Debug)]
@@ -23,7 +23,7 @@ impl Definition {
     pub(crate) fn equation<'g>(&self, f: Expr<'g>) -> Vec<Expr<'g>> {
         let graph = f.graph();
         let at = |(equation, symbol)| graph.expr(equation).substitute(&[(graph.expr(symbol), f)]);
-        self.equation.map(at).into_iter().collect()
+        self.equation.map(at).into_iter().into_list()
     }
 }
 
@@ -69,7 +69,7 @@ impl Graph {
     /// The bracket E_i E_j − E_j E_i of two basis elements, row by row.
     pub fn bracket(&self, algebra: Algebra, i: usize, j: usize) -> Vec<Rational> {
         let (forward, back) = (self.basis_product(algebra, i, j), self.basis_product(algebra, j, i));
-        forward.into_iter().zip(back).map(|(a, b)| a - b).collect()
+        forward.into_iter().zip(back).map(|(a, b)| a - b).into_list()
     }
 
     fn basis_product(&self, algebra: Algebra, i: usize, j: usize) -> Vec<Rational> {
@@ -101,7 +101,7 @@ impl Span {
     /// The span of some vectors.
     pub fn of(mut vectors: Vec<Vec<Rational>>) -> Span {
         let pivots = reduce(&mut vectors);
-        Span { rows: pivots.into_iter().zip(vectors).collect() }
+        Span { rows: pivots.into_iter().zip(vectors).into_list() }
     }
 
     /// Whether a vector lies in the span.

@@ -12,7 +12,7 @@ pub(crate) mod sample;
 use std::rc::Rc;
 
 use crate::algebra::Sparse;
-use crate::{Algebra, Elements, Expr, Graph, IntoElements, Property, Shape, integer};
+use crate::{Algebra, Elements, Expr, Graph, IntoElements, IntoList, Property, Shape, integer};
 
 pub use chart::Chart;
 pub(crate) use declared::Definition;
@@ -89,7 +89,7 @@ impl Group {
     /// The letters and the sizes of a built-in group.
     pub fn symbol(self) -> (&'static str, Vec<usize>) {
         let row = self.row();
-        (row.name, row.sizes.into_iter().flatten().collect())
+        (row.name, row.sizes.into_iter().flatten().into_list())
     }
 
     /// Whether a user has declared it.
@@ -213,7 +213,7 @@ impl Graph {
             let basis = self.basis(block.algebra);
             basis.elements.each(|element| element.each(moved))
         };
-        self.blocks(group).iter().flat_map(placed).collect()
+        self.blocks(group).iter().flat_map(placed).into_list()
     }
 
     /// The basis of a group's Lie algebra as literal matrices.

@@ -2,7 +2,7 @@
 
 use super::{Block, Group};
 use crate::algebra::Sparse;
-use crate::{Expr, Graph, Rational, Shape, indexed, integer};
+use crate::{Expr, Graph, IntoList, Rational, Shape, indexed, integer};
 
 impl Group {
     /// The identity element.
@@ -184,7 +184,7 @@ impl Group {
                 let complex = graph.symplectic_form(2 * n);
                 let mut equations = vec![form(graph.identity(2 * n)), f * complex - complex * f];
                 if self == Group::SpecialUnitary(n) && n <= LARGEST_DETERMINANT {
-                    let (real, imaginary) = complex_determinant(f, &(0..n).collect::<Vec<_>>(), 0);
+                    let (real, imaginary) = complex_determinant(f, &(0..n).into_list(), 0);
                     equations.extend([real - graph.integer(1), imaginary]);
                 }
                 equations
@@ -210,7 +210,7 @@ fn complex_determinant<'g>(f: Expr<'g>, rows: &[usize], column: usize) -> (Expr<
     }
     let mut sum = (graph.integer(0), graph.integer(0));
     for (position, &row) in rows.iter().enumerate() {
-        let others: Vec<usize> = rows.iter().copied().filter(|&other| other != row).collect();
+        let others: Vec<usize> = rows.iter().copied().filter(|&other| other != row).into_list();
         let (real, imaginary) = complex_determinant(f, &others, column + 1);
         let (a, b) = (f.entry(row, column), f.entry(n + row, column));
         let sign = if position % 2 == 0 { 1 } else { -1 };

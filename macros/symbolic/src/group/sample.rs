@@ -5,7 +5,7 @@ use crate::algebra::Sparse;
 use crate::evaluate::{Matrix, Number, negative, one, power, zero};
 use crate::identity::Residue;
 use crate::node::Exponent;
-use crate::{Elements, Graph, Shape, rational};
+use crate::{Elements, Graph, IntoList, Shape, rational};
 
 type Field = Matrix<Residue>;
 
@@ -50,7 +50,7 @@ pub(super) fn is_cayley_tangent(graph: &Graph, group: Group) -> bool {
     let shape = group.element_shape();
     let basis: Vec<Field> = graph.elements(group).each(|element| dense(shape, element));
     let moved = basis.iter().map(|element| left.multiply(element).multiply(&right));
-    let entries: Vec<Residue> = basis.iter().cloned().chain(moved).flat_map(|matrix| matrix.entries).collect();
+    let entries: Vec<Residue> = basis.iter().cloned().chain(moved).flat_map(|matrix| matrix.entries).into_list();
     let mut rows = Matrix::new(Shape::new(2 * basis.len(), shape.len()), entries);
     rows.reduce(shape.len()).0.len() == basis.len()
 }

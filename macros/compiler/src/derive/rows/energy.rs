@@ -1,6 +1,6 @@
 //! The rows of the energies, as functions of the velocity and of the momentum, and of the discrete Lagrangian.
 
-use clebsch_symbolic::{Elements, Expr, Property, Role, Shape, identity};
+use clebsch_symbolic::{Elements, Expr, IntoList, Property, Role, Shape, identity};
 
 use super::{Names, tuple};
 use crate::derive::formula::Wording;
@@ -12,8 +12,8 @@ impl<'g> MechanicsFormulas<'g> {
     pub(super) fn rows_of_energy(&self, names: &Names) -> [Formula<'g>; 10] {
         let Names { q, xi, mu, .. } = names;
         let slopes = self.symbols.algebra.iter().map(|xi| self.energy.kinetic.gradient(*xi).expand());
-        let slopes: Vec<Expr<'g>> = slopes.collect();
-        let general: Vec<Expr<'g>> = self.energy.general.into_iter().collect();
+        let slopes: Vec<Expr<'g>> = slopes.into_list();
+        let general: Vec<Expr<'g>> = self.energy.general.into_iter().into_list();
         let gradient: Vec<_> = general.each(|lagrangian| self.symbols.slope(*lagrangian));
         let hessian: Vec<_> = gradient.each(|gradient| self.symbols.slopes(*gradient));
         let linear = self.symbols.slope(self.energy.gyroscopic);
@@ -60,7 +60,7 @@ impl<'g> MechanicsFormulas<'g> {
         let next = tuple(self.symbols.images.iter().map(Expr::to_string));
         // the factors that move freely, with the symbols of their momenta and of their elements
         let free = (0..self.model.factors.len()).filter(|&k| exact::is_free_rotation(&self.model, k));
-        let free: Vec<_> = free.map(|k| (k, self.symbols.momenta[k], self.model.factors[k].symbol)).collect();
+        let free: Vec<_> = free.map(|k| (k, self.symbols.momenta[k], self.model.factors[k].symbol)).into_list();
         let legendre = Formula::shorter(Id::Legendre, format!("F⁻ℓd({q}, {f})"), self.legendre.clone());
         let mut legendre_next = Formula::new(Id::LegendreNext, format!("F⁺ℓd({q}, {f})"), self.legendre_next.clone());
         let mut after = self.legendre_next.clone();

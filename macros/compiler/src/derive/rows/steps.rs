@@ -1,6 +1,6 @@
 //! The rows of a step: kicks, the momentum equation, the momentum after the move, splittings and collocation.
 
-use clebsch_symbolic::{Elements, Expr, Property, Role};
+use clebsch_symbolic::{Elements, Expr, IntoList, Property, Role};
 
 use super::Names;
 use crate::derive::{Formula, Id, MechanicsFormulas, MomentumEquation, Solution};
@@ -95,7 +95,7 @@ impl<'g> MechanicsFormulas<'g> {
     pub fn coordinates_of(&self, equation: &MomentumEquation<'g>) -> String {
         let name = |i: usize| {
             let block = &self.symbols.blocks[i];
-            let held: Vec<usize> = block.components().filter(|c| equation.components.contains(c)).collect();
+            let held: Vec<usize> = block.components().filter(|c| equation.components.contains(c)).into_list();
             let entry = |component: &usize| format!("{}[{}]", block.coordinates, component - block.offset);
             if held.len() == block.dimension() {
                 return block.coordinates.to_string();
@@ -103,7 +103,7 @@ impl<'g> MechanicsFormulas<'g> {
             held.each(entry).join(", ")
         };
         let names = self.symbols.blocks_of(&equation.components).into_iter().map(name);
-        names.collect::<Vec<_>>().join(", ")
+        names.into_list().join(", ")
     }
 
     /// What a scheme needs beside its substeps: N − π of a step of first order, the kicks of a splitting with their weights b and g, Hamilton's

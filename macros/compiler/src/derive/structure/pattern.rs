@@ -1,7 +1,7 @@
 //! Which entries of a Jacobian vanish, are constant, and agree with those on the other side of its diagonal.
 
 use clebsch_symbolic::identity::{self, Point, Residue};
-use clebsch_symbolic::{Elements, Expr, Matrix, Number, Shape};
+use clebsch_symbolic::{Elements, Expr, IntoList, Matrix, Number, Shape};
 
 use crate::derive::equation::{MomentumEquation, Sources, Structure};
 
@@ -21,7 +21,7 @@ pub(super) fn is_inertial<'g>(
         let inertia = sources.inertia.entry(components[i], components[j]);
         inertia / sources.chart_step(symbols.blocks_of(&[components[j]])[0], sources.divisor)
     };
-    let expected = graph.stack(shape, shape.positions().map(entry).collect());
+    let expected = graph.stack(shape, shape.positions().map(entry).into_list());
     let at_rest = symbols.at_rest();
     identity::vanishes_where(graph.beside(columns) - expected, &|point| {
         for (symbol, zero) in &at_rest {
@@ -51,9 +51,9 @@ impl Pattern {
         let shape = Shape::square(columns.len());
         let jacobian = model.graph.beside(columns);
         let coordinates = symbols.blocks_of(&equation.components).into_iter().map(|i| symbols.blocks[i].coordinates);
-        let coordinates: Vec<Expr<'g>> = coordinates.collect();
+        let coordinates: Vec<Expr<'g>> = coordinates.into_list();
         let places = model.configurations.iter().chain(&model.inputs).map(|leaf| leaf.symbol).chain([model.time]);
-        let others: Vec<Expr<'g>> = symbols.momenta.iter().copied().chain(places).collect();
+        let others: Vec<Expr<'g>> = symbols.momenta.iter().copied().chain(places).into_list();
         let at = |moved: &[Expr<'g>]| {
             let (mut point, mut other) = (Point::new(0), Point::new(1));
             moved.iter().for_each(|symbol| point.set(*symbol, other.evaluate(*symbol)));

@@ -1,6 +1,6 @@
 //! The directions in which a system may be moved: its own group's, those of commuting sides, and offered ones.
 
-use clebsch_symbolic::{Chart, Elements, Expr, Group, Shape, identity};
+use clebsch_symbolic::{Chart, Elements, Expr, Group, IntoList, Shape, identity};
 
 use super::{Direction, Family};
 use crate::derive::SystemFormulas;
@@ -48,7 +48,7 @@ impl<'a, 'g> Directions<'a, 'g> {
         direction: impl Fn(&Self, usize) -> Option<Direction<'g>>,
     ) {
         self.families.push(Family { group, of, frame: side.frame(), offered });
-        let made: Vec<_> = (0..group.dimension()).filter_map(|index| direction(self, index)).collect();
+        let made: Vec<_> = (0..group.dimension()).filter_map(|index| direction(self, index)).into_list();
         self.all.extend(made);
     }
 
@@ -143,7 +143,7 @@ impl<'a, 'g> Directions<'a, 'g> {
     fn velocity_of(&self, motion: &[Expr<'g>]) -> Option<Vec<Expr<'g>>> {
         let (graph, matrix) = (self.model.graph, self.system.matrix_of_generator());
         let entries = motion.iter().flat_map(|leaf| leaf.entries());
-        let given = graph.stack(Shape::vector(matrix.shape().rows), entries.collect());
+        let given = graph.stack(Shape::vector(matrix.shape().rows), entries.into_list());
         let solved = if matrix.is_identity() {
             given
         } else {

@@ -5,7 +5,7 @@
 //! or offered symmetries do not come here: `model` and `lower` refuse them.
 
 use clebsch_symbolic::identity::{Point, Residue};
-use clebsch_symbolic::{Expr, Number, Shape, integer};
+use clebsch_symbolic::{Expr, IntoList, Number, Shape, integer};
 
 use super::{ConservedMomentum, Symmetries};
 use crate::derive::{DiscreteLagrangian, SystemFormulas, naming};
@@ -17,7 +17,7 @@ pub(super) fn find<'g>(system: &SystemFormulas<'g>, lagrangian: &DiscreteLagrang
     for (k, factor) in system.model.factors.iter().enumerate() {
         // one point decides whether a component vanishes, but for a chance of about 10⁻¹⁴
         let slopes = slopes(system, lagrangian, k).into_iter();
-        let values: Vec<_> = slopes.map(|slope| Point::new(0).evaluate(slope)).collect();
+        let values: Vec<_> = slopes.map(|slope| Point::new(0).evaluate(slope)).into_list();
         let zero = Residue::from_rational(&integer(0));
         let of = if system.model.factors.len() > 1 { format!(" of {}", factor.name) } else { String::new() };
         let holds = |i: &usize| values.iter().all(|value| value.at(*i, 0) == zero);
@@ -37,11 +37,11 @@ fn slopes<'g>(system: &SystemFormulas<'g>, lagrangian: &DiscreteLagrangian<'g>, 
     let turned = if factor.side == Side::Left { turned } else { -turned };
     let moved = system.motion_by(&system.in_factor(k, xi));
     let leaves = system.model.configurations.iter().zip(moved).map(|(leaf, motion)| (leaf.symbol, motion));
-    let motions: Vec<_> = leaves.chain([(factor.symbol, turned)]).collect();
+    let motions: Vec<_> = leaves.chain([(factor.symbol, turned)]).into_list();
     let parts = [lagrangian.kinetic, lagrangian.start, lagrangian.end];
     let pairings = parts.iter().map(|part| {
         let terms = motions.iter().map(|(symbol, motion)| part.gradient(*symbol).pairing(*motion));
         system.model.graph.total(Shape::scalar(), terms)
     });
-    pairings.filter(|pairing| !pairing.is_zero()).map(|pairing| pairing.gradient(xi)).collect()
+    pairings.filter(|pairing| !pairing.is_zero()).map(|pairing| pairing.gradient(xi)).into_list()
 }

@@ -9,7 +9,7 @@ mod directions;
 mod large;
 mod special;
 
-use clebsch_symbolic::{Elements, Expr, Group, IntoElements, Rational, Shape, identity};
+use clebsch_symbolic::{Elements, Expr, Group, IntoElements, IntoList, Rational, Shape, identity};
 
 use super::equation::Sources;
 use super::power::{self, SiteTerm};
@@ -108,13 +108,13 @@ fn variations<'g>(
     let logarithms: Vec<Expr<'g>> = sources.symbols.logarithms.each(|y| lagrangian.kinetic.gradient(*y));
     let gradients = parts.map(|part| -> (Vec<Expr<'g>>, Vec<Expr<'g>>) {
         let factors = model.factors.iter().map(|factor| part.gradient(factor.symbol));
-        (sources.gradients(part), factors.collect())
+        (sources.gradients(part), factors.into_list())
     });
     let pairing = |gradients: &[Expr<'g>], motions: &[Expr<'g>]| {
         graph.total(Shape::scalar(), gradients.iter().zip(motions).map(|(gradient, motion)| gradient.pairing(*motion)))
     };
     let momenta = sources.symbols.momenta.iter().copied();
-    let impulse: Vec<_> = momenta.zip(force.unwrap_or_default().iter().copied()).collect();
+    let impulse: Vec<_> = momenta.zip(force.unwrap_or_default().iter().copied()).into_list();
     let column = |direction: &Direction<'g>| -> Vec<Expr<'g>> {
         let mut column = Vec::new();
         for (part, (leaves, factors)) in gradients.iter().enumerate() {
@@ -204,7 +204,7 @@ impl<'g> Finder<'_, 'g> {
             let held = (0..self.directions.len()).filter(|&i| is_of_offer(i) && holds(found, i));
             held.count() == self.sources.model.symmetries[offer].group.dimension()
         };
-        (0..self.sources.model.symmetries.len()).filter(|&offer| !is_whole(offer)).collect()
+        (0..self.sources.model.symmetries.len()).filter(|&offer| !is_whole(offer)).into_list()
     }
 }
 
@@ -218,13 +218,13 @@ impl<'g> MechanicsFormulas<'g> {
         }
         let move_of = |substep: &Substep<'g>| -> Vec<(Expr<'g>, Expr<'g>)> {
             let momenta = self.symbols.momenta.iter().enumerate().filter(|(k, _)| !substep.unchanged[*k]);
-            moved(&self.model).into_iter().chain(momenta.map(|(k, mu)| (*mu, self.carried(k, *mu)))).collect()
+            moved(&self.model).into_iter().chain(momenta.map(|(k, mu)| (*mu, self.carried(k, *mu)))).into_list()
         };
-        let moves: Vec<_> = substeps().map(move_of).collect();
+        let moves: Vec<_> = substeps().map(move_of).into_list();
         let stays = |momentum: &&ConservedMomentum<'g>| {
             moves.iter().all(|moved| identity::equal(&[momentum.value.substitute(moved)], &[momentum.value]))
         };
-        self.symmetries.conserved.iter().filter(stays).collect()
+        self.symmetries.conserved.iter().filter(stays).into_list()
     }
 }
 

@@ -1,7 +1,9 @@
 //! Symmetries beyond constant directions: along vector parameters, along the configuration, and for special parameters.
 
 use clebsch_symbolic::identity::Point;
-use clebsch_symbolic::{Elements, Expr, Group, IntoElements, Property, Rational, Role, Shape, identity, integer};
+use clebsch_symbolic::{
+    Elements, Expr, Group, IntoElements, IntoList, Property, Rational, Role, Shape, identity, integer,
+};
 
 use super::{ConservedMomentum, Direction, Family, Finder, holds};
 use crate::derive::naming;
@@ -12,13 +14,13 @@ impl<'g> Finder<'_, 'g> {
     pub(super) fn along_parameters(&self, found: &[Vec<Rational>]) -> Vec<ConservedMomentum<'g>> {
         let (model, graph) = (self.sources.model, self.sources.model.graph);
         let is_turn = |family: &usize| turns_in_space(self.families[*family].group);
-        let turns: Vec<usize> = (0..self.families.len()).filter(is_turn).collect();
+        let turns: Vec<usize> = (0..self.families.len()).filter(is_turn).into_list();
         let mut choices: Vec<Vec<usize>> = turns.each(|&family| vec![family]);
         if turns.len() > 1 {
             choices.push(turns);
         }
         // what a site and the terms both read is one
-        let mut read: Vec<&Parameter<'g>> = model.parameters.iter().collect();
+        let mut read: Vec<&Parameter<'g>> = model.parameters.iter().into_list();
         for parameter in model.power.iter().flat_map(|power| &power.parameters) {
             if read.iter().all(|other| other.name != parameter.name) {
                 read.push(parameter);
@@ -93,7 +95,7 @@ impl<'g> Finder<'_, 'g> {
         let column = self.matrix.block(0, position, Shape::new(self.matrix.shape().rows, 1));
         let leaves = self.sources.model.parameters.iter().flat_map(|parameter| &parameter.leaves);
         let leaves = leaves.filter(|leaf| [Shape::vector(3), Shape::square(3)].contains(&leaf.shape));
-        let leaves: Vec<Expr<'g>> = leaves.map(|leaf| leaf.symbol).collect();
+        let leaves: Vec<Expr<'g>> = leaves.map(|leaf| leaf.symbol).into_list();
         if leaves.is_empty() || leaves.len() > 4 {
             return None;
         }
@@ -103,7 +105,7 @@ impl<'g> Finder<'_, 'g> {
         (0..1_usize << leaves.len()).filter(|choice| choice & fixed == 0).find_map(|choice| {
             let is_along = |index: usize| choice >> index & 1 == 0;
             let special = |(index, symbol): (usize, &Expr<'g>)| Special::new(*symbol, axis, index, is_along(index));
-            let special: Vec<Special<'g>> = leaves.iter().enumerate().map(special).collect();
+            let special: Vec<Special<'g>> = leaves.iter().enumerate().map(special).into_list();
             self.least(column, special)
         })
     }

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use clebsch_symbolic::{Elements, Expr, Role, Shape, joined};
+use clebsch_symbolic::{Elements, Expr, IntoList, Role, Shape, joined};
 use proc_macro2::{Ident, TokenStream};
 use quote::{format_ident, quote};
 
@@ -116,7 +116,7 @@ impl<'e, 'a, 'g> Terms<'e, 'a, 'g> {
         let inputs = kernel.inputs();
         let is_read =
             |place: &usize| inputs.iter().any(|(input, _)| matches!(input.role, Role::At(at, _) if at == *place));
-        let sites: Vec<usize> = (0..places.len()).filter(is_read).collect();
+        let sites: Vec<usize> = (0..places.len()).filter(is_read).into_list();
         let added = self.reading((places, own), &sites, kernel, quote!(break 'term), added);
         quote!('term: { #found #added })
     }
@@ -178,7 +178,7 @@ impl<'e, 'a, 'g> Terms<'e, 'a, 'g> {
         };
         let of_sites = self.power.parameters.iter().filter(|parameter| parameter.per_site);
         let read = of_sites.filter(|parameter| parameter.leaves.iter().any(is_read));
-        read.filter_map(|parameter| parameter.leaves.first()?.accessor.site()).collect()
+        read.filter_map(|parameter| parameter.leaves.first()?.accessor.site()).into_list()
     }
 
     /// The statement that computes the index of a place.
@@ -221,7 +221,7 @@ fn linear(expr: Expr<'_>, length: &Option<TokenStream>) -> TokenStream {
     let Some(Linear { constant, sites, indices }) = Linear::of(expr) else { return quote!(0) };
     let names = indices.into_iter().enumerate().map(|(depth, weight)| (weight, format!("i{depth}")));
     let names = names.chain([(sites, format!("({} as ::core::primitive::isize)", quote!(#length)))]);
-    let mut terms: Vec<(i64, String)> = names.filter(|(weight, _)| *weight != 0).collect();
+    let mut terms: Vec<(i64, String)> = names.filter(|(weight, _)| *weight != 0).into_list();
     if terms.is_empty() || constant != 0 {
         terms.push((constant, String::new()));
     }

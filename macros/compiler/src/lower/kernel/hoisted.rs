@@ -1,6 +1,6 @@
 //! Values that are computed less often than the kernels that use them: of a value and its negative, one.
 
-use clebsch_symbolic::{Elements, integer, work};
+use clebsch_symbolic::{Elements, IntoList, integer, work};
 
 use super::{Hoisting, kernel};
 use crate::lower::entries::Grid;
@@ -62,7 +62,7 @@ impl Hoisted {
             let signed = |code: &Code| if met.is_negative { signs::negative(code.clone()) } else { code.clone() };
             (*shape, entries.each(signed))
         };
-        let outputs = self.first().map(signed).collect();
+        let outputs = self.first().map(signed).into_list();
         Kernel { locals, outputs }.without_unused()
     }
 }

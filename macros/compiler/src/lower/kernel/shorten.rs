@@ -1,6 +1,6 @@
 //! Fewer operations for the same outputs, and when each of them is done.
 
-use clebsch_symbolic::{Elements, Rational, Table, integer};
+use clebsch_symbolic::{Elements, IntoList, Rational, Table, integer};
 
 use super::{Builder, Id, Operation};
 use crate::lower::scalar::is_unit;
@@ -115,7 +115,7 @@ impl Builder<'_, '_> {
         let delays = self.delays_in(&self.uses().1);
         let waits = self.waits(&delays);
         let delay = |terms: &[(Rational, Id)]| balance::delay(terms.iter().map(|term| delay_of_term(&delays, term)));
-        let shared = sums::shared(found.collect(), |shorter, whole| !waits || delay(shorter) <= delay(whole));
+        let shared = sums::shared(found.into_list(), |shorter, whole| !waits || delay(shorter) <= delay(whole));
         for (sum, terms) in shared.iter() {
             self.sums.insert(*sum, terms.clone());
         }

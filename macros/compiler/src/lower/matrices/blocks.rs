@@ -1,6 +1,6 @@
 //! Matrices of blocks, such as those of SE(n), entry by entry: what a person writes in place of views and embeddings.
 
-use clebsch_symbolic::{Elements, Expr, Operation, Rational, Shape, integer};
+use clebsch_symbolic::{Elements, Expr, IntoList, Operation, Rational, Shape, integer};
 
 use super::{Matrices, entry, linear};
 use crate::lower::{Code, Input, MatrixOperation, Whole};
@@ -64,7 +64,7 @@ impl Matrices {
                 Some((i, j)) => self.entry(&a, i, j),
             }
         };
-        let entries = shape.positions().map(entry).collect();
+        let entries = shape.positions().map(entry).into_list();
         self.entries(shape, entries)
     }
 
@@ -79,7 +79,7 @@ impl Matrices {
             listed.all(|listed| listed) && !parts.iter().all(|(_, part)| is_hat(part))
         };
         let sum = |(i, j): (usize, usize)| total(parts.each(|(weight, part)| (weight.clone(), self.entry(part, i, j))));
-        (self.joins_blocks && is_joined).then(|| shape.positions().map(sum).collect())
+        (self.joins_blocks && is_joined).then(|| shape.positions().map(sum).into_list())
     }
 }
 

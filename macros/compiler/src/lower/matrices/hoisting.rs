@@ -1,6 +1,6 @@
 //! What of an iteration is computed once a solve, where whole matrices are kept.
 
-use clebsch_symbolic::{Elements, Role, Shape};
+use clebsch_symbolic::{Elements, IntoList, Role, Shape};
 
 use crate::lower::{Code, Kernel};
 
@@ -10,7 +10,7 @@ pub(in crate::lower) fn hoisted(kernel: Kernel) -> (Kernel, Kernel) {
     let depends = kernel.depends_on(|role| matches!(role, Role::Chart(_) | Role::Direction(_)));
     let moving = kernel.locals.iter().zip(&depends).filter(|(_, depends)| **depends).map(|(code, _)| code);
     let mut terms: Vec<usize> =
-        moving.chain(kernel.entries()).flat_map(Code::locals).filter(|&index| !depends[index]).collect();
+        moving.chain(kernel.entries()).flat_map(Code::locals).filter(|&index| !depends[index]).into_list();
     terms.sort_unstable();
     terms.dedup();
     // the numbers of terms among those of their kind

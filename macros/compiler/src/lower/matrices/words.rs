@@ -1,6 +1,6 @@
 //! Words of matrices: the order of their products, and the letters that several of them have in common.
 
-use clebsch_symbolic::{Expr, Rational, Shape, Table};
+use clebsch_symbolic::{Expr, IntoList, Rational, Shape, Table};
 
 use crate::lower::Code;
 
@@ -60,8 +60,11 @@ pub(super) fn common_letter<'g>(shape: Shape, terms: &[Weighted<'g>]) -> Option<
 
 /// Where a word is cut in two so that its product takes the fewest multiplications (matrix chain order).
 pub(super) fn cheapest_cut(word: &[Expr<'_>]) -> usize {
-    let sizes: Vec<usize> =
-        word.iter().map(|letter| letter.shape().rows).chain(word.last().map(|letter| letter.shape().columns)).collect();
+    let sizes: Vec<usize> = word
+        .iter()
+        .map(|letter| letter.shape().rows)
+        .chain(word.last().map(|letter| letter.shape().columns))
+        .into_list();
     let n = word.len();
     let mut best = vec![vec![(0_usize, 0_usize); n]; n];
     for length in 2..=n {

@@ -1,6 +1,6 @@
 //! A group by a basis of its Lie algebra: matrices of numbers, independent, with brackets in their span.
 
-use clebsch_symbolic::{Elements, Graph, Group, Rational, Shape, Sparse, indexed, reduce};
+use clebsch_symbolic::{Elements, Graph, Group, IntoList, Rational, Shape, Sparse, indexed, reduce};
 use quote::ToTokens;
 use syn::Expr as Syntax;
 
@@ -17,7 +17,7 @@ pub(super) fn read(graph: &Graph, name: &str, elements: &[Syntax], place: Locati
     }
     let errors = Diagnostics::new();
     let literals = elements.iter().enumerate().map(|(k, element)| literal(graph, name, k, element));
-    let matrices: Vec<Matrix> = literals.filter_map(|literal| errors.take(literal)).collect();
+    let matrices: Vec<Matrix> = literals.filter_map(|literal| errors.take(literal)).into_list();
     errors.propagate(())?;
     let shape = common_shape(name, &matrices, elements)?;
     check_size(name, shape.rows, place.start)?;

@@ -1,7 +1,9 @@
 //! A group by an equation: the identity satisfies it, its Lie algebra is the kernel of the derivative there, and the equation holds
 //! along the group that this algebra generates.
 
-use clebsch_symbolic::{Elements, Expr, Graph, Group, Property, Rational, Role, Shape, Sparse, indexed, reduce};
+use clebsch_symbolic::{
+    Elements, Expr, Graph, Group, IntoList, Property, Rational, Role, Shape, Sparse, indexed, reduce,
+};
 use quote::ToTokens;
 use syn::Expr as Syntax;
 
@@ -145,7 +147,7 @@ impl<'g> GroupEquation<'_, 'g> {
                 note "the derivative of its equation at the identity has full rank, so its Lie algebra is 0");
         }
         let by_rows = |columns: &Vec<Rational>| -> Vec<Rational> {
-            shape.positions().map(|(i, j)| columns[j * shape.rows + i].clone()).collect()
+            shape.positions().map(|(i, j)| columns[j * shape.rows + i].clone()).into_list()
         };
         Ok(kernel.each(|element| sparse(shape, &by_rows(element))))
     }
@@ -170,7 +172,7 @@ impl<'g> GroupEquation<'_, 'g> {
             let order = follow::leaves_at(equation, self.symbol, &direction)?;
             Some((spell_matrix(self.symbol.shape(), &dense(self.symbol.shape(), &direction)), order))
         };
-        let Some((along, order)) = alone.chain([general.collect()]).find_map(leaves) else { return Ok(()) };
+        let Some((along, order)) = alone.chain([general.into_list()]).find_map(leaves) else { return Ok(()) };
         let rank = reduce(&mut slopes.to_vec()).len();
         let general_rank = follow::general_rank(equation, self.symbol);
         let f = self.symbol;
@@ -188,7 +190,7 @@ impl<'g> GroupEquation<'_, 'g> {
             return *single;
         }
         let entries_of = |&expr: &Expr<'g>| expr.shape().positions().map(move |(i, j)| expr.entry(i, j));
-        let entries: Vec<Expr<'g>> = expressions.iter().flat_map(entries_of).collect();
+        let entries: Vec<Expr<'g>> = expressions.iter().flat_map(entries_of).into_list();
         self.graph.stack(Shape::vector(entries.len()), entries)
     }
 }
@@ -197,7 +199,7 @@ impl<'g> GroupEquation<'_, 'g> {
 /// and zero in the others.
 pub(super) fn kernel(rows: &[Vec<Rational>], length: usize) -> Vec<Vec<Rational>> {
     // a pivot is determined by the entries behind it, so entries are taken from the last to the first
-    let mut reversed: Vec<Vec<Rational>> = rows.each(|row| row.iter().rev().cloned().collect());
+    let mut reversed: Vec<Vec<Rational>> = rows.each(|row| row.iter().rev().cloned().into_list());
     let pivots = reduce(&mut reversed);
     let row_of = |entry: usize| pivots.iter().position(|&pivot| pivot == length - 1 - entry);
     let vector = |one: usize| {
@@ -208,5 +210,5 @@ pub(super) fn kernel(rows: &[Vec<Rational>], length: usize) -> Vec<Vec<Rational>
         };
         indexed(length, entry)
     };
-    (0..length).filter(|&entry| row_of(entry).is_none()).map(vector).collect()
+    (0..length).filter(|&entry| row_of(entry).is_none()).map(vector).into_list()
 }

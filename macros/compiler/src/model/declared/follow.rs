@@ -2,7 +2,7 @@
 //! derivative suggests.
 
 use clebsch_symbolic::identity::{self, Residue};
-use clebsch_symbolic::{Elements, Expr, Matrix, Number, Rational, Shape, Sparse, rational};
+use clebsch_symbolic::{Elements, Expr, IntoList, Matrix, Number, Rational, Shape, Sparse, rational};
 
 use super::numbers::{Exact, Series};
 
@@ -27,7 +27,7 @@ pub(super) fn derivative<'g>(equation: Expr<'g>, symbol: Expr<'g>) -> Option<Vec
     };
     let columns: Vec<Vec<Rational>> = (0..n * n).map(slopes).collect::<Option<_>>()?;
     let row = |row: usize| columns.each(|column| column[row].clone());
-    Some((0..equation.shape().len()).map(row).collect())
+    Some((0..equation.shape().len()).map(row).into_list())
 }
 
 /// The first power of s with which F = exp(s ξ) leaves the solutions.
@@ -46,7 +46,7 @@ pub(super) fn general_rank<'g>(equation: Expr<'g>, symbol: Expr<'g>) -> usize {
         slope.shape().positions().map(move |(i, j)| slope.entry(i, j))
     });
     let shape = Shape::new(symbol.shape().len(), equation.shape().len());
-    identity::rank(graph.stack(shape, slopes.collect()))
+    identity::rank(graph.stack(shape, slopes.into_list()))
 }
 
 type Follow = Series<Residue, ORDER>;

@@ -7,7 +7,7 @@ mod numbers;
 #[cfg(test)]
 mod tests;
 
-use clebsch_symbolic::{Graph, Rational, Shape, Sparse, integer};
+use clebsch_symbolic::{Graph, IntoList, Rational, Shape, Sparse, integer};
 use proc_macro2::{Ident, Span, TokenStream, TokenTree};
 use syn::ext::IdentExt;
 
@@ -70,7 +70,7 @@ fn elaborate<'g, R>(
 
 /// Refuses fields of the struct, which no literal reads: where `self` stands.
 fn check_literal(key: &str, stream: TokenStream) -> Result<(), Diagnostics> {
-    let tokens: Vec<TokenTree> = stream.into_iter().collect();
+    let tokens: Vec<TokenTree> = stream.into_iter().into_list();
     for (position, token) in tokens.iter().enumerate() {
         match token {
             TokenTree::Group(group) => check_literal(key, group.stream())?,
@@ -104,7 +104,7 @@ fn empty_scope<'g>() -> Scope<'g> {
 /// The entries of a matrix that are not zero.
 fn sparse(shape: Shape, entries: &[Rational]) -> Sparse {
     let placed = shape.positions().zip(entries).filter(|(_, value)| !value.is_zero());
-    placed.map(|((i, j), value)| (i, j, value.clone())).collect()
+    placed.map(|((i, j), value)| (i, j, value.clone())).into_list()
 }
 
 /// All entries of a sum of multiples of sparse matrices, row by row.
@@ -119,7 +119,7 @@ fn dense(shape: Shape, sum: &[(i64, &Sparse)]) -> Vec<Rational> {
 
 /// A matrix of numbers, `[0, 1; 0, 0]`.
 fn spell_matrix(shape: Shape, entries: &[Rational]) -> String {
-    let rows: Vec<String> = entries.chunks(shape.columns).map(joined).collect();
+    let rows: Vec<String> = entries.chunks(shape.columns).map(joined).into_list();
     format!("[{}]", rows.join("; "))
 }
 

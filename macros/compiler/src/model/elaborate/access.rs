@@ -1,6 +1,6 @@
 //! Parts of values: `self.field`, `q.0`, `q[1]`, `x[(i, j)]`, `.x .y .z .w`.
 
-use clebsch_symbolic::{Expr, Rational, Shape};
+use clebsch_symbolic::{Expr, IntoList, Rational, Shape};
 use quote::ToTokens;
 use syn::{Expr as Syntax, ExprField, ExprIndex, Index, Member};
 
@@ -40,7 +40,7 @@ impl<'g> Elaborator<'_, '_, 'g> {
         if let Some(value) = self.context.fields.value(&name) {
             return value.clone();
         }
-        let names: Vec<&str> = self.context.fields.names().collect();
+        let names: Vec<&str> = self.context.fields.names().into_list();
         let error = error!(member, "cannot find `{name}` in the {}", self.key);
         self.refuse(match nearest(&name, names.iter().copied()) {
             Some(similar) => error.help(format!("a field with a similar name exists: `{similar}`")),

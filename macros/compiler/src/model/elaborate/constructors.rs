@@ -1,6 +1,6 @@
 //! Vectors and matrices from their entries: `Vector3::new(…)`, `Matrix3::from_diagonal(…)`, `vector![…]`, `matrix![…; …]`.
 
-use clebsch_symbolic::{Expr, Shape};
+use clebsch_symbolic::{Expr, IntoList, Shape};
 use quote::ToTokens;
 use syn::parse::ParseStream;
 use syn::{Expr as Syntax, ExprCall, ExprPath, GenericArgument, Generics, Ident, Macro, PathSegment, Token};
@@ -42,7 +42,7 @@ impl<'g> Elaborator<'_, '_, 'g> {
         let Syntax::Path(path) = strip(&call.func) else {
             refuse!(self, &call.func, "`{}` is no function", spell(&call.func); help "write `*` to multiply");
         };
-        let Some([owner, method]) = path.path.segments.iter().collect::<Vec<_>>().last_chunk().copied() else {
+        let Some([owner, method]) = path.path.segments.iter().into_list().last_chunk().copied() else {
             return self.unknown_function(call, path);
         };
         if owner.ident == "Quaternion" || owner.ident == "UnitQuaternion" {
@@ -122,7 +122,7 @@ impl<'g> Elaborator<'_, '_, 'g> {
                 let entry = |(i, j): (usize, usize)| {
                     if part.columns == shape.columns { matrices[i].entry(0, j) } else { matrices[j].entry(i, 0) }
                 };
-                let entries = shape.positions().map(entry).collect();
+                let entries = shape.positions().map(entry).into_list();
                 self.stack(call, shape, entries)
             }
             _ => {
@@ -146,7 +146,7 @@ impl<'g> Elaborator<'_, '_, 'g> {
 
     /// All values as scalars, or all of their errors.
     pub(super) fn scalars<'s>(&mut self, parts: impl IntoIterator<Item = &'s Syntax>) -> Option<Vec<Expr<'g>>> {
-        let found: Vec<Option<Expr<'g>>> = parts.into_iter().map(|part| self.scalar(part)).collect();
+        let found: Vec<Option<Expr<'g>>> = parts.into_iter().map(|part| self.scalar(part)).into_list();
         found.into_iter().collect()
     }
 

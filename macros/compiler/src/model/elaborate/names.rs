@@ -1,6 +1,6 @@
 //! Names and numbers: arguments, `let`s, `I`, `PI`, constants of the user's crate, and literals, which are exact rationals.
 
-use clebsch_symbolic::{Property, Rational, Role, Shape, integer, rational};
+use clebsch_symbolic::{IntoList, Property, Rational, Role, Shape, integer, rational};
 use syn::ext::IdentExt;
 use syn::{ExprLit, ExprPath, Ident, Lit, Path};
 
@@ -55,7 +55,7 @@ impl<'g> Elaborator<'_, '_, 'g> {
         let known =
             self.context.constants.iter().position(|constant| spell_tokens(&constant.path) == spell_tokens(path));
         let index = known.unwrap_or(self.context.constants.len());
-        let name: Vec<String> = path.segments.iter().map(|segment| segment.ident.to_string()).collect();
+        let name: Vec<String> = path.segments.iter().map(|segment| segment.ident.to_string()).into_list();
         let symbol = self.graph().symbol(&name.join("::"), Shape::scalar(), Role::Constant(index), Property::General);
         if known.is_none() {
             self.context.constants.push(Constant { path: path.clone(), symbol });
@@ -77,7 +77,7 @@ impl<'g> Elaborator<'_, '_, 'g> {
     }
 
     fn similar<'s>(&self, name: &str, names: impl Iterator<Item = &'s str>) -> Option<String> {
-        let fields: Vec<&str> = self.context.fields.names().collect();
+        let fields: Vec<&str> = self.context.fields.names().into_list();
         if fields.contains(&name) {
             return Some(format!("write `self.{name}` for the field"));
         }

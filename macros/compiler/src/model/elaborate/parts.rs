@@ -1,6 +1,6 @@
 //! Rows, columns and blocks: `row(0)`, `fixed_view::<2, 2>(0, 0)`, `xyz()`.
 
-use clebsch_symbolic::{Expr, Group, Shape};
+use clebsch_symbolic::{Expr, Group, IntoList, Shape};
 use syn::{BinOp, Expr as Syntax, ExprMethodCall, GenericArgument};
 
 use super::tables::Part;
@@ -11,7 +11,7 @@ use crate::parse::{parenthesized, spell};
 impl<'g> Elaborator<'_, '_, 'g> {
     pub(super) fn part(&mut self, part: Part, call: &ExprMethodCall, a: Expr<'g>) -> Option<Value<'g>> {
         let (name, all) = (&call.method, a.shape());
-        let written: Vec<&GenericArgument> = call.turbofish.iter().flat_map(|turbofish| &turbofish.args).collect();
+        let written: Vec<&GenericArgument> = call.turbofish.iter().flat_map(|turbofish| &turbofish.args).into_list();
         if written.len() != part.sizes {
             let sizes = ["", "::<2>", "::<2, 2>"][part.sizes];
             refuse!(self, name, "`{name}` needs {} sizes", part.sizes; help "write `{name}{sizes}(…)`");

@@ -1,6 +1,6 @@
 //! Arrays, tuples, ranges, and what is done to them: `[a, b]`, `(0..3).map(|i| …).sum()`.
 
-use clebsch_symbolic::Expr;
+use clebsch_symbolic::{Expr, IntoList};
 use syn::{Expr as Syntax, ExprClosure, ExprMethodCall, ExprRange, ExprRepeat, RangeLimits};
 
 use super::super::shapes::TERMS;
@@ -14,7 +14,7 @@ const RANGE: usize = 1 << 32;
 impl<'g> Elaborator<'_, '_, 'g> {
     /// The values of all expressions, or all of their errors.
     pub(super) fn all<'s>(&mut self, parts: impl IntoIterator<Item = &'s Syntax>) -> Option<Vec<Value<'g>>> {
-        let values: Vec<Option<Value<'g>>> = parts.into_iter().map(|part| self.elaborate(part)).collect();
+        let values: Vec<Option<Value<'g>>> = parts.into_iter().map(|part| self.elaborate(part)).into_list();
         values.into_iter().collect()
     }
 
@@ -47,7 +47,7 @@ impl<'g> Elaborator<'_, '_, 'g> {
                 note "ranges are written out at compile time");
         }
         let graph = self.graph();
-        Some(Value::Array((start..end).map(|i| Value::Matrix(graph.integer(i as i64))).collect()))
+        Some(Value::Array((start..end).map(|i| Value::Matrix(graph.integer(i as i64))).into_list()))
     }
 
     /// `.map(|i| …)`.

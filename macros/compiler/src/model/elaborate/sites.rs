@@ -1,6 +1,6 @@
 //! Powers: `0..N`, `(0..N).map(|i| …)`, sums over sites, `q[(i + 1) % N]`.
 
-use clebsch_symbolic::{Expr, IntoElements, Property, Role, Shape};
+use clebsch_symbolic::{Expr, IntoElements, IntoList, Property, Role, Shape};
 use syn::{BinOp, Expr as Syntax, ExprBinary, ExprIndex, ExprMethodCall, ExprRange, RangeLimits};
 
 use super::super::power::{Linear, Range, SiteIndex, Term, index_name, is_inside};
@@ -144,7 +144,7 @@ impl<'g> Elaborator<'_, '_, 'g> {
                 let parameter = &fields.parameters[field];
                 let number = power.place(place);
                 let leaves = power.entry(field, number, parameter).into_iter().map(Value::Matrix);
-                Some(Value::nested(&parameter.structure, &leaves.collect::<Vec<_>>()))
+                Some(Value::nested(&parameter.structure, &leaves.into_list()))
             }
             _ => refuse!(self, index, "the {} of a site depends on that site alone", self.key;
                 help "write `(0..{name}).map(|i| …)` with the index `i` alone";
