@@ -97,7 +97,7 @@ fn words(sentence: &str) -> Vec<String> {
 /// How often private words occur. A question may begin with `what`.
 fn private(sentence: &str, words: &[String]) -> usize {
     let is_question = sentence.ends_with('?');
-    let text = format!(" {} ", words.join(" "));
+    let text = format!(" {} ", words.join(" ")).replace(" whole number", " integer");
     PRIVATE
         .iter()
         .filter(|&&word| word != "what" || !is_question)
