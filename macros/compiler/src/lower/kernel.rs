@@ -29,6 +29,7 @@ pub enum Hoisting<'a> {
 
 /// Makes a kernel of grids of outputs.
 pub fn kernel(scalars: &mut Scalars, outputs: &[Grid], hoisting: Hoisting<'_>) -> Kernel {
+    let is_iterated = matches!(hoisting, Hoisting::Terms(..));
     let (operations, products) = (Interner::default(), Pairs::default());
     let (sums, known, delays) = (Table::default(), Table::default(), Vec::new());
     let mut builder = Builder { scalars, hoisting, outputs: Vec::new(), operations, products, sums, known, delays };
@@ -43,7 +44,7 @@ pub fn kernel(scalars: &mut Scalars, outputs: &[Grid], hoisting: Hoisting<'_>) -
     let (locals, entries) = builder.code();
     let mut entries = entries.into_iter();
     let output = |grid: &Grid| (grid.shape, entries.by_ref().take(grid.entries.len()).into_list());
-    signs::moved(Kernel { locals, outputs: outputs.each(output) })
+    signs::moved(Kernel { locals, outputs: outputs.each(output) }, is_iterated)
 }
 
 /// Factors as often as they stand in a product.

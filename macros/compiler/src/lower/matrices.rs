@@ -75,7 +75,7 @@ struct Matrices {
 impl Matrices {
     fn kernel(mut self, outputs: impl FnOnce(&mut Matrices) -> Vec<(Shape, Vec<Code>)>) -> Kernel {
         let outputs = outputs(&mut self);
-        signs::moved(Kernel { locals: self.locals, outputs })
+        signs::moved(Kernel { locals: self.locals, outputs }, true)
     }
 
     fn each(&mut self, expressions: &[Expr<'_>]) -> Vec<(Shape, Vec<Code>)> {

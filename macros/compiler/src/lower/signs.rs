@@ -3,7 +3,7 @@
 //! (−a) b = −(a b), a − (−b) = a + b, −a − b = −(a + b) and a + b = b + a hold to the last bit: numbers are rounded alike on both sides of
 //! zero. Terms are otherwise added as before, so that nothing else than the sign of a zero changes.
 //!
-//! A shared term −a − b is computed as it is where a does not change in the loop of a solve: −a is made once. Where a changes, a + b is computed and
+//! In the loop of a solve, a shared term −a − b is computed as it is where a does not change: −a is made once. Elsewhere a + b is computed and
 //! then subtracted.
 
 use clebsch_symbolic::{Interner, IntoElements, IntoList, Rational, Shape, integer, work};
@@ -14,8 +14,8 @@ use super::{Code, Cost, Kernel, MatrixOperation, Whole};
 type Signed = (bool, Code);
 
 /// A kernel with its signs moved and with terms that are then the same as one. Its sums may be in any order, in which terms that are added come before those that are subtracted; sums of
-/// the result are in the order in which they are added up.
-pub(super) fn moved(kernel: Kernel) -> Kernel {
+/// the result are in the order in which they are added up. `is_iterated` where the kernel runs in the loop of a solve.
+pub(super) fn moved(kernel: Kernel, is_iterated: bool) -> Kernel {
     let mut signs = Signs::default();
     for local in kernel.locals {
         let (is_negative, code) = signs.split(local, true);
@@ -23,7 +23,7 @@ pub(super) fn moved(kernel: Kernel) -> Kernel {
             signs.places.push((is_negative, place));
             continue;
         }
-        let is_computed = is_negative && has_terms(&code) && begins_slowly(&code);
+        let is_computed = is_iterated && is_negative && has_terms(&code) && begins_slowly(&code);
         let (place, is_new) = signs.locals.intern(code);
         signs.are_negative.extend(is_new.then_some(is_computed));
         signs.places.push((is_negative ^ signs.are_negative[place], place));
@@ -51,8 +51,18 @@ pub(super) fn negative(code: Code) -> Code {
     }
 }
 
-/// −(a − b) is b − a; a number at the head takes the sign.
+/// −(a − b) is b − a, and −a − k (b − c) is k (c − b) − a; a number at the head takes the sign.
 fn negative_sum(constant: Rational, mut terms: Vec<(Rational, Code)>) -> Code {
+    let turns_at = |place: usize| terms[place].0.is_one() && turns(&terms[place].1);
+    if constant.is_zero() && (turns_at(0) || turns_at(1)) {
+        if turns_at(1) {
+            terms.swap(0, 1);
+        }
+        terms.iter_mut().for_each(flip);
+        let (_, first) = terms.remove(0);
+        terms.insert(0, (integer(1), turned(first)));
+        return Code::Sum(constant, terms);
+    }
     let takes_sign = |(weight, code): &(Rational, Code)| !weight.is_one() || matches!(code, Code::Number(_));
     let is_second = constant.is_zero() && (terms[1].0.is_negative() || !takes_sign(&terms[0]) && takes_sign(&terms[1]));
     if constant.is_zero() && !is_second && !takes_sign(&terms[0]) && !begins_slowly(&terms[0].1) {
@@ -71,13 +81,38 @@ fn negative_sum(constant: Rational, mut terms: Vec<(Rational, Code)>) -> Code {
     Code::Sum(-constant, terms)
 }
 
+/// Whether its negative takes no sign: −(a − b) is b − a, also as a factor.
+fn turns(code: &Code) -> bool {
+    match code {
+        Code::Sum(constant, terms) => {
+            let second = terms.get(usize::from(constant.is_zero()));
+            second.is_some_and(|(weight, _)| weight.is_negative())
+        }
+        Code::Product(factors) => factors.iter().any(turns),
+        _ => false,
+    }
+}
+
+/// The negative of such a code.
+fn turned(code: Code) -> Code {
+    match code {
+        Code::Product(mut factors) => {
+            if let Some(factor) = factors.iter_mut().find(|factor| turns(factor)) {
+                *factor = turned(factor.clone());
+            }
+            Code::Product(factors)
+        }
+        code => negative(code),
+    }
+}
+
 #[derive(Default)]
 struct Signs {
     /// The terms so far, each of them once: those that differed in sign are one.
     locals: Interner<Code>,
     /// For each term of the kernel, whether its negative is among these, and where.
     places: Vec<(bool, usize)>,
-    /// Whether the negative of a term is computed: that of a sum whose first number takes the sign outside of loops.
+    /// Whether the negative of a term is computed: that of a sum whose first number takes the sign outside of the loop.
     are_negative: Vec<bool>,
 }
 

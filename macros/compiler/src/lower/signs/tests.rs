@@ -1,4 +1,4 @@
-use super::{Code, Kernel, moved};
+use super::{Code, Kernel, negative};
 use crate::lower::code::is_in_brackets;
 use clebsch_symbolic::{Rational, Shape, integer, rational};
 
@@ -13,6 +13,11 @@ fn sum(constant: i64, terms: &[(i64, Code)]) -> Code {
 
 fn with_terms(terms: Vec<Code>, value: Code) -> Kernel {
     Kernel { locals: terms, outputs: vec![(Shape::scalar(), vec![value])] }
+}
+
+/// In the loop of a solve.
+fn moved(kernel: Kernel) -> Kernel {
+    super::moved(kernel, true)
 }
 
 fn output(kernel: &Kernel) -> &Code {
@@ -48,9 +53,25 @@ fn a_term_that_is_all_negative_stays_so_where_a_constant_takes_the_sign() {
     let both = sum(0, &[(-1, a.clone()), (-1, b.clone())]);
     let opposite = sum(0, &[(1, a), (1, b.clone())]);
     let kernel =
-        moved(with_terms(vec![both.clone(), opposite], sum(0, &[(1, b.clone()), (1, local(0)), (1, local(1))])));
-    assert_eq!(kernel.locals, [both]);
-    assert_eq!(*output(&kernel), sum(0, &[(1, b), (1, local(0)), (-1, local(0))]));
+        with_terms(vec![both.clone(), opposite.clone()], sum(0, &[(1, b.clone()), (1, local(0)), (1, local(1))]));
+    let in_a_loop = moved(kernel.clone());
+    assert_eq!(in_a_loop.locals, [both]);
+    assert_eq!(*output(&in_a_loop), sum(0, &[(1, b.clone()), (1, local(0)), (-1, local(0))]));
+    let elsewhere = super::moved(kernel, false);
+    assert_eq!(elsewhere.locals, [opposite]);
+    assert_eq!(*output(&elsewhere), sum(0, &[(1, b), (-1, local(0)), (1, local(0))]));
+}
+
+#[test]
+fn a_difference_takes_the_sign() {
+    let [a, b, c, d] = [0, 1, 2, 3].map(Code::Constant);
+    let times = |difference: Code| Code::Product(vec![b.clone(), difference]);
+    let difference = sum(0, &[(1, c.clone()), (-1, d.clone())]);
+    let kernel = moved(with_terms(Vec::new(), sum(0, &[(-1, a.clone()), (-1, times(difference.clone()))])));
+    let opposite = sum(0, &[(1, d), (-1, c)]);
+    assert_eq!(*output(&kernel), sum(0, &[(1, times(opposite)), (-1, a.clone())]));
+    let kernel = moved(with_terms(Vec::new(), sum(0, &[(-1, times(difference.clone())), (-1, a.clone())])));
+    assert_eq!(*output(&kernel), sum(0, &[(1, times(negative(difference))), (-1, a)]));
 }
 
 #[test]
@@ -186,10 +207,12 @@ fn no_bit_changes() {
         let locals: Vec<Code> = (0..3).map(|index| random.code(2, index)).collect();
         let kernel = with_terms(locals, random.code(3, 3));
         let before = Values::of(&kernel, &constants, false);
-        let after = Values::of(&moved(kernel.clone()), &constants, true);
         compared += usize::from(before.is_finite());
-        // of zeros that are divided by, the sign may change
-        assert!(before == after || !before.is_finite(), "{before} {after} {kernel:?}");
+        for is_iterated in [false, true] {
+            let after = Values::of(&super::moved(kernel.clone(), is_iterated), &constants, true);
+            // of zeros that are divided by, the sign may change
+            assert!(before == after || !before.is_finite(), "{before} {after} {kernel:?}");
+        }
     }
     assert!(compared > 15_000);
 }
