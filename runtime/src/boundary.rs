@@ -29,6 +29,26 @@ use num_traits::Zero;
 use sweep::{Endpoints, Search};
 
 /// Problems with fixed endpoints for a [`Stepper`], made by [`Stepper::boundary`].
+///
+/// ```
+/// # use clebsch::{Clebsch, Guess};
+/// # #[derive(Clebsch, Clone, Debug)]
+/// # #[clebsch(
+/// #     action     = |a: Translation<1>, x: Vector1| x + a,
+/// #     lagrangian = |v| self.mass * v.norm_squared() / 2,
+/// #     potential  = |x| self.stiffness * x.norm_squared() / 2,
+/// #     emit       = [boundary],
+/// # )]
+/// # struct Spring { mass: f64, stiffness: f64 }
+/// # use nalgebra::Vector1;
+/// let stepper = Spring { mass: 1.0, stiffness: 1.0 }.into_stepper(0.01)?;
+/// let boundary = stepper.boundary();
+/// let mut path = [boundary.rest(&Vector1::zeros()); 100];
+/// let extremal = boundary.solve(&Vector1::zeros(), &Vector1::new(1.0), Guess::Geodesic, &mut path)?;
+/// // x = sin t / sin 1
+/// assert!((extremal.momentum().x - 1.0 / 1.0_f64.sin()).abs() < 1e-4);
+/// # Ok::<(), clebsch::Error>(())
+/// ```
 #[derive(Debug)]
 pub struct Boundary<'a, S: Variational<M, Scalar: Real>, const M: usize, B: Differentiated<S, M> = Declared> {
     stepper: &'a Stepper<S, B>,

@@ -12,7 +12,23 @@ use core::ops::Index;
 /// [`Stepper::conserved`](crate::Stepper::conserved). Found are the directions of the symmetries along which cost and potential are
 /// invariant for every value of the parameters (Noether's theorem). A step keeps their momenta exactly, a computed one to round-off.
 ///
+/// ```
+/// # use clebsch::Clebsch;
+/// # #[derive(Clebsch, Clone, Debug)]
+/// # #[clebsch(action = |a: Translation<1>, x: Vector1| x + a, cost = |h, a| self.mass * a.norm_squared() / (2 * h))]
+/// # struct Particle { mass: f64 }
+/// # use nalgebra::Vector1;
+/// let stepper = Particle { mass: 2.0 }.into_stepper(0.5)?;
+/// let start = stepper.state(Vector1::zeros(), Vector1::new(6.0))?;
+/// assert_eq!(stepper.conserved(&start).to_string(), "along e1, spatial = 6");
+/// # Ok::<(), clebsch::Error>(())
+/// ```
+///
 /// Source: Marsden and West, *Discrete mechanics and variational integrators*, 2001, theorem 1.3.3.
+#[diagnostic::on_unimplemented(
+    message = "no conserved momentum of `{Self}` was found",
+    note = "write `symmetry = |S: SO<3>, q, F| …` in the declaration to offer a symmetry that lies outside its group"
+)]
 pub trait Conserves: Clebsch {
     /// The momenta: a [`Conserved`].
     type Conserved: Copy + Debug + Display + PartialEq;

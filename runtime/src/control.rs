@@ -26,6 +26,27 @@ use nalgebra::SVector;
 use sweep::{Plan, Problem};
 
 /// A system whose inputs are chosen, with its step size. Made by [`Controlled::control`].
+///
+/// ```
+/// # use clebsch::{Clebsch, Controlled, Target};
+/// # use nalgebra::{Vector1, Vector2};
+/// # #[derive(Clebsch, Clone, Debug)]
+/// # #[clebsch(
+/// #     dynamics = |h, x: Vector2, u: Vector1| x + h * vector![x.y, u.x],
+/// #     cost     = |h, u| h * u.norm_squared() / 2,
+/// #     bounds   = |u| [u.x <= self.strongest],
+/// #     endpoint = |x| self.price * x.norm_squared() / 2,
+/// # )]
+/// # struct Cart { strongest: f64, price: f64 }
+/// let control = Cart { strongest: 8.0, price: 0.0 }.control(0.02)?;
+/// let start = Vector2::zeros();
+/// let mut plan = [control.stage(&start); 50];
+/// // a metre in a second, from rest to rest
+/// let optimum = control.solve(&start, Target::Place(Vector2::x()), &mut plan)?;
+/// assert!(optimum.is_minimum());
+/// assert!((optimum.price() - 6.0).abs() < 0.1); // 6 m²/s³ for the continuous cart
+/// # Ok::<(), clebsch::Error>(())
+/// ```
 #[derive(Clone, Debug)]
 pub struct Control<S: Controlled<D, U, C, Scalar: Real>, const D: usize, const U: usize, const C: usize> {
     pub(crate) system: S,
@@ -35,6 +56,25 @@ pub struct Control<S: Controlled<D, U, C, Scalar: Real>, const D: usize, const U
 }
 
 /// Where a plan is to end.
+///
+/// ```
+/// # use clebsch::{Clebsch, Controlled, Target};
+/// # use nalgebra::{Vector1, Vector2};
+/// # #[derive(Clebsch, Clone, Debug)]
+/// # #[clebsch(
+/// #     dynamics = |h, x: Vector2, u: Vector1| x + h * vector![x.y, u.x],
+/// #     cost     = |h, u| h * u.norm_squared() / 2,
+/// #     bounds   = |u| [u.x <= self.strongest],
+/// #     endpoint = |x| self.price * x.norm_squared() / 2,
+/// # )]
+/// # struct Cart { strongest: f64, price: f64 }
+/// let control = Cart { strongest: 8.0, price: 10.0 }.control(0.1)?;
+/// let mut plan = [control.stage(&Vector2::x()); 10];
+/// // anywhere: the price of the end, 10 |x|²/2, decides
+/// let optimum = control.solve(&Vector2::x(), Target::Free, &mut plan)?;
+/// assert!(optimum.price() < 5.0); // less than to stay at 1 m
+/// # Ok::<(), clebsch::Error>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Target<X> {
     /// At this place.

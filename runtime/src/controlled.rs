@@ -14,6 +14,29 @@ use num_traits::Zero;
 /// Small changes of a place are written as δ of D components: for a configuration, the motion η of the group that moves q to Φ_{exp η}(q),
 /// which is q exp η or (exp η) q for a group that acts on itself; for a state, (η, ν) with N + ν. Second derivatives are those along
 /// s ↦ Φ_{exp sη}(q).
+///
+/// ```
+/// # use clebsch::{Clebsch, Controlled};
+/// # use nalgebra::{Vector1, Vector2};
+/// # #[derive(Clebsch, Clone, Debug)]
+/// # #[clebsch(
+/// #     dynamics = |h, x: Vector2, u: Vector1| x + h * vector![x.y, u.x],
+/// #     cost     = |h, u| h * u.norm_squared() / 2,
+/// #     bounds   = |u| [u.x <= self.strongest],
+/// #     endpoint = |x| self.price * x.norm_squared() / 2,
+/// # )]
+/// # struct Cart { strongest: f64, price: f64 }
+/// let cart = Cart { strongest: 8.0, price: 0.0 };
+/// assert_eq!(Cart::BOUNDS, ["u.x <= self.strongest"]);
+/// assert_eq!(cart.bounds(0.0, &Vector2::zeros(), &Vector1::new(9.0)).x, 1.0); // violated by 1
+/// let control = cart.control(0.1)?;
+/// assert_eq!(control.follow(&Vector2::new(1.0, 2.0), &Vector1::new(5.0))?, Vector2::new(1.2, 2.5));
+/// # Ok::<(), clebsch::Error>(())
+/// ```
+#[diagnostic::on_unimplemented(
+    message = "`{Self}` has no inputs to choose",
+    note = "write `effort = |h, u| h * u.norm_squared() / 2` in the declaration beside a force with an input, or declare `controls` or `dynamics` with a `cost`"
+)]
 pub trait Controlled<const D: usize, const U: usize, const C: usize>: Sized {
     /// The scalar.
     type Scalar: Scalar;
@@ -137,6 +160,25 @@ pub trait Controlled<const D: usize, const U: usize, const C: usize>: Sized {
 }
 
 /// A step with its derivatives: x⁺ changes by A δ + B δu.
+///
+/// ```
+/// # use clebsch::{Clebsch, Controlled};
+/// # use nalgebra::{Vector1, Vector2};
+/// # #[derive(Clebsch, Clone, Debug)]
+/// # #[clebsch(
+/// #     dynamics = |h, x: Vector2, u: Vector1| x + h * vector![x.y, u.x],
+/// #     cost     = |h, u| h * u.norm_squared() / 2,
+/// #     bounds   = |u| [u.x <= self.strongest],
+/// #     endpoint = |x| self.price * x.norm_squared() / 2,
+/// # )]
+/// # struct Cart { strongest: f64, price: f64 }
+/// let cart = Cart { strongest: 8.0, price: 0.0 };
+/// let constants = cart.prepare(0.1)?;
+/// let step = cart.expand(&constants, 0.0, &Vector2::zeros(), &Vector1::new(3.0), &Vector2::zeros())?;
+/// assert_eq!(step.by_place[(0, 1)], 0.1); // x⁺ = x + h v
+/// assert_eq!(step.by_input[(1, 0)], 0.1); // v⁺ = v + h u
+/// # Ok::<(), clebsch::Error>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Expansion<X, T, const D: usize, const U: usize> {
     /// x⁺
@@ -160,6 +202,22 @@ pub struct Expansion<X, T, const D: usize, const U: usize> {
 }
 
 /// Bounds a ≤ 0 with their derivatives.
+///
+/// ```
+/// # use clebsch::{Clebsch, Controlled};
+/// # use nalgebra::{Vector1, Vector2};
+/// # #[derive(Clebsch, Clone, Debug)]
+/// # #[clebsch(
+/// #     dynamics = |h, x: Vector2, u: Vector1| x + h * vector![x.y, u.x],
+/// #     cost     = |h, u| h * u.norm_squared() / 2,
+/// #     bounds   = |u| [u.x <= self.strongest],
+/// #     endpoint = |x| self.price * x.norm_squared() / 2,
+/// # )]
+/// # struct Cart { strongest: f64, price: f64 }
+/// # let cart = Cart { strongest: 8.0, price: 0.0 };
+/// let bounds = cart.bounds_expanded(0.0, &Vector2::zeros(), &Vector1::new(3.0), &Vector1::new(1.0));
+/// assert_eq!((bounds.values.x, bounds.by_input.x), (-5.0, 1.0));
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BoundsExpansion<T, const D: usize, const U: usize, const C: usize> {
     /// a
@@ -177,6 +235,22 @@ pub struct BoundsExpansion<T, const D: usize, const U: usize, const C: usize> {
 }
 
 /// The price of the end with its derivatives.
+///
+/// ```
+/// # use clebsch::{Clebsch, Controlled};
+/// # use nalgebra::{Vector1, Vector2};
+/// # #[derive(Clebsch, Clone, Debug)]
+/// # #[clebsch(
+/// #     dynamics = |h, x: Vector2, u: Vector1| x + h * vector![x.y, u.x],
+/// #     cost     = |h, u| h * u.norm_squared() / 2,
+/// #     bounds   = |u| [u.x <= self.strongest],
+/// #     endpoint = |x| self.price * x.norm_squared() / 2,
+/// # )]
+/// # struct Cart { strongest: f64, price: f64 }
+/// let cart = Cart { strongest: 8.0, price: 10.0 };
+/// let end = cart.endpoint_expanded(0.0, &Vector2::new(1.0, 2.0));
+/// assert_eq!((end.price, end.slope), (25.0, Vector2::new(10.0, 20.0)));
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct EndpointExpansion<T, const D: usize> {
     /// φ
@@ -190,6 +264,23 @@ pub struct EndpointExpansion<T, const D: usize> {
 }
 
 /// What separates a place from a target.
+///
+/// ```
+/// # use clebsch::{Clebsch, Controlled};
+/// # use nalgebra::{Vector1, Vector2};
+/// # #[derive(Clebsch, Clone, Debug)]
+/// # #[clebsch(
+/// #     dynamics = |h, x: Vector2, u: Vector1| x + h * vector![x.y, u.x],
+/// #     cost     = |h, u| h * u.norm_squared() / 2,
+/// #     bounds   = |u| [u.x <= self.strongest],
+/// #     endpoint = |x| self.price * x.norm_squared() / 2,
+/// # )]
+/// # struct Cart { strongest: f64, price: f64 }
+/// # let cart = Cart { strongest: 8.0, price: 10.0 };
+/// let arrival = cart.arrival(&Vector2::zeros(), &Vector2::new(1.0, 2.0));
+/// let change = arrival.slope.try_inverse().unwrap() * arrival.residual;
+/// assert_eq!(change, Vector2::new(1.0, 2.0));
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Arrival<T, const D: usize> {
     /// Gᵀ(q* − q), N* − N

@@ -39,6 +39,19 @@ errors! {
     /// Why a stepper could not be made, a state not be taken, a step not be done or an extremal not be found. The state that was passed in is unchanged.
     ///
     /// Numbers are given as `f64` whatever the scalar of the system is.
+    ///
+    /// ```
+    /// # use clebsch::{Clebsch, Error};
+    /// # #[derive(Clebsch, Clone, Debug)]
+    /// # #[clebsch(action = |a: Translation<1>, x: Vector1| x + a, cost = |h, a| self.mass * a.norm_squared() / (2 * h))]
+    /// # struct Particle { mass: f64 }
+    /// let refused = Particle { mass: 0.0 }.into_stepper(0.5);
+    /// assert!(matches!(refused, Err(Error::SingularKineticEnergy { .. })));
+    ///
+    /// let error = Particle { mass: f64::NAN }.into_stepper(0.5).unwrap_err();
+    /// assert_eq!(error, Error::NotFinite { name: "mass" });
+    /// assert!(error.to_string().starts_with("mass is not finite"));
+    /// ```
     #[derive(Clone, Copy, Debug, PartialEq)]
     #[non_exhaustive]
     pub enum Error {

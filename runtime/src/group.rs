@@ -46,6 +46,17 @@ use core::convert::Infallible;
 /// ```
 ///
 /// Momenta have the unit of a discrete Lagrangian, J·s, for an angle has none.
+///
+/// ```
+/// # use clebsch::Clebsch;
+/// # use nalgebra::{Matrix3, Vector3};
+/// #[derive(Clebsch)]
+/// #[clebsch(action = |F: SO<3>, q: SO<3>| q * F, cost = |h, F| (F - I).norm_squared() / (2 * h))]
+/// struct System;
+///
+/// let half_of_hat = Matrix3::new(0.0, -1.5, 1.0, 1.5, 0.0, -0.5, -1.0, 0.5, 0.0);
+/// assert_eq!(System::momentum_matrix(&Vector3::new(1.0, 2.0, 3.0)), half_of_hat);
+/// ```
 #[derive(Debug)]
 pub struct SO<const P: usize, const Q: usize = 0>(Infallible);
 
@@ -57,6 +68,16 @@ pub struct SO<const P: usize, const Q: usize = 0>(Infallible);
 /// twice in the real form: the Gram matrix is 4 for pairs and 2 for B = E_ii, and M = ¼ Σ m E over the pairs + ½ Σ m E over the others.
 ///
 /// `U<1>` is the circle. The component along B = E_ii is the momentum of the phase of number i.
+///
+/// ```
+/// # use clebsch::Clebsch;
+/// # use nalgebra::{Matrix2, Vector1};
+/// #[derive(Clebsch)]
+/// #[clebsch(action = |F: U<1>, q: U<1>| q * F, cost = |h, F| (F - I).norm_squared() / (2 * h))]
+/// struct System;
+///
+/// assert_eq!(System::momentum_matrix(&Vector1::new(4.0)), Matrix2::new(0.0, -2.0, 2.0, 0.0));
+/// ```
 #[derive(Debug)]
 pub struct U<const N: usize>(Infallible);
 
@@ -71,6 +92,17 @@ pub struct U<const N: usize>(Infallible);
 ///   Quaternions pair by the dot product of their four coordinates; the Gram matrix is ¼ I and the representing quaternion is
 ///   2(π₁ i + π₂ j + π₃ k). Q and −Q are the same rotation and two configurations.
 /// * `SU<N>`: the Gram matrix is 4 for pairs; for the last N − 1 it has 4 on the diagonal and −2 beside it, twice the Cartan matrix.
+///
+/// ```
+/// # use clebsch::Clebsch;
+/// # use nalgebra::{Quaternion, Vector3};
+/// #[derive(Clebsch)]
+/// #[clebsch(action = |F: SU<2>, q: SU<2>| q * F, cost = |h, F| F.imag().norm_squared() / h)]
+/// struct System;
+///
+/// // `Quaternion::new` takes the scalar part first
+/// assert_eq!(System::momentum_matrix(&Vector3::new(1.0, 2.0, 3.0)), Quaternion::new(0.0, 2.0, 4.0, 6.0));
+/// ```
 #[derive(Debug)]
 pub struct SU<const N: usize>(Infallible);
 
@@ -79,6 +111,16 @@ pub struct SU<const N: usize>(Infallible);
 /// An element is a vector with N entries, the identity is 0. Basis: e₁, …, e_N. Components for a physical Lagrangian: the linear momentum p.
 ///
 /// The Gram matrix is I and M = m. Ad and Ad* are the identity. Every action is left and right: it takes the side of the other factors, else left.
+///
+/// ```
+/// # use clebsch::Clebsch;
+/// # use nalgebra::Vector3;
+/// #[derive(Clebsch)]
+/// #[clebsch(action = |F: Translation<3>, x: Vector3| x + F, cost = |h, F| F.norm_squared() / (2 * h))]
+/// struct System;
+///
+/// assert_eq!(System.act(&Vector3::x(), &Vector3::y()), Vector3::new(1.0, 1.0, 0.0));
+/// ```
 #[derive(Debug)]
 pub struct Translation<const N: usize>(Infallible);
 
@@ -90,6 +132,18 @@ pub struct Translation<const N: usize>(Infallible);
 /// last row is 0. A group that is not closed under transposition: Ad*_F M is the part of FᵀMF⁻ᵀ in the Lie algebra.
 ///
 /// For a right action, `q * F`, both momenta are in the body frame, about the body's origin; for a left action spatial, about that of space.
+///
+/// ```
+/// # use clebsch::Clebsch;
+/// # use nalgebra::{Matrix3, Vector3};
+/// #[derive(Clebsch)]
+/// #[clebsch(action = |F: SE<2>, q: SE<2>| q * F, cost = |h, F| (F - I).norm_squared() / (2 * h))]
+/// struct System;
+///
+/// // angular momentum 4, linear momentum (1, 2)
+/// let momentum = Matrix3::new(0.0, -2.0, 1.0, 2.0, 0.0, 2.0, 0.0, 0.0, 0.0);
+/// assert_eq!(System::momentum_matrix(&Vector3::new(4.0, 1.0, 2.0)), momentum);
+/// ```
 #[derive(Debug)]
 pub struct SE<const N: usize>(Infallible);
 
@@ -99,6 +153,18 @@ pub struct SE<const N: usize>(Infallible);
 /// Components for a physical Lagrangian: angular momentum, x·p of the dilation, linear momentum.
 ///
 /// The Gram matrix is 2 for the turns, N for the dilation and 1 for the shifts.
+///
+/// ```
+/// # use clebsch::Clebsch;
+/// # use nalgebra::{Matrix3, Vector4};
+/// #[derive(Clebsch)]
+/// #[clebsch(action = |F: Sim<2>, q: Sim<2>| q * F, cost = |h, F| (F - I).norm_squared() / (2 * h))]
+/// struct System;
+///
+/// // angular momentum 4, dilation 6, linear momentum (1, 2)
+/// let momentum = Matrix3::new(3.0, -2.0, 1.0, 2.0, 3.0, 2.0, 0.0, 0.0, 0.0);
+/// assert_eq!(System::momentum_matrix(&Vector4::new(4.0, 6.0, 1.0, 2.0)), momentum);
+/// ```
 #[derive(Debug)]
 pub struct Sim<const N: usize>(Infallible);
 
@@ -108,6 +174,16 @@ pub struct Sim<const N: usize>(Infallible);
 /// physical Lagrangian: p_i x_j, then linear momentum (left action).
 ///
 /// The Gram matrix is I: the entries of M are the components.
+///
+/// ```
+/// # use clebsch::Clebsch;
+/// # use nalgebra::{Matrix2, Vector2};
+/// #[derive(Clebsch)]
+/// #[clebsch(action = |F: Aff<1>, q: Aff<1>| q * F, cost = |h, F| (F - I).norm_squared() / (2 * h))]
+/// struct System;
+///
+/// assert_eq!(System::momentum_matrix(&Vector2::new(4.0, 1.0)), Matrix2::new(4.0, 1.0, 0.0, 0.0));
+/// ```
 #[derive(Debug)]
 pub struct Aff<const N: usize>(Infallible);
 
@@ -117,6 +193,17 @@ pub struct Aff<const N: usize>(Infallible);
 ///
 /// The bracket is \[X_i, Y_i\] = Z, and all others vanish. The Gram matrix is I: the entries of M are the components. The corner of
 /// exp(Σ x_i X_i + Σ y_i Y_i + z Z) is z + ½ x·y. A free motion keeps p_z, which acts on the other two as a magnetic field does.
+///
+/// ```
+/// # use clebsch::Clebsch;
+/// # use nalgebra::{Matrix3, Vector3};
+/// #[derive(Clebsch)]
+/// #[clebsch(action = |F: Heisenberg<1>, q: Heisenberg<1>| q * F, cost = |h, F| (F - I).norm_squared() / (2 * h))]
+/// struct System;
+///
+/// let momentum = Matrix3::new(0.0, 1.0, 3.0, 0.0, 0.0, 2.0, 0.0, 0.0, 0.0);
+/// assert_eq!(System::momentum_matrix(&Vector3::new(1.0, 2.0, 3.0)), momentum);
+/// ```
 #[derive(Debug)]
 pub struct Heisenberg<const N: usize>(Infallible);
 
@@ -125,6 +212,16 @@ pub struct Heisenberg<const N: usize>(Infallible);
 /// Matrices: N×N with det F ≠ 0. Basis, in order: E_ij by rows, (11), (12), …, (NN).
 ///
 /// The Gram matrix is I: m are the entries of M by rows. Steps never leave the component det F > 0 of the identity.
+///
+/// ```
+/// # use clebsch::Clebsch;
+/// # use nalgebra::{Matrix2, Vector4};
+/// #[derive(Clebsch)]
+/// #[clebsch(action = |F: GL<2>, q: GL<2>| q * F, cost = |h, F| (F - I).norm_squared() / (2 * h))]
+/// struct System;
+///
+/// assert_eq!(System::momentum_matrix(&Vector4::new(1.0, 2.0, 3.0, 4.0)), Matrix2::new(1.0, 2.0, 3.0, 4.0));
+/// ```
 #[derive(Debug)]
 pub struct GL<const N: usize>(Infallible);
 
@@ -134,6 +231,16 @@ pub struct GL<const N: usize>(Infallible);
 ///
 /// For `SL<2>` these are H = diag(1, −1), E = E₁₂ and F = E₂₁. The Gram matrix is the Cartan matrix for the first N − 1 (2 on
 /// the diagonal, −1 beside it) and I for the others: for `SL<2>`, M = ½ m_H H + m_E E + m_F F.
+///
+/// ```
+/// # use clebsch::Clebsch;
+/// # use nalgebra::{Matrix2, Vector3};
+/// #[derive(Clebsch)]
+/// #[clebsch(action = |F: SL<2>, q: SL<2>| q * F, cost = |h, F| (F - I).norm_squared() / (2 * h))]
+/// struct System;
+///
+/// assert_eq!(System::momentum_matrix(&Vector3::new(2.0, 3.0, 4.0)), Matrix2::new(1.0, 3.0, 4.0, -1.0));
+/// ```
 #[derive(Debug)]
 pub struct SL<const N: usize>(Infallible);
 
@@ -142,5 +249,15 @@ pub struct SL<const N: usize>(Infallible);
 /// Matrices: 2n×2n, FᵀΩF = Ω, Ω = (0 I; −I 0). Basis: E_ij − E_{n+j,n+i} by rows; E_{i,n+j} + E_{j,n+i}, j ≤ i (E_{i,n+i} for i = j); their transposes.
 ///
 /// Pairs j ≤ i are (11), (21), (22), (31), …. The Gram matrix is 2, and 1 for E_{i,n+i} and its transpose. Vectors are n positions, then n momenta.
+///
+/// ```
+/// # use clebsch::Clebsch;
+/// # use nalgebra::{Matrix2, Vector3};
+/// #[derive(Clebsch)]
+/// #[clebsch(action = |F: Sp<2>, q: Sp<2>| q * F, cost = |h, F| (F - I).norm_squared() / (2 * h))]
+/// struct System;
+///
+/// assert_eq!(System::momentum_matrix(&Vector3::new(2.0, 3.0, 4.0)), Matrix2::new(1.0, 3.0, 4.0, -1.0));
+/// ```
 #[derive(Debug)]
 pub struct Sp<const DIMENSION: usize>(Infallible);

@@ -30,6 +30,31 @@ use nalgebra::SVector;
 /// Wanted is the solution on the branch that starts there, which ends where det Dρ changes its sign, as h grows or as s does.
 ///
 /// If the momentum of the identity is not 0, as for a cost with a potential of q and F together, it is subtracted from μ, and so from ρ.
+///
+/// ```
+/// use clebsch::implicit::{Equation, solve};
+/// use nalgebra::{Matrix1, Vector1};
+///
+/// /// ρ(ξ; μ) = ξ + ξ³ − μ
+/// struct Cubic;
+///
+/// impl Equation<f64, 1> for Cubic {
+///     type Terms = f64;
+///     type Jacobian = Matrix1<f64>;
+///
+///     fn prepare(&self, target: &Vector1<f64>) -> f64 {
+///         target.x
+///     }
+///
+///     fn linearize(&self, mu: &f64, xi: &Vector1<f64>) -> (Vector1<f64>, Matrix1<f64>) {
+///         let x = xi.x;
+///         (Vector1::new(x + x * x * x - mu), Matrix1::new(1.0 + 3.0 * x * x))
+///     }
+/// }
+///
+/// assert_eq!(solve(&Cubic, &Vector1::new(10.0))?.x, 2.0);
+/// # Ok::<(), clebsch::Error>(())
+/// ```
 pub trait Equation<T: Scalar, const M: usize, const N: usize = M> {
     /// What does not change during the iteration.
     type Terms;

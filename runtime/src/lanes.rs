@@ -56,6 +56,14 @@ macro_rules! lanes {
         #[doc = concat!(stringify!($count), " numbers of type `", stringify!($number), "` side by side: the scalar of ", stringify!($count), " bodies that are stepped at once.")]
         ///
         /// Each lane has the bits of a single number. Registers are those of the target: `RUSTFLAGS="-C target-cpu=native"` for the machine's own.
+        ///
+        /// ```
+        #[doc = concat!("use clebsch::{", stringify!($lanes), ", Scalar};")]
+        ///
+        #[doc = concat!("let numbers = ", stringify!($lanes), "::from_lanes(|lane| lane as ", stringify!($number), ");")]
+        /// assert_eq!((numbers * numbers).sqrt(), numbers);
+        /// assert_eq!(numbers.to_array()[3], 3.0);
+        /// ```
         #[derive(Clone, Copy, Debug, PartialEq)]
         pub struct $lanes($vector);
 
@@ -130,6 +138,14 @@ macro_rules! lanes {
         }
 
         #[doc = concat!("A truth value for each lane of [`", stringify!($lanes), "`].")]
+        ///
+        /// ```
+        #[doc = concat!("use clebsch::{", stringify!($lanes), ", Mask, Scalar};")]
+        ///
+        #[doc = concat!("let numbers = ", stringify!($lanes), "::from_lanes(|lane| lane as ", stringify!($number), ");")]
+        #[doc = concat!("let small = numbers.below(", stringify!($lanes), "::splat(2.0));")]
+        /// assert_eq!(small.bits(), 0b11); // lanes 0 and 1
+        /// ```
         #[derive(Clone, Copy, Debug)]
         pub struct $mask($vector);
 

@@ -86,6 +86,16 @@ pub trait Method<S: Clebsch>: Sized {
 }
 
 /// The method of every system: the dials of its declaration.
+///
+/// ```
+/// # use clebsch::{Clebsch, Declared, Stepper};
+/// # #[derive(Clebsch, Clone, Debug)]
+/// # #[clebsch(action = |a: Translation<1>, x: Vector1| x + a, cost = |h, a| self.mass * a.norm_squared() / (2 * h))]
+/// # struct Particle { mass: f64 }
+/// let stepper: Stepper<Particle, Declared> = Particle { mass: 2.0 }.into_stepper(0.5)?; // `Stepper<Particle>` for short
+/// assert_eq!(stepper.step_size(), 0.5);
+/// # Ok::<(), clebsch::Error>(())
+/// ```
 #[derive(Clone, Copy, Debug)]
 pub struct Declared;
 

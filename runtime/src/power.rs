@@ -63,6 +63,22 @@ fn site_constants<S: Clebsch>(site: &S, h: S::Scalar) -> Result<scheme::Constant
 /// N equal sites, as `#[derive(Clebsch)]` declares them by a const generic N.
 ///
 /// Only what ties the sites together is generated; everything else is made of [`site`](Self::site).
+///
+/// ```
+/// # use clebsch::{Clebsch, Power};
+/// # use nalgebra::Vector1;
+/// # #[derive(Clebsch, Clone, Debug)]
+/// # #[clebsch(
+/// #     action    = |a: [Translation<1>; N], x: [Vector1; N]| (0..N).map(|i| x[i] + a[i]),
+/// #     cost      = |h, a| (0..N).map(|i| a[i].norm_squared() / (2 * h)).sum(),
+/// #     potential = |x| (0..N).map(|i| (x[(i + 1) % N] - x[i]).norm_squared() / 2).sum(),
+/// # )]
+/// # struct Ring<const N: usize>;
+/// let ring = Ring::<8>;
+/// let mut places = [Vector1::zeros(); 8];
+/// places[3].x = 2.0;
+/// assert_eq!(ring.potential_of_sites(0.0, &places), 4.0); // two springs of 2 m
+/// ```
 pub trait Power<const N: usize>:
     Clebsch<
         Configuration = [Point<Self, N>; N],

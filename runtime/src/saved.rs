@@ -34,6 +34,20 @@ where
 }
 
 /// A state as it was read, which no stepper has seen yet: [`Stepper::resume`] makes it a [`State`].
+///
+/// ```
+/// # use clebsch::{Clebsch, SavedState};
+/// # #[derive(Clebsch, Clone, Debug)]
+/// # #[clebsch(action = |a: Translation<1>, x: Vector1| x + a, cost = |h, a| self.mass * a.norm_squared() / (2 * h))]
+/// # struct Particle { mass: f64 }
+/// # use nalgebra::Vector1;
+/// let stepper = Particle { mass: 2.0 }.into_stepper(0.5)?;
+/// let state = stepper.state(Vector1::new(0.1), Vector1::new(6.0))?;
+/// let text = serde_json::to_string(&state)?;
+/// let saved: SavedState<Particle> = serde_json::from_str(&text)?;
+/// assert_eq!(stepper.resume(saved)?, state);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub struct SavedState<S: Clebsch, M: Method<S> = Declared>(State<S, M>);
 
 impl<'de, S: Clebsch, M: Method<S>> Deserialize<'de> for SavedState<S, M>

@@ -11,7 +11,19 @@ use num_traits::{One, Zero};
 /// NaN, as for `f64`; the stepper turns that into [`Error::NotFinite`](crate::Error::NotFinite).
 ///
 /// Operations act on each lane by itself. Lanes have no order: a comparison answers with a [`Mask`](Self::Mask), and code that needs one answer
-/// asks for a [`Real`]. An implementation for a single number writes [`one_number!`](crate::one_number) for the lanes.
+/// asks for a [`Real`]. An implementation for a single number writes `clebsch::one_number!();` for the lanes.
+///
+/// ```
+/// use clebsch::Scalar;
+///
+/// /// The period of a pendulum of this length in m, in any number type.
+/// fn period<T: Scalar>(length: T) -> T {
+///     T::from_f64(2.0) * T::PI * (length / T::from_f64(9.8)).sqrt()
+/// }
+///
+/// assert!((period(1.0_f64) - 2.007).abs() < 1e-3);
+/// assert!((period(1.0_f32) - 2.007).abs() < 1e-3);
+/// ```
 pub trait Scalar:
     nalgebra::Scalar
     + Copy
@@ -120,6 +132,16 @@ pub trait Scalar:
 }
 
 /// One truth value for each lane: `bool` for a single number.
+///
+/// ```
+/// use clebsch::{Mask, Scalar};
+///
+/// fn is_small<T: Scalar>(x: T) -> bool {
+///     x.abs().below(T::from_f64(1e-3)).all() // in every lane
+/// }
+///
+/// assert!(is_small(1e-4_f64));
+/// ```
 pub trait Mask:
     Copy + Debug + BitAnd<Output = Self> + BitOr<Output = Self> + BitXor<Output = Self> + Not<Output = Self>
 {
@@ -173,11 +195,22 @@ impl Mask for bool {
 /// A single number, with an order: what has no lanes.
 ///
 /// Implemented for every [`Scalar`] that is one.
+///
+/// ```
+/// use clebsch::Real;
+///
+/// fn larger<T: Real>(a: T, b: T) -> T {
+///     if a < b { b } else { a }
+/// }
+///
+/// assert_eq!(larger(1.0_f32, 2.0), 2.0);
+/// ```
 pub trait Real: Scalar<Lane = Self, Mask = bool> + PartialOrd {}
 
 impl<T: Scalar<Lane = T, Mask = bool> + PartialOrd> Real for T {}
 
 /// What an implementation of [`Scalar`](crate::Scalar) for a single number, which is its own only lane, says of lanes.
+#[doc(hidden)]
 #[macro_export]
 macro_rules! one_number {
     () => {

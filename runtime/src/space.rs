@@ -7,6 +7,16 @@ use nalgebra::{Quaternion, SMatrix};
 /// A value made of scalars `T`: a scalar, vector, matrix or quaternion, a tuple of up to eight spaces, an array of a space, or `()`.
 ///
 /// Implementations only have to say how their scalars are visited.
+///
+/// ```
+/// use clebsch::Space;
+/// use nalgebra::{Matrix2, Vector3};
+///
+/// let place = (Vector3::new(1.0, -3.0, 2.0), [Matrix2::<f64>::identity(); 2]);
+/// assert_eq!(place.max_abs(), 3.0);
+/// assert!(place.is_finite());
+/// assert_eq!(place.distance_squared(&Space::<f64>::origin()), 18.0);
+/// ```
 pub trait Space<T: Scalar>: Copy + Debug + PartialEq {
     /// What one lane of it is; the space itself where scalars are single numbers.
     type Lane: Space<T::Lane>;

@@ -12,6 +12,19 @@ use core::fmt::{self, Debug, DebugStruct, Formatter};
 /// [`Stepper::synchronized`](crate::Stepper::synchronized). The impulse at q, which two steps share, or what a free motion conserves, travels along
 /// unseen; a stepper of another step size makes its own. To go on with another *system*, make a new state of [`configuration`](Self::configuration)
 /// and [`momentum`](Self::momentum). Where the cost or the potential depends on the time, a state has its [`time`](Self::time).
+///
+/// ```
+/// # use clebsch::Clebsch;
+/// # #[derive(Clebsch, Clone, Debug)]
+/// # #[clebsch(action = |a: Translation<1>, x: Vector1| x + a, cost = |h, a| self.mass * a.norm_squared() / (2 * h))]
+/// # struct Particle { mass: f64 }
+/// # use nalgebra::Vector1;
+/// let stepper = Particle { mass: 2.0 }.into_stepper(0.5)?;
+/// let start = stepper.state(Vector1::zeros(), Vector1::new(6.0))?;
+/// let next = stepper.step(&start)?; // `start` stays as it is
+/// assert_eq!((next.configuration().x, next.momentum().x), (1.5, 6.0));
+/// # Ok::<(), clebsch::Error>(())
+/// ```
 pub struct State<S: Clebsch, M: Method<S> = Declared> {
     pub(crate) time: S::Time,
     pub(crate) configuration: S::Configuration,
@@ -101,6 +114,25 @@ impl<S: Clebsch, M: Method<S>> Debug for State<S, M> {
 ///
 /// p has the shape of q and pairs with velocities of q entry by entry: ⟨p, v⟩ = tr(pᵀv). It belongs to no method: with `order = 1` p is half a kick ahead, as N is.
 /// It has a [`time`](Self::time) where the cost or the potential depends on it.
+///
+/// ```
+/// # use clebsch::Clebsch;
+/// # #[derive(Clebsch, Clone, Debug)]
+/// # #[clebsch(
+/// #     action     = |a: Translation<1>, x: Vector1| x + a,
+/// #     lagrangian = |v| self.mass * v.norm_squared() / 2,
+/// #     potential  = |x| self.stiffness * x.norm_squared() / 2,
+/// # )]
+/// # struct Spring { mass: f64, stiffness: f64 }
+/// # use nalgebra::Vector1;
+/// let stepper = Spring { mass: 2.0, stiffness: 8.0 }.into_stepper(0.01)?;
+/// let start = stepper.cotangent_state(Vector1::new(0.5), Vector1::new(1.0))?;
+/// let next = stepper.step_symmetric(&start)?;
+/// // translations: the covector is the momentum
+/// let same = stepper.step(&stepper.state(Vector1::new(0.5), Vector1::new(1.0))?)?;
+/// assert_eq!(next.configuration(), same.configuration());
+/// # Ok::<(), clebsch::Error>(())
+/// ```
 pub struct CotangentState<S: Clebsch> {
     pub(crate) time: S::Time,
     pub(crate) configuration: S::Configuration,

@@ -19,6 +19,25 @@ use num_traits::Zero;
 /// A system, a step size and what no step changes, computed once.
 ///
 /// Made by [`Clebsch::stepper`], or by [`Clebsch::stepper_by`] for a [`Method`] with a name. Nothing in it changes from step to step: one stepper can serve any number of states.
+///
+/// ```
+/// # use clebsch::Clebsch;
+/// # #[derive(Clebsch, Clone, Debug)]
+/// # #[clebsch(
+/// #     action     = |a: Translation<1>, x: Vector1| x + a,
+/// #     lagrangian = |v| self.mass * v.norm_squared() / 2,
+/// #     potential  = |x| self.stiffness * x.norm_squared() / 2,
+/// # )]
+/// # struct Spring { mass: f64, stiffness: f64 }
+/// # use nalgebra::Vector1;
+/// // 8 N/m on 2 kg: 2 radians per second
+/// let stepper = Spring { mass: 2.0, stiffness: 8.0 }.into_stepper(0.01)?;
+/// let start = stepper.state(Vector1::new(0.5), Vector1::zeros())?;
+/// let later = stepper.advance(&start, 314)?; // a period of π s
+/// assert!((later.configuration().x - 0.5).abs() < 1e-4);
+/// assert!((stepper.energy(&later) - stepper.energy(&start)).abs() < 1e-4);
+/// # Ok::<(), clebsch::Error>(())
+/// ```
 pub struct Stepper<S: Clebsch, M: Method<S> = Declared> {
     pub(crate) system: S,
     pub(crate) h: S::Scalar,
@@ -96,11 +115,16 @@ impl<S: Clebsch, M: Method<S>> Stepper<S, M> {
     }
 }
 
-/// Where conserved momenta were found.
-impl<S: Conserves, M: Method<S>> Stepper<S, M> {
+// a bound of the method, not of the block: its error then says what is missing
+impl<S: Clebsch, M: Method<S>> Stepper<S, M> {
     /// The momenta that no step changes, with their names: what the symmetry of cost and potential leaves.
+    ///
+    /// It exists where conserved momenta were found, and gives a [`Conserved`](crate::Conserved).
     #[inline]
-    pub fn conserved(&self, state: &State<S, M>) -> S::Conserved {
+    pub fn conserved<C>(&self, state: &State<S, M>) -> C
+    where
+        S: Conserves<Conserved = C>,
+    {
         self.system.conserved(&state.configuration, &state.momentum())
     }
 }

@@ -15,6 +15,31 @@ use num_traits::Zero;
 ///
 /// A [`Stepper`] holds h and the [`Constants`](Self::Constants). What depends on the dials is that of the declared ones; see [`Method`] for others.
 ///
+/// ```
+/// use clebsch::Clebsch;
+/// use nalgebra::Vector1;
+///
+/// /// A body on a spring.
+/// #[derive(Clebsch, Clone, Debug)]
+/// #[clebsch(
+///     action     = |a: Translation<1>, x: Vector1| x + a,
+///     lagrangian = |v| self.mass * v.norm_squared() / 2,
+///     potential  = |x| self.stiffness * x.norm_squared() / 2,
+/// )]
+/// struct Spring {
+///     /// Kilograms.
+///     mass: f64,
+///     /// Newtons per metre.
+///     stiffness: f64,
+/// }
+///
+/// let spring = Spring { mass: 2.0, stiffness: 8.0 };
+/// let x = Vector1::new(0.5);
+/// assert_eq!(spring.act(&Vector1::new(0.25), &x).x, 0.75);
+/// assert_eq!(spring.potential(0.0, &x), 1.0);
+/// assert!(Spring::DERIVATION.contains("discrete Lagrangian"));
+/// ```
+///
 /// Source: Nordkvist, Crouch and Bloch, *Discrete Clebsch Optimal Control*, theorems 1 and 2.
 #[allow(unused_variables, reason = "provided methods take what others need")]
 pub trait Clebsch: Sized {

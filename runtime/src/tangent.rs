@@ -5,10 +5,20 @@ use crate::parameters::check_finite;
 use crate::parts::{Q, U};
 use crate::scheme::Scheme;
 use crate::scheme::edges::{AtFixedElement, ByQuantities, Drift, Edges};
-use crate::{Carried, Clebsch, Differentiated, Error, Scalar, Sensitive, Space, State, Stepper, Time, Variational};
+use crate::{
+    Carried, Clebsch, Differentiated, Error, Method, Scalar, Sensitive, Space, State, Stepper, Time, Variational,
+};
 use nalgebra::{SMatrix, SVector};
 
 /// A variation of a state: the motion η of q ↦ Φ_{exp η}(q), in the basis of 𝔤, and the change ν of the momentum.
+///
+/// ```
+/// use clebsch::{Tangent, Variation};
+/// use nalgebra::Vector3;
+///
+/// let variation = Variation { motion: Vector3::x(), momentum: Vector3::zeros() };
+/// assert_eq!(Tangent::<f64, 3>::identity().apply(&variation), variation);
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Variation<T, const M: usize> {
     /// η; the configuration moves by η_Q(q).
@@ -22,6 +32,26 @@ pub struct Variation<T, const M: usize> {
 /// In these coordinates the canonical symplectic form is Ω_N((η₁, ν₁), (η₂, ν₂)) = ν₂·η₁ − ν₁·η₂ ± N·[η₁, η₂], + for the body
 /// momenta of a right action and − for the spatial ones of a left action; tangent maps of unforced steps preserve it. Where motions
 /// fix the configuration, the directions η of 𝔤_q do nothing to q and the map is that of the body that has them as motions.
+///
+/// ```
+/// # use clebsch::Clebsch;
+/// # #[derive(Clebsch, Clone, Debug)]
+/// # #[clebsch(
+/// #     action     = |a: Translation<1>, x: Vector1| x + a,
+/// #     lagrangian = |v| self.mass * v.norm_squared() / 2,
+/// #     potential  = |x| self.stiffness * x.norm_squared() / 2,
+/// #     emit       = [tangent],
+/// # )]
+/// # struct Spring { mass: f64, stiffness: f64 }
+/// # use nalgebra::Vector1;
+/// let stepper = Spring { mass: 2.0, stiffness: 8.0 }.into_stepper(0.1)?;
+/// let (_, tangent) = stepper.step_tangent(&stepper.state(Vector1::new(0.5), Vector1::zeros())?)?;
+/// // in one dimension symplectic means: of determinant one
+/// let determinant = tangent.motion_by_motion.x * tangent.momentum_by_momentum.x
+///     - tangent.motion_by_momentum.x * tangent.momentum_by_motion.x;
+/// assert!((determinant - 1.0).abs() < 1e-14);
+/// # Ok::<(), clebsch::Error>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Tangent<T, const M: usize> {
     /// ∂η′/∂η
@@ -35,6 +65,24 @@ pub struct Tangent<T, const M: usize> {
 }
 
 /// The derivatives of a state by P quantities that are fixed during a step: column k by [`QUANTITIES`](Sensitive::QUANTITIES)`[k]`.
+///
+/// ```
+/// # use clebsch::{Clebsch, Sensitive};
+/// # #[derive(Clebsch, Clone, Debug)]
+/// # #[clebsch(
+/// #     action     = |a: Translation<1>, x: Vector1| x + a,
+/// #     lagrangian = |v| self.mass * v.norm_squared() / 2,
+/// #     potential  = |x| self.stiffness * x.norm_squared() / 2,
+/// #     emit       = [tangent],
+/// # )]
+/// # struct Spring { mass: f64, stiffness: f64 }
+/// # use nalgebra::Vector1;
+/// let stepper = Spring { mass: 2.0, stiffness: 8.0 }.into_stepper(0.1)?;
+/// let (_, _, sensitivity) = stepper.step_sensitivity(&stepper.state(Vector1::new(0.5), Vector1::zeros())?)?;
+/// assert_eq!(Spring::QUANTITIES, ["mass", "stiffness", "h"]);
+/// assert!(sensitivity.momentum[(0, 1)] < 0.0); // a stiffer spring pulls back more
+/// # Ok::<(), clebsch::Error>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sensitivity<T, const M: usize, const P: usize> {
     /// ∂η
@@ -144,11 +192,12 @@ struct Passed<S: Clebsch, const M: usize> {
     tangent: Tangent<S::Scalar, M>,
 }
 
+// bounds of the methods, not of the block: their errors then say what to write
 #[allow(clippy::type_complexity, reason = "the state with its two kinds of derivatives, each of a named type")]
 impl<S, B, T: Scalar, const M: usize> Stepper<S, B>
 where
-    S: Variational<M> + Clebsch<Scalar = T, Momentum = SVector<T, M>>,
-    B: Differentiated<S, M>,
+    S: Clebsch<Scalar = T, Momentum = SVector<T, M>>,
+    B: Method<S>,
 {
     /// One step with its derivative with respect to the state: (q⁺, N⁺) and the tangent map there.
     ///
@@ -156,7 +205,11 @@ where
     ///
     /// # Errors
     /// As [`step`](Stepper::step), and [`Error::SingularTangent`] at the very edge of what is solvable.
-    pub fn step_tangent(&self, state: &State<S, B>) -> Result<(State<S, B>, Tangent<T, M>), Error> {
+    pub fn step_tangent(&self, state: &State<S, B>) -> Result<(State<S, B>, Tangent<T, M>), Error>
+    where
+        S: Variational<M>,
+        B: Differentiated<S, M>,
+    {
         self.step_tangent_with(state, &S::Input::origin())
     }
 
@@ -164,11 +217,76 @@ where
     ///
     /// # Errors
     /// As [`step_tangent`](Self::step_tangent), and [`Error::NotFinite`] where the input is not.
-    pub fn step_tangent_with(&self, state: &State<S, B>, u: &S::Input) -> Result<(State<S, B>, Tangent<T, M>), Error> {
+    pub fn step_tangent_with(&self, state: &State<S, B>, u: &S::Input) -> Result<(State<S, B>, Tangent<T, M>), Error>
+    where
+        S: Variational<M>,
+        B: Differentiated<S, M>,
+    {
         let (q, mu, tangent) = self.pass_all(state, u, |_, _, _| {})?;
         Ok((self.stepped(state, q, mu)?, finite_tangent(tangent)?))
     }
 
+    /// One step with its derivatives by the state and by everything that is fixed during it: parameters, step size, time, input.
+    ///
+    /// # Errors
+    /// As [`step_tangent`](Self::step_tangent).
+    pub fn step_sensitivity<const P: usize>(
+        &self,
+        state: &State<S, B>,
+    ) -> Result<(State<S, B>, Tangent<T, M>, Sensitivity<T, M, P>), Error>
+    where
+        S: Sensitive<M, P>,
+        B: Differentiated<S, M>,
+    {
+        self.step_sensitivity_with(state, &S::Input::origin())
+    }
+
+    /// The same while the input of the forces is `u`.
+    ///
+    /// # Errors
+    /// As [`step_tangent_with`](Self::step_tangent_with).
+    pub fn step_sensitivity_with<const P: usize>(
+        &self,
+        state: &State<S, B>,
+        u: &S::Input,
+    ) -> Result<(State<S, B>, Tangent<T, M>, Sensitivity<T, M, P>), Error>
+    where
+        S: Sensitive<M, P>,
+        B: Differentiated<S, M>,
+    {
+        let mut sensitivity = Sensitivity::zero();
+        let (q, mu, tangent) = self.pass_all(state, u, |number, q, Passed { increment, next, edge, tangent }| {
+            let at = self.at(state.time.now());
+            let (before, after) = B::Scheme::visit(at, number, ByQuantities((q, increment, next, u)));
+            let columns = (S::STEP_SIZE, S::TIME);
+            let [before, after] =
+                [before, after].map(|slopes| B::Scheme::slopes_of_step(at.constants, number, slopes, columns));
+            let motion = -times(&tangent.motion_by_momentum, &before);
+            let of_edge = Sensitivity { motion, momentum: after + times(&edge.after_by_end, &motion) };
+            sensitivity = sensitivity.after(tangent, &of_edge);
+        })?;
+        if !(sensitivity.motion, sensitivity.momentum).is_finite() {
+            return Err(Error::NotFinite { name: "the sensitivity of the step" });
+        }
+        Ok((self.stepped(state, q, mu)?, finite_tangent(tangent)?, sensitivity))
+    }
+
+    /// ξ_Q(q): how the configuration moves under the motion η of a [`Variation`].
+    #[inline]
+    pub fn infinitesimal_motion(&self, q: &S::Configuration, eta: &SVector<T, M>) -> S::Configuration
+    where
+        S: Variational<M>,
+    {
+        self.system().infinitesimal_motion(q, eta)
+    }
+}
+
+#[allow(clippy::type_complexity, reason = "the state with its two kinds of derivatives, each of a named type")]
+impl<S, B, T: Scalar, const M: usize> Stepper<S, B>
+where
+    S: Variational<M> + Clebsch<Scalar = T, Momentum = SVector<T, M>>,
+    B: Differentiated<S, M>,
+{
     /// (q⁺, N⁺), edge by edge, with the tangent map. `seen` is told each edge with its number and the configuration where it starts.
     fn pass_all(
         &self,
@@ -209,54 +327,5 @@ where
         let held = B::Scheme::held(&q, &mu);
         let next = State { time, configuration: q, held, left, h: self.step_size() };
         if next.is_finite() { Ok(next) } else { Err(self.overflow(&next, 0)) }
-    }
-
-    /// One step with its derivatives by the state and by everything that is fixed during it: parameters, step size, time, input.
-    ///
-    /// # Errors
-    /// As [`step_tangent`](Self::step_tangent).
-    pub fn step_sensitivity<const P: usize>(
-        &self,
-        state: &State<S, B>,
-    ) -> Result<(State<S, B>, Tangent<T, M>, Sensitivity<T, M, P>), Error>
-    where
-        S: Sensitive<M, P>,
-    {
-        self.step_sensitivity_with(state, &S::Input::origin())
-    }
-
-    /// The same while the input of the forces is `u`.
-    ///
-    /// # Errors
-    /// As [`step_tangent_with`](Self::step_tangent_with).
-    pub fn step_sensitivity_with<const P: usize>(
-        &self,
-        state: &State<S, B>,
-        u: &S::Input,
-    ) -> Result<(State<S, B>, Tangent<T, M>, Sensitivity<T, M, P>), Error>
-    where
-        S: Sensitive<M, P>,
-    {
-        let mut sensitivity = Sensitivity::zero();
-        let (q, mu, tangent) = self.pass_all(state, u, |number, q, Passed { increment, next, edge, tangent }| {
-            let at = self.at(state.time.now());
-            let (before, after) = B::Scheme::visit(at, number, ByQuantities((q, increment, next, u)));
-            let columns = (S::STEP_SIZE, S::TIME);
-            let [before, after] =
-                [before, after].map(|slopes| B::Scheme::slopes_of_step(at.constants, number, slopes, columns));
-            let motion = -times(&tangent.motion_by_momentum, &before);
-            let of_edge = Sensitivity { motion, momentum: after + times(&edge.after_by_end, &motion) };
-            sensitivity = sensitivity.after(tangent, &of_edge);
-        })?;
-        if !(sensitivity.motion, sensitivity.momentum).is_finite() {
-            return Err(Error::NotFinite { name: "the sensitivity of the step" });
-        }
-        Ok((self.stepped(state, q, mu)?, finite_tangent(tangent)?, sensitivity))
-    }
-
-    /// ξ_Q(q): how the configuration moves under the motion η of a [`Variation`].
-    #[inline]
-    pub fn infinitesimal_motion(&self, q: &S::Configuration, eta: &SVector<T, M>) -> S::Configuration {
-        self.system().infinitesimal_motion(q, eta)
     }
 }

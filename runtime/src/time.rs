@@ -5,6 +5,18 @@ use crate::{Scalar, Space};
 use core::fmt::Debug;
 
 /// What a state knows of the time: [`Clock`] where the cost or the potential depends on it, else `()`, which costs nothing.
+///
+/// ```
+/// use clebsch::{Clock, Time};
+///
+/// /// The time after so many steps.
+/// fn after<C: Time<f64>>(steps: u32) -> f64 {
+///     (0..steps).fold(C::at(2.0), |time, _| time.after_step(0.1)).now()
+/// }
+///
+/// assert_eq!(after::<Clock<f64>>(10), 3.0);
+/// assert_eq!(after::<()>(10), 0.0); // a system that does not depend on the time
+/// ```
 pub trait Time<T: Scalar>: Copy + Debug + PartialEq {
     /// The time t.
     fn at(t: T) -> Self;
@@ -35,6 +47,15 @@ impl<T: Scalar> Time<T> for () {
 /// A time to which steps are added without drift: after k steps of size h from t₀ it shows t₀ + kh to the last place.
 ///
 /// The rounding of each addition is carried along and added later, also for steps of changing sizes. Equal clocks show the same time.
+///
+/// ```
+/// use clebsch::{Clock, Time};
+///
+/// let clock = (0..1_000_000).fold(Clock::at(0.0_f64), |clock, _| clock.after_step(0.1));
+/// assert_eq!(clock.now(), 100_000.0);
+/// let sum: f64 = (0..1_000_000).map(|_| 0.1).sum();
+/// assert!((sum - 100_000.0).abs() > 1e-6); // plain sums drift
+/// ```
 ///
 /// Source: Knuth, *The Art of Computer Programming* 2, section 4.2.2, theorem B (the error of a sum).
 #[derive(Clone, Copy, Debug)]

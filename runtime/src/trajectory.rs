@@ -7,6 +7,22 @@ use core::iter::FusedIterator;
 /// The states q_0, q_1, … of a [`Stepper`], the start first. Endless; after an error it yields nothing more.
 ///
 /// A step is made when its state is asked for, so `take(n)` makes n − 1 steps.
+///
+/// ```
+/// # use clebsch::Clebsch;
+/// # #[derive(Clebsch, Clone, Debug)]
+/// # #[clebsch(action = |a: Translation<1>, x: Vector1| x + a, cost = |h, a| self.mass * a.norm_squared() / (2 * h))]
+/// # struct Particle { mass: f64 }
+/// # use nalgebra::Vector1;
+/// let stepper = Particle { mass: 2.0 }.into_stepper(0.5)?;
+/// let start = stepper.state(Vector1::zeros(), Vector1::new(6.0))?;
+/// let mut places = Vec::new();
+/// for state in stepper.trajectory(start).take(3) {
+///     places.push(state?.configuration().x);
+/// }
+/// assert_eq!(places, [0.0, 1.5, 3.0]);
+/// # Ok::<(), clebsch::Error>(())
+/// ```
 pub struct Trajectory<'a, S: Clebsch, M: Method<S> = Declared> {
     pub(crate) stepper: &'a Stepper<S, M>,
     /// The start, or the state that has been asked for last; `None` after an error.

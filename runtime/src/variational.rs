@@ -14,6 +14,27 @@ use nalgebra::{SMatrix, SVector};
 /// for a right one. An edge is given by the increment D = F − I (for translations F itself), which small steps do not cancel.
 ///
 /// Components of η are those of 𝔤 in the basis that [`group`](crate::group) documents, M of them.
+///
+/// ```
+/// # use clebsch::{Clebsch, Variational};
+/// # #[derive(Clebsch, Clone, Debug)]
+/// # #[clebsch(
+/// #     action     = |a: Translation<1>, x: Vector1| x + a,
+/// #     lagrangian = |v| self.mass * v.norm_squared() / 2,
+/// #     potential  = |x| self.stiffness * x.norm_squared() / 2,
+/// #     emit       = [tangent],
+/// # )]
+/// # struct Spring { mass: f64, stiffness: f64 }
+/// # use nalgebra::Vector1;
+/// let spring = Spring { mass: 2.0, stiffness: 8.0 };
+/// assert_eq!(Spring::EDGES, 1);
+/// assert_eq!(spring.advance(&Vector1::new(0.5), &Vector1::new(0.25)).x, 0.75);
+/// assert_eq!(spring.orbit_metric(&Vector1::new(0.5)).x, 1.0);
+/// ```
+#[diagnostic::on_unimplemented(
+    message = "the discrete Lagrangian of `{Self}` has no second derivatives",
+    note = "write `emit = [tangent]` in the declaration for derivatives of steps, `emit = [boundary]` for fixed endpoints"
+)]
 pub trait Variational<const M: usize>:
     Clebsch<Momentum = SVector<<Self as Clebsch>::Scalar, M>, Scheme: Edges<Self, M>>
 {
@@ -100,6 +121,19 @@ pub trait Variational<const M: usize>:
 }
 
 /// A method of a [`Variational`] system: all methods of a declaration with `emit = [tangent]` or `emit = [boundary]`.
+///
+/// ```
+/// # use clebsch::{Clebsch, Declared, Differentiated};
+/// # #[derive(Clebsch, Clone, Debug)]
+/// # #[clebsch(
+/// #     action     = |a: Translation<1>, x: Vector1| x + a,
+/// #     lagrangian = |v| self.mass * v.norm_squared() / 2,
+/// #     potential  = |x| self.stiffness * x.norm_squared() / 2,
+/// #     emit       = [tangent],
+/// # )]
+/// # struct Spring { mass: f64, stiffness: f64 }
+/// assert_eq!(<Declared as Differentiated<Spring, 1>>::EDGES, 1);
+/// ```
 #[diagnostic::on_unimplemented(
     message = "the steps by the method `{Self}` have no derivatives",
     note = "write `emit = [boundary]` or `emit = [tangent]` in the declaration; methods of order 16 and splittings have no derivatives"
@@ -109,9 +143,26 @@ pub trait Differentiated<S: Clebsch, const M: usize>: Method<S, Scheme: Edges<S,
     const EDGES: usize = <Self::Scheme as Edges<S, M, Self>>::EDGES;
 }
 
+#[diagnostic::do_not_recommend]
 impl<S: Clebsch, B: Method<S, Scheme: Edges<S, M, B>>, const M: usize> Differentiated<S, M> for B {}
 
 /// q, F − I, q⁺ and u: the ends of an edge, the increment between them, and the input of its forces.
+///
+/// ```
+/// # use clebsch::{Clebsch, Ends};
+/// # #[derive(Clebsch, Clone, Debug)]
+/// # #[clebsch(
+/// #     action     = |a: Translation<1>, x: Vector1| x + a,
+/// #     lagrangian = |v| self.mass * v.norm_squared() / 2,
+/// #     potential  = |x| self.stiffness * x.norm_squared() / 2,
+/// #     emit       = [tangent],
+/// # )]
+/// # struct Spring { mass: f64, stiffness: f64 }
+/// # use nalgebra::Vector1;
+/// let (q, d, next) = (Vector1::new(0.0), Vector1::new(1.0), Vector1::new(1.0));
+/// let ends: Ends<'_, Spring> = (&q, &d, &next, &());
+/// assert_eq!(ends.0 + ends.1, *ends.2);
+/// ```
 pub type Ends<'a, S> = (
     &'a <S as Clebsch>::Configuration,
     &'a <S as Clebsch>::Element,
@@ -122,6 +173,27 @@ pub type Ends<'a, S> = (
 /// The discrete Lagrangian ℓd of an edge with its first two derivatives along the motions η of its start and η′ of its end.
 ///
 /// dℓd = F⁺ℓd·η′ − F⁻ℓd·η, kicks included, with F⁻ℓd = N_k and F⁺ℓd = N_{k+1}. On an extremal F⁺ℓd of each edge is F⁻ℓd of the next.
+///
+/// ```
+/// # use clebsch::{Clebsch, Variational};
+/// # #[derive(Clebsch, Clone, Debug)]
+/// # #[clebsch(
+/// #     action     = |a: Translation<1>, x: Vector1| x + a,
+/// #     lagrangian = |v| self.mass * v.norm_squared() / 2,
+/// #     potential  = |x| self.stiffness * x.norm_squared() / 2,
+/// #     emit       = [tangent],
+/// # )]
+/// # struct Spring { mass: f64, stiffness: f64 }
+/// # use nalgebra::Vector1;
+/// # let spring = Spring { mass: 2.0, stiffness: 8.0 };
+/// # let h = 0.5;
+/// let (q, d, next) = (Vector1::new(0.0), Vector1::new(1.0), Vector1::new(1.0));
+/// let edge = spring.edge(&spring.constants(h)?, 0, 0.0, (&q, &d, &next, &()));
+/// assert_eq!(edge.before.x, 4.0); // m d/h, without a kick at q = 0
+/// assert_eq!(edge.after.x, 2.0); // m d/h − h k q⁺/2
+/// assert_eq!(edge.before_by_end.x, 4.0); // m/h
+/// # Ok::<(), clebsch::Error>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Edge<T, const M: usize> {
     /// ℓd(t, h, q, F)
@@ -141,6 +213,25 @@ pub struct Edge<T, const M: usize> {
 }
 
 /// The discrete Lagrangian ℓd of an edge with its Legendre transforms.
+///
+/// ```
+/// # use clebsch::{Clebsch, Variational};
+/// # #[derive(Clebsch, Clone, Debug)]
+/// # #[clebsch(
+/// #     action     = |a: Translation<1>, x: Vector1| x + a,
+/// #     lagrangian = |v| self.mass * v.norm_squared() / 2,
+/// #     potential  = |x| self.stiffness * x.norm_squared() / 2,
+/// #     emit       = [tangent],
+/// # )]
+/// # struct Spring { mass: f64, stiffness: f64 }
+/// # use nalgebra::Vector1;
+/// # let spring = Spring { mass: 2.0, stiffness: 8.0 };
+/// # let h = 0.5;
+/// let (q, d, next) = (Vector1::new(0.0), Vector1::new(1.0), Vector1::new(1.0));
+/// let momenta = spring.momenta(&spring.constants(h)?, 0, 0.0, (&q, &d, &next, &()));
+/// assert_eq!((momenta.before.x, momenta.after.x), (4.0, 2.0));
+/// # Ok::<(), clebsch::Error>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Momenta<T, const M: usize> {
     /// ℓd(t, h, q, F)
@@ -152,6 +243,26 @@ pub struct Momenta<T, const M: usize> {
 }
 
 /// An edge with the derivatives of its momenta along the motions of its start that carry its end along.
+///
+/// ```
+/// # use clebsch::{Clebsch, Variational};
+/// # #[derive(Clebsch, Clone, Debug)]
+/// # #[clebsch(
+/// #     action     = |a: Translation<1>, x: Vector1| x + a,
+/// #     lagrangian = |v| self.mass * v.norm_squared() / 2,
+/// #     potential  = |x| self.stiffness * x.norm_squared() / 2,
+/// #     emit       = [tangent],
+/// # )]
+/// # struct Spring { mass: f64, stiffness: f64 }
+/// # use nalgebra::Vector1;
+/// # let spring = Spring { mass: 2.0, stiffness: 8.0 };
+/// # let h = 0.5;
+/// let (q, d, next) = (Vector1::new(0.0), Vector1::new(1.0), Vector1::new(1.0));
+/// let carried = spring.carried(&spring.constants(h)?, 0, 0.0, (&q, &d, &next, &()));
+/// assert_eq!(carried.adjoint.x, 1.0); // translations commute
+/// assert_eq!(carried.momentum.x, 2.0);
+/// # Ok::<(), clebsch::Error>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Carried<T, const M: usize> {
     /// F⁺ℓd, the momentum at the end.
@@ -172,6 +283,23 @@ pub struct Carried<T, const M: usize> {
 type BothSlopes<T, const M: usize, const P: usize> = (SMatrix<T, M, P>, SMatrix<T, M, P>);
 
 /// A system whose steps have been differentiated by P quantities, all that a step fixes. Implemented by `#[derive(Clebsch)]` with `emit = [tangent]`.
+///
+/// ```
+/// # use clebsch::{Clebsch, Sensitive};
+/// # #[derive(Clebsch, Clone, Debug)]
+/// # #[clebsch(
+/// #     action     = |a: Translation<1>, x: Vector1| x + a,
+/// #     lagrangian = |v| self.mass * v.norm_squared() / 2,
+/// #     potential  = |x| self.stiffness * x.norm_squared() / 2,
+/// #     emit       = [tangent],
+/// # )]
+/// # struct Spring { mass: f64, stiffness: f64 }
+/// assert_eq!(Spring::QUANTITIES, ["mass", "stiffness", "h"]);
+/// ```
+#[diagnostic::on_unimplemented(
+    message = "the steps of `{Self}` have no derivatives by their parameters",
+    note = "write `emit = [tangent]` in the declaration"
+)]
 pub trait Sensitive<const M: usize, const P: usize>:
     Variational<M> + Varied<M, Slopes = BothSlopes<<Self as Clebsch>::Scalar, M, P>>
 {

@@ -109,14 +109,14 @@ A closure is one formula, in the syntax of Rust and the names of nalgebra. The m
 | `v.x`, `v[0]`, `m[(0, 1)]` | entries, counted from 0 |
 | `pair.0`, `array[1]` | parts of a tuple and of an array |
 | `(a, b)`, `[a, b]`, `[a; 3]` | tuples and arrays |
-| `a..b`, `i % n` | ranges and remainders of whole numbers, for indices |
+| `a..b`, `i % n` | ranges and remainders of integers, for indices |
 | `let x = …;` | a name for a value, in a block |
 | `q * v` | a unit quaternion turns a vector of three components |
 
 {functions}
 <!-- ANCHOR_END: closures -->
 
-# What does not go together
+# Conflicts
 <!-- ANCHOR: together -->
 Most keys can be combined. These combinations are refused, and the error stands at the feature of the first column.
 Where a cell has several features, each of the first column is refused with each of the second.

@@ -9,6 +9,24 @@ use core::iter::FusedIterator;
 use nalgebra::{SMatrix, SVector};
 
 /// One edge of a path with the vertex where it starts. [`Boundary::rest`](crate::Boundary::rest) makes it, and a solution fills it.
+///
+/// ```
+/// # use clebsch::Clebsch;
+/// # #[derive(Clebsch, Clone, Debug)]
+/// # #[clebsch(
+/// #     action     = |a: Translation<1>, x: Vector1| x + a,
+/// #     lagrangian = |v| self.mass * v.norm_squared() / 2,
+/// #     potential  = |x| self.stiffness * x.norm_squared() / 2,
+/// #     emit       = [boundary],
+/// # )]
+/// # struct Spring { mass: f64, stiffness: f64 }
+/// # use nalgebra::Vector1;
+/// # let stepper = Spring { mass: 1.0, stiffness: 1.0 }.into_stepper(0.1)?;
+/// let node = stepper.boundary().rest(&Vector1::new(0.5));
+/// assert_eq!(node.configuration().x, 0.5);
+/// assert_eq!(node.increment().x, 0.0);
+/// # Ok::<(), clebsch::Error>(())
+/// ```
 pub struct Node<S: Clebsch, const M: usize> {
     pub(super) configuration: S::Configuration,
     pub(super) increment: S::Element,
@@ -56,6 +74,28 @@ impl<S: Variational<M, Scalar: Real>, const M: usize> Node<S, M> {
 copied!(Node<S, M> where [S: Variational<M, Scalar: Real>, const M: usize]: configuration, increment, momentum, gain);
 
 /// A critical path between fixed endpoints, solved to round-off by [`Boundary::solve`](crate::Boundary::solve): its nodes are the path itself.
+///
+/// ```
+/// # use clebsch::{Clebsch, Guess};
+/// # #[derive(Clebsch, Clone, Debug)]
+/// # #[clebsch(
+/// #     action     = |a: Translation<1>, x: Vector1| x + a,
+/// #     lagrangian = |v| self.mass * v.norm_squared() / 2,
+/// #     potential  = |x| self.stiffness * x.norm_squared() / 2,
+/// #     emit       = [boundary],
+/// # )]
+/// # struct Spring { mass: f64, stiffness: f64 }
+/// # use nalgebra::Vector1;
+/// # let stepper = Spring { mass: 1.0, stiffness: 1.0 }.into_stepper(0.1)?;
+/// # let boundary = stepper.boundary();
+/// let mut path = [boundary.rest(&Vector1::zeros()); 10];
+/// let extremal = boundary.solve(&Vector1::zeros(), &Vector1::new(1.0), Guess::Geodesic, &mut path)?;
+/// assert!(extremal.gap() < 1e-12);
+/// assert_eq!(extremal.negative(), 0); // a minimum of the action
+/// let arrived = stepper.advance(&stepper.state(Vector1::zeros(), *extremal.momentum())?, 10)?;
+/// assert!((arrived.configuration().x - 1.0).abs() < 1e-12);
+/// # Ok::<(), clebsch::Error>(())
+/// ```
 pub struct Extremal<'a, S: Variational<M, Scalar: Real>, const M: usize, B: Differentiated<S, M> = Declared> {
     pub(super) stepper: &'a Stepper<S, B>,
     pub(super) nodes: &'a [Node<S, M>],
@@ -120,6 +160,27 @@ debug!(Extremal<'_, S, M, B> where [S: Variational<M, Scalar: Real>, B: Differen
     action, iterations, residual, gap, negative);
 
 /// The states of an [`Extremal`].
+///
+/// ```
+/// # use clebsch::{Clebsch, Guess};
+/// # #[derive(Clebsch, Clone, Debug)]
+/// # #[clebsch(
+/// #     action     = |a: Translation<1>, x: Vector1| x + a,
+/// #     lagrangian = |v| self.mass * v.norm_squared() / 2,
+/// #     potential  = |x| self.stiffness * x.norm_squared() / 2,
+/// #     emit       = [boundary],
+/// # )]
+/// # struct Spring { mass: f64, stiffness: f64 }
+/// # use nalgebra::Vector1;
+/// # let stepper = Spring { mass: 1.0, stiffness: 1.0 }.into_stepper(0.1)?;
+/// # let boundary = stepper.boundary();
+/// # let mut path = [boundary.rest(&Vector1::zeros()); 10];
+/// let extremal = boundary.solve(&Vector1::zeros(), &Vector1::new(1.0), Guess::Geodesic, &mut path)?;
+/// let places: Vec<f64> = extremal.states().map(|state| state.configuration().x).collect();
+/// assert_eq!(places.len(), 11); // one for each step, and the end
+/// assert!(places.is_sorted());
+/// # Ok::<(), clebsch::Error>(())
+/// ```
 #[derive(Debug)]
 pub struct States<'e, 'a, S: Variational<M, Scalar: Real>, const M: usize, B: Differentiated<S, M> = Declared> {
     extremal: &'e Extremal<'a, S, M, B>,

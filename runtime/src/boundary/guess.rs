@@ -8,6 +8,28 @@ use crate::{Differentiated, Error, Real, Space, Variational};
 use nalgebra::SVector;
 
 /// Where the search for an extremal starts. Extremals between two endpoints are not unique: the guess selects.
+///
+/// ```
+/// # use clebsch::{Clebsch, Guess};
+/// # #[derive(Clebsch, Clone, Debug)]
+/// # #[clebsch(
+/// #     action     = |a: Translation<1>, x: Vector1| x + a,
+/// #     lagrangian = |v| self.mass * v.norm_squared() / 2,
+/// #     potential  = |x| self.stiffness * x.norm_squared() / 2,
+/// #     emit       = [boundary],
+/// # )]
+/// # struct Spring { mass: f64, stiffness: f64 }
+/// # use nalgebra::Vector1;
+/// # let stepper = Spring { mass: 1.0, stiffness: 1.0 }.into_stepper(0.1)?;
+/// # let boundary = stepper.boundary();
+/// # let mut path = [boundary.rest(&Vector1::zeros()); 10];
+/// # let start = Vector1::zeros();
+/// let first = boundary.solve(&start, &Vector1::new(1.0), Guess::Geodesic, &mut path)?.iterations();
+/// // the next target is near: the path that was found is the better guess
+/// let second = boundary.solve(&start, &Vector1::new(1.01), Guess::Path, &mut path)?.iterations();
+/// assert!(second <= first);
+/// # Ok::<(), clebsch::Error>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Guess<T, const M: usize> {
     /// A path with the same group element in every edge, the shortest way to the target, or at rest without one. A minimum is looked for.

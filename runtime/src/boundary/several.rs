@@ -8,6 +8,27 @@ use nalgebra::SVector;
 use num_traits::{One, Zero};
 
 /// One of several extremals between the same endpoints, found by [`Boundary::several`].
+///
+/// ```
+/// # use clebsch::{Clebsch, Way};
+/// # #[derive(Clebsch, Clone, Debug)]
+/// # #[clebsch(
+/// #     action     = |a: Translation<1>, x: Vector1| x + a,
+/// #     lagrangian = |v| self.mass * v.norm_squared() / 2,
+/// #     potential  = |x| self.stiffness * x.norm_squared() / 2,
+/// #     emit       = [boundary],
+/// # )]
+/// # struct Spring { mass: f64, stiffness: f64 }
+/// # use nalgebra::Vector1;
+/// # let stepper = Spring { mass: 1.0, stiffness: 1.0 }.into_stepper(0.1)?;
+/// # let boundary = stepper.boundary();
+/// let mut path = [boundary.rest(&Vector1::zeros()); 10];
+/// let ways: Vec<Way<f64, 1>> =
+///     boundary.several::<3>(&Vector1::zeros(), &Vector1::new(1.0), &mut path)?.into_iter().flatten().collect();
+/// assert_eq!(ways.len(), 1); // a spring goes one way in less than half of its period
+/// assert_eq!(ways[0].negative, 0);
+/// # Ok::<(), clebsch::Error>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Way<T, const M: usize> {
     /// The action Σ ℓd.

@@ -5,6 +5,23 @@ use crate::{Controlled, Real, Space};
 use nalgebra::{SMatrix, SVector};
 
 /// One step of a plan. Made by [`Control::stage`](crate::Control::stage), filled by [`Control::solve`](crate::Control::solve).
+///
+/// ```
+/// # use clebsch::{Clebsch, Controlled};
+/// # use nalgebra::{Vector1, Vector2};
+/// # #[derive(Clebsch, Clone, Debug)]
+/// # #[clebsch(
+/// #     dynamics = |h, x: Vector2, u: Vector1| x + h * vector![x.y, u.x],
+/// #     cost     = |h, u| h * u.norm_squared() / 2,
+/// #     bounds   = |u| [u.x <= self.strongest],
+/// #     endpoint = |x| self.price * x.norm_squared() / 2,
+/// # )]
+/// # struct Cart { strongest: f64, price: f64 }
+/// let control = Cart { strongest: 8.0, price: 0.0 }.control(0.1)?;
+/// let stage = control.stage(&Vector2::x()).with_input(Vector1::new(2.0)); // a guess
+/// assert_eq!((stage.place().x, stage.input().x), (1.0, 2.0));
+/// # Ok::<(), clebsch::Error>(())
+/// ```
 pub struct Stage<S: Controlled<D, U, C, Scalar: Real>, const D: usize, const U: usize, const C: usize> {
     pub(super) place: S::Place,
     pub(super) input: SVector<S::Scalar, U>,
@@ -86,6 +103,28 @@ copied!(Stage<S, D, U, C> where [S: Controlled<D, U, C, Scalar: Real>, const D: 
     place, input, costate, gain, multipliers);
 
 /// A plan on which the price is critical, solved to round-off by [`Control::solve`](crate::Control::solve). Its stages are the plan itself.
+///
+/// ```
+/// # use clebsch::{Clebsch, Controlled, Target};
+/// # use nalgebra::{Vector1, Vector2};
+/// # #[derive(Clebsch, Clone, Debug)]
+/// # #[clebsch(
+/// #     dynamics = |h, x: Vector2, u: Vector1| x + h * vector![x.y, u.x],
+/// #     cost     = |h, u| h * u.norm_squared() / 2,
+/// #     bounds   = |u| [u.x <= self.strongest],
+/// #     endpoint = |x| self.price * x.norm_squared() / 2,
+/// # )]
+/// # struct Cart { strongest: f64, price: f64 }
+/// let control = Cart { strongest: 5.0, price: 0.0 }.control(0.02)?;
+/// # let start = Vector2::zeros();
+/// let mut plan = [control.stage(&start); 50];
+/// let optimum = control.solve(&start, Target::Place(Vector2::x()), &mut plan)?;
+/// assert!(optimum.gap() < 1e-10);
+/// // the bound of 5 m/s² holds the cart back at first
+/// assert_eq!(optimum.stages()[0].active(), [true]);
+/// assert_eq!(optimum.stages()[25].active(), [false]);
+/// # Ok::<(), clebsch::Error>(())
+/// ```
 pub struct Optimum<'p, S: Controlled<D, U, C, Scalar: Real>, const D: usize, const U: usize, const C: usize> {
     pub(super) stages: &'p [Stage<S, D, U, C>],
     pub(super) step_size: S::Scalar,

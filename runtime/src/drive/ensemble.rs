@@ -51,6 +51,18 @@ pub struct Ensemble<S: Clebsch, M: Method<S> = Declared> {
 }
 
 /// A body that cannot be taken, or be stepped further.
+///
+/// ```
+/// # use clebsch::Clebsch;
+/// # #[derive(Clebsch, Clone, Debug)]
+/// # #[clebsch(action = |a: Translation<1>, x: Vector1| x + a, cost = |h, a| self.mass * a.norm_squared() / (2 * h))]
+/// # struct Particle { mass: f64 }
+/// # use nalgebra::Vector1;
+/// let starts = [(Vector1::zeros(), Vector1::new(2.0)), (Vector1::zeros(), Vector1::new(f64::NAN))];
+/// let failure = Particle { mass: 2.0 }.into_stepper(0.5)?.ensemble(starts).unwrap_err();
+/// assert_eq!(failure.body, 1);
+/// # Ok::<(), clebsch::Error>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Failure {
     /// The body, counted from 0.
@@ -227,6 +239,20 @@ where
 type Place<'a, S, M> = (&'a Stepper<S, M>, &'a Chunk<State<S, M>>, usize);
 
 /// The bodies of an [`Ensemble`], each by (q, N).
+///
+/// ```
+/// # use clebsch::Clebsch;
+/// # #[derive(Clebsch, Clone, Debug)]
+/// # #[clebsch(action = |a: Translation<1>, x: Vector1| x + a, cost = |h, a| self.mass * a.norm_squared() / (2 * h))]
+/// # struct Particle { mass: f64 }
+/// # use nalgebra::Vector1;
+/// let starts = [(Vector1::zeros(), Vector1::new(2.0)), (Vector1::zeros(), Vector1::new(4.0))];
+/// let mut particles = Particle { mass: 2.0 }.into_stepper(0.5)?.ensemble(starts)?;
+/// particles.step();
+/// let places: Vec<f64> = particles.bodies().map(|(x, _)| x.x).collect();
+/// assert_eq!(places, [0.5, 1.0]);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub struct Bodies<'a, S: Clebsch, M: Method<S> = Declared> {
     ensemble: &'a Ensemble<S, M>,
     next: usize,

@@ -13,6 +13,31 @@ use num_traits::Zero;
 /// Where [`Sites`] keep what they need: for each site a configuration q and a momentum N, and room for the next state.
 ///
 /// `Points` and `Momenta` are arrays, slices or vectors of one configuration or momentum for each site.
+///
+/// ```
+/// # use clebsch::{Clebsch, SiteStorage};
+/// # use nalgebra::Vector1;
+/// # #[derive(Clebsch, Clone, Debug)]
+/// # #[clebsch(
+/// #     action    = |a: [Translation<1>; N], x: [Vector1; N]| (0..N).map(|i| x[i] + a[i]),
+/// #     cost      = |h, a| (0..N).map(|i| a[i].norm_squared() / (2 * h)).sum(),
+/// #     potential = |x| (0..N).map(|i| (x[(i + 1) % N] - x[i]).norm_squared() / 2).sum(),
+/// # )]
+/// # struct Ring<const N: usize>;
+/// // slices of memory that was given
+/// let mut points = [[Vector1::zeros(); 8]; 3];
+/// let mut momenta = [[Vector1::new(2.0); 8]; 4];
+/// let [q, q1, q2] = &mut points;
+/// let [n, n1, n2, n3] = &mut momenta;
+/// let storage = SiteStorage {
+///     configuration: &mut q[..],
+///     momentum: &mut n[..],
+///     more_points: [&mut q1[..], &mut q2[..]],
+///     more_momenta: [&mut n1[..], &mut n2[..], &mut n3[..]],
+/// };
+/// Ring::<8>.into_stepper(0.5)?.sites(storage)?.advance(3)?;
+/// # Ok::<(), clebsch::Error>(())
+/// ```
 #[derive(Clone, Debug)]
 pub struct SiteStorage<Points, Momenta> {
     /// The configurations to start from.
@@ -35,6 +60,23 @@ impl<Points: Clone, Momenta: Clone> SiteStorage<Points, Momenta> {
 }
 
 /// An error at a site.
+///
+/// ```
+/// # use clebsch::{Clebsch, SiteStorage};
+/// # use nalgebra::Vector1;
+/// # #[derive(Clebsch, Clone, Debug)]
+/// # #[clebsch(
+/// #     action    = |a: [Translation<1>; N], x: [Vector1; N]| (0..N).map(|i| x[i] + a[i]),
+/// #     cost      = |h, a| (0..N).map(|i| a[i].norm_squared() / (2 * h)).sum(),
+/// #     potential = |x| (0..N).map(|i| (x[(i + 1) % N] - x[i]).norm_squared() / 2).sum(),
+/// # )]
+/// # struct Ring<const N: usize>;
+/// let (places, mut momenta) = (vec![Vector1::zeros(); 8], vec![Vector1::new(2.0); 8]);
+/// momenta[5].x = f64::INFINITY;
+/// let error = Ring::<8>.into_stepper(0.5)?.sites(SiteStorage::of(places, momenta)).unwrap_err();
+/// assert_eq!(error.site, Some(5));
+/// # Ok::<(), clebsch::Error>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SiteError {
     /// The site, where it is one.
@@ -63,6 +105,23 @@ impl From<SiteError> for Error {
 /// A power whose state is in storage of the user's choice: many sites that no stack would hold.
 ///
 /// A step costs and computes what [`Stepper::step`] does, to the last bit. It writes to the other state: where it fails, the state is what it was.
+///
+/// ```
+/// # use clebsch::{Clebsch, SiteStorage};
+/// # use nalgebra::Vector1;
+/// # #[derive(Clebsch, Clone, Debug)]
+/// # #[clebsch(
+/// #     action    = |a: [Translation<1>; N], x: [Vector1; N]| (0..N).map(|i| x[i] + a[i]),
+/// #     cost      = |h, a| (0..N).map(|i| a[i].norm_squared() / (2 * h)).sum(),
+/// #     potential = |x| (0..N).map(|i| (x[(i + 1) % N] - x[i]).norm_squared() / 2).sum(),
+/// # )]
+/// # struct Ring<const N: usize>;
+/// let (places, momenta) = (vec![Vector1::zeros(); 1000], vec![Vector1::new(2.0); 1000]);
+/// let mut ring = Ring::<1000>.into_stepper(0.5)?.sites(SiteStorage::of(places, momenta))?;
+/// ring.advance(3)?;
+/// assert_eq!(ring.configuration()[999].x, 3.0); // all move alike
+/// # Ok::<(), clebsch::Error>(())
+/// ```
 #[derive(Clone, Debug)]
 pub struct Sites<P: Clebsch, Points, Momenta, const N: usize> {
     stepper: Stepper<P>,

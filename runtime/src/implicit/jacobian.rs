@@ -6,6 +6,15 @@ use crate::{Real, Scalar, Space};
 use nalgebra::{SMatrix, SVector};
 
 /// The Jacobian of an implicit equation for M unknowns.
+///
+/// ```
+/// use clebsch::implicit::Jacobian;
+/// use nalgebra::{Matrix2, Vector2};
+///
+/// let slope = Matrix2::new(2.0, 0.0, 0.0, 4.0);
+/// let (correction, _) = Jacobian::solve(&slope, &Vector2::new(2.0, 2.0)).unwrap();
+/// assert_eq!(correction, Vector2::new(1.0, 0.5));
+/// ```
 pub trait Jacobian<T: Scalar, const M: usize>: Copy {
     /// The same of single numbers.
     type Lane: Jacobian<T::Lane, M>;

@@ -9,6 +9,23 @@ use nalgebra::{SMatrix, SVector};
 /// An implicit equation ρ(ξ; μ) = A(μ) ξ − b(μ) = 0 for M unknowns ξ, given N components of momentum, the target μ.
 ///
 /// A and b are affine in μ, or det A does not depend on μ; and b(0) = 0. Wanted is the solution on the branch of ξ = 0, which ends where det A changes its sign.
+///
+/// ```
+/// use clebsch::implicit::{LinearEquation, solve_linear_equation};
+/// use nalgebra::{Matrix1, Vector1};
+///
+/// /// (2 + μ) ξ = μ
+/// struct Affine;
+///
+/// impl LinearEquation<f64, 1> for Affine {
+///     fn system(&self, target: &Vector1<f64>) -> (Matrix1<f64>, Vector1<f64>) {
+///         (Matrix1::new(2.0 + target.x), *target)
+///     }
+/// }
+///
+/// assert_eq!(solve_linear_equation(&Affine, &Vector1::new(2.0))?.x, 0.5);
+/// # Ok::<(), clebsch::Error>(())
+/// ```
 pub trait LinearEquation<T: Scalar, const M: usize, const N: usize = M> {
     /// A and b for the target μ.
     fn system(&self, target: &SVector<T, N>) -> (SMatrix<T, M, M>, SVector<T, M>);

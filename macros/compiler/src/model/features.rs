@@ -124,7 +124,7 @@ fn filled(text: &str, refused: &str, beside: &str, name: &str) -> String {
     text.replace("{refused}", refused).replace("{beside}", beside).replace("{name}", name)
 }
 
-/// What a key and its values do not go with: a line for each of them, in the order of the table.
+/// The conflicts of a key and of its values: a line for each of them, in the order of the table.
 pub(crate) fn refused_with(key: &str) -> Vec<String> {
     let mut refused: Vec<(&str, Vec<&str>)> = Vec::new();
     for (_, one, other) in combinations() {
@@ -147,7 +147,7 @@ pub(crate) fn refused_with(key: &str) -> Vec<String> {
 
 /// The table of what does not go together in Markdown.
 pub(crate) fn features_as_markdown() -> String {
-    let head = "| what | does not go with | why | what to write |\n|---|---|---|---|\n";
+    let head = "| feature | not with | reason | cure |\n|---|---|---|---|\n";
     ROWS.iter().map(markdown_row).fold(head.to_string(), |table, row| table + &row)
 }
 

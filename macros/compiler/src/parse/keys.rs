@@ -1,4 +1,4 @@
-//! The keys of `#[clebsch(…)]`: one table says how each is read, its default, what it needs, and what the docs say.
+//! The keys of `#[clebsch(…)]`: one table says how each is read, its default, its needs, and its meaning.
 
 use std::collections::BTreeMap;
 
@@ -36,11 +36,11 @@ pub(super) struct Key {
     pub kind: Kind,
     /// A value that it may have.
     pub example: &'static str,
-    /// What holds where it is left out.
+    /// Its value where it is left out.
     pub default: &'static str,
-    /// What a declaration needs beside it.
+    /// The other parts of a declaration without which it has no meaning.
     pub needs: &'static str,
-    /// What it says, for the docs.
+    /// Its meaning, for the docs.
     pub about: &'static str,
     /// Whether a method takes it too.
     pub of_method: bool,
@@ -68,7 +68,7 @@ const PRICE: &str = "`cost`, the price of an input";
 const CHOICE: &str = "`controls`, `dynamics` or `effort`";
 const ITERATED: &str = "an implicit momentum equation";
 
-/// All keys: the name, how the value is read, an example, the default, what the key needs, and what it says.
+/// All keys: the name, how the value is read, an example, the default, the needs, and the meaning.
 #[rustfmt::skip]
 pub(super) const KEYS: [Key; 27] = [
     key("action", Kind::Closure, "|F: SO<3>, R: SO<3>| …", "required, or `dynamics`", "",
@@ -104,7 +104,7 @@ pub(super) const KEYS: [Key; 27] = [
     dial("solver", Dial(|dials, value| value.word(&mut dials.solver), |dials| text(&dials.solver), meanings::<Solver>), "fixed_point", "the one with fewer operations", ITERATED,
         "How a step starts to solve its momentum equation ρ(x) = 0."),
     dial("iterations", Dial(|dials, value| value.count(&mut dials.iterations), |dials| text(&dials.iterations), Vec::new), "4", "the limits of the solver", ITERATED,
-        "The most iterations for each momentum equation, a whole number above zero. A step that needs more is `Error::NotConverged`, in bounded time."),
+        "The most iterations for each momentum equation, a positive integer. A step that needs more is `Error::NotConverged`, in bounded time."),
     dial("tolerance", Dial(|dials, value| value.part(&mut dials.tolerance), |dials| dials.tolerance.as_ref().map(|part| part.to(format!("{:e}", part.value))), Vec::new), "1e-8", "round-off", ITERATED,
         "An iteration ends before a correction below this fraction of the step, a number between 0 and 1. The step is then no longer symplectic, and energies drift."),
     dial("summation", Dial(|dials, value| value.word(&mut dials.summation), |dials| text(&dials.summation), meanings::<Summation>), "compensated", "`plain`", MECHANICS,
@@ -227,7 +227,7 @@ impl<'d> Keys<'d> {
     }
 }
 
-/// The table of all keys in Markdown, then a section for each. `arguments` are those of a closure, `refused` what a key does not go with.
+/// The table of all keys in Markdown, then a section for each. `arguments` gives those of a closure, `refused` the conflicts of a key.
 pub(crate) fn keys_as_markdown(
     arguments: impl Fn(&str) -> Option<String>,
     refused: impl Fn(&str) -> Vec<String>,

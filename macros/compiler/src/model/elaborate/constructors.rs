@@ -17,7 +17,7 @@ use crate::parse::{listed, parenthesized, spell};
 type Constructor =
     (usize, fn(Shape) -> bool, for<'g> fn(&mut Elaborator<'_, '_, 'g>, &ExprCall, Shape) -> Option<Value<'g>>);
 
-/// Constructors by name, with what each gives, beside `new`, which has one argument for each entry.
+/// Constructors by name, each with its value. `new` is none of them: it has one argument for each entry.
 #[rustfmt::skip]
 pub(super) const CONSTRUCTORS: [(&str, Constructor, &str); 8] = [
     ("zeros",         (0, |_| true, |this, _, shape| Some(Value::Matrix(this.graph().zero(shape)))), "all entries 0"),

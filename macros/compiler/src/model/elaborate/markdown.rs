@@ -4,7 +4,7 @@ use super::constructors::CONSTRUCTORS;
 use super::quaternions;
 use super::tables::{METHODS, REFUSED};
 
-/// The methods and constructors, and what is refused, each as a table.
+/// The methods, the constructors and the refused methods, each as a table.
 pub(crate) fn functions_as_markdown() -> String {
     let methods = METHODS.iter().map(|(name, _, rule, gives)| [code(name), rule.receiver().into(), escaped(gives)]);
     let of_quaternions = quaternions::METHODS.iter().map(|(name, _, gives)| [code(name), escaped(gives)]);

@@ -13,7 +13,7 @@ use crate::parse::{listed, parenthesized, spell};
 /// A method of a quaternion q: how many operands it counts as, how it grows, its value, and whether that is a quaternion.
 type QuaternionRule = (usize, Growth, for<'g> fn(Expr<'g>) -> Expr<'g>, bool);
 
-/// The methods of quaternions without an argument, with what each gives; `dot` has one.
+/// The methods of quaternions without an argument, each with its value; `dot` has one.
 #[rustfmt::skip]
 pub(super) const METHODS: [(&str, QuaternionRule, &str); 7] = [
     ("scalar",       (1, Growth::Sum,      algebra::scalar,       false), "the scalar part w"),

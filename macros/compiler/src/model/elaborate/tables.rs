@@ -33,7 +33,7 @@ pub(super) enum Rule {
     PairOfThree(Binary),
     /// A part of a matrix.
     Part(Part),
-    /// By a function of its own, and of what.
+    /// A receiver of its own, by a function of its own.
     Special(&'static str, Method),
     /// An array, or a range of sites.
     Map,
@@ -42,7 +42,7 @@ pub(super) enum Rule {
 }
 
 impl Rule {
-    /// What a method is applied to, as the docs say it.
+    /// The receiver of a method, as the docs say it.
     pub fn receiver(self) -> &'static str {
         match self {
             Rule::Any(_) | Rule::Part(_) => "a matrix or vector",
@@ -74,7 +74,7 @@ const fn part(sizes: usize, starts: [bool; 2], shape: fn(Shape, &[usize]) -> Sha
     Rule::Part(Part { sizes, shape, starts })
 }
 
-/// All methods: the number of arguments, what each is of, and what it gives.
+/// All methods: the number of arguments, the receiver, and the value.
 #[rustfmt::skip]
 pub(super) const METHODS: [(&str, usize, Rule, &str); 39] = [
     ("transpose",      0, Rule::Any(|a| a.transpose()), "Aᵀ"),
@@ -102,7 +102,7 @@ pub(super) const METHODS: [(&str, usize, Rule, &str); 39] = [
     ("map",            1, Rule::Map, "`x.map(|i| …)`, an array"),
     ("sum",            0, Rule::Sum, "the sum of an array"),
     ("sqrt",           0, Rule::OfScalar(|this, call, a| this.sqrt(call, a)), "√x"),
-    ("powi",           1, Rule::OfScalar(|this, call, a| this.powi(call, a)), "`x.powi(n)`, xⁿ for a whole number n from −64 to 64"),
+    ("powi",           1, Rule::OfScalar(|this, call, a| this.powi(call, a)), "`x.powi(n)`, xⁿ for an integer n from −64 to 64"),
     ("powf",           1, Rule::OfScalar(|this, call, a| this.powf(call, a)), "`x.powf(y)`, x^y; `x.powf(3 / 2)` is exact"),
     ("recip",          0, Rule::OfScalar(|this, call, a| this.recip(call, a)), "1/x"),
     ("sin",            0, Rule::Scalar(Function::Sin), "sin x"),
