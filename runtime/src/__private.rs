@@ -2,6 +2,8 @@
 //!
 //! What is the same for every problem is here and compiled once. The compiler's side is the module `block` in its `emit` stage.
 
+pub mod keys;
+
 pub use crate::__formulas_of_sites as formulas_of_sites;
 pub use crate::collocation::{GAUSS_16, SWEEPS, collocate};
 pub use crate::element::{

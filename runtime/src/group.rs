@@ -147,7 +147,7 @@ pub struct Translation<const N: usize>(Infallible);
 #[derive(Debug)]
 pub struct SE<const N: usize>(Infallible);
 
-/// The similarities of N-dimensional space: x ↦ s R x + a with s > 0. `Sim<1>` scales and shifts a line.
+/// The similarities of N-dimensional space: x ↦ s R x + a with s > 0, for N > 1.
 ///
 /// Matrices: (N+1)×(N+1), s R and a above (0 … 0 1). Basis, in order: that of [`SO`] in the upper left; diag(I, 0); then E_{i,N+1}.
 /// Components for a physical Lagrangian: angular momentum, x·p of the dilation, linear momentum.
@@ -168,7 +168,7 @@ pub struct SE<const N: usize>(Infallible);
 #[derive(Debug)]
 pub struct Sim<const N: usize>(Infallible);
 
-/// The affine maps of N-dimensional space: x ↦ A x + a with det A > 0.
+/// The affine maps of N-dimensional space: x ↦ A x + a with det A > 0. `Aff<1>` scales and shifts a line.
 ///
 /// Matrices: (N+1)×(N+1), A and a above (0 … 0 1). Basis, in order: E_ij of the upper left by rows; then E_{i,N+1}. Components for a
 /// physical Lagrangian: p_i x_j, then linear momentum (left action).

@@ -11,6 +11,7 @@ mod budget;
 pub mod derive;
 pub mod diagnostic;
 pub mod emit;
+mod hints;
 pub mod lower;
 mod methods;
 pub mod model;
@@ -28,18 +29,20 @@ use crate::diagnostic::Diagnostics;
 use crate::lower::Program;
 pub use crate::methods::MethodProgram;
 use crate::parse::Declaration;
-pub use crate::reference::reference;
+pub use crate::reference::{keys_for_editors, reference};
 
 /// The integrator of the item that carries `#[derive(Clebsch)]`, or the errors of its declaration.
 ///
 /// Beside errors stands an implementation with the declared types, as far as they can be read, so that nothing else is reported. There
 /// are no panics: one of ours is an error that asks for a report.
 pub fn expand(item: TokenStream) -> TokenStream {
-    budget::without_panic(&item, || integrator(item.clone())).flatten().unwrap_or_else(|errors| {
+    let integrator = budget::without_panic(&item, || integrator(item.clone())).flatten().unwrap_or_else(|errors| {
         let errors = errors.to_compile_errors();
         let stub = budget::without_panic(&item, || stub(item.clone())).ok().flatten();
         quote::quote!(#errors #stub)
-    })
+    });
+    let hints = hints::hints(&item);
+    quote::quote!(#integrator #hints)
 }
 
 /// All five stages.

@@ -1,4 +1,4 @@
-//! The reference of the derive macro, `macros/reference.md`: the tables by which declarations are read and refused, in Markdown.
+//! The reference of the derive macro, `macros/reference.md`, and the texts for editors: printed from the tables by which declarations are read.
 //!
 //! Marks such as `ANCHOR: keys` name the sections that pages of the book include.
 
@@ -132,6 +132,17 @@ The example expands to this code, shortened where `…` stands. With `emit = [ge
 {expansion}```
 <!-- ANCHOR_END: expansion -->
 "
+    )
+}
+
+/// The file `keys.rs` of the runtime, whose items editors show for the keys and words of a declaration.
+pub fn keys_for_editors() -> String {
+    format!(
+        "//! The keys of `#[clebsch(…)]` and their words, for editors: a derive names them where they are written.
+//!
+//! Printed by `cargo run -p clebsch-compiler --example reference hints > runtime/src/__private/keys.rs`; a test compares the two.
+{}",
+        parse::keys_as_rust()
     )
 }
 

@@ -89,7 +89,7 @@ fn find(key: &Ident) -> Option<&'static Key> {
 }
 
 /// Whether a name follows on a key, of which there may be several.
-pub(super) fn is_named(key: &Ident) -> bool {
+pub(crate) fn is_named(key: &Ident) -> bool {
     key == "group" || key == "method"
 }
 

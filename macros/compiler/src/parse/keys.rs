@@ -5,8 +5,8 @@ use std::collections::BTreeMap;
 use proc_macro2::{Ident, Span};
 
 use super::dials::{
-    ChartChoice, CodeForm, Dials, Discretization, Isotropy, Meanings, Order, Solver, Summation, emitted_meanings,
-    meanings,
+    ChartChoice, CodeForm, Dials, Discretization, Isotropy, Meanings, Order, Promise, Solver, Summation,
+    emitted_meanings, meanings,
 };
 use super::spelling::listed;
 use super::values::Reader;
@@ -244,6 +244,47 @@ pub(crate) fn keys_as_markdown(
         format!("\n## `{}`\n\n{}\n{gap}{lines}", key.name, key.about)
     });
     table + &sections.collect::<String>()
+}
+
+/// Whether a key chooses its value from words.
+pub(crate) fn has_words(name: &Ident) -> bool {
+    let known = KEYS.iter().find(|key| name == key.name);
+    known.is_some_and(|key| key.values().iter().any(|(word, _)| is_word(word)))
+}
+
+/// Whether a value is a name, not a number.
+fn is_word(value: &str) -> bool {
+    value.starts_with(char::is_alphabetic)
+}
+
+/// The documented items that stand for keys and for their words: empty modules.
+pub(crate) fn keys_as_rust() -> String {
+    let keys = KEYS.iter().filter(|key| !key.comes_later() && key.name != "crate");
+    let of_key = |key: &Key| {
+        let (words, numbers): (Meanings, Meanings) = key.values().into_iter().partition(|(word, _)| is_word(word));
+        let numbers: Vec<String> = numbers.iter().map(|(number, meaning)| format!("* {number}: {meaning}")).collect();
+        let text = format!("{}\n\nExample: `{} = {}`", key.about, key.name, key.example);
+        let text = if numbers.is_empty() { text } else { format!("{text}\n\n{}", numbers.join("\n")) };
+        documented(key.name, &text, &words)
+    };
+    let method = "A further way to step the same system, a unit struct of yours: `method Fine = (order = 6)`.";
+    let group = "A group of your own: `group NAME = |F: Matrix4| a == b`, or `group NAME = basis([A, B])`.";
+    let field = "Promises on the values of a field.";
+    let others = documented("group", group, &[])
+        + &documented("method", method, &[])
+        + &documented("field", field, &meanings::<Promise>());
+    keys.map(of_key).collect::<String>() + &others
+}
+
+/// An empty module with a text, and one in it for each word.
+fn documented(name: &str, text: &str, words: &[(String, &str)]) -> String {
+    let comment = |indent: &str, text: &str| -> String {
+        text.lines().map(|line| format!("{indent}/// {line}").trim_end().to_string() + "\n").collect()
+    };
+    let words = words.iter().map(|(word, meaning)| comment("    ", meaning) + &format!("    pub mod {word} {{}}\n"));
+    let words: Vec<String> = words.collect();
+    let body = if words.is_empty() { String::new() } else { format!("\n{}", words.join("\n")) };
+    format!("\n{}pub mod {name} {{{body}}}\n", comment("", text))
 }
 
 /// The names of the dials that a method takes.

@@ -15,6 +15,7 @@ mod opaque;
 mod spelling;
 mod values;
 
+pub(crate) use attribute::is_named;
 pub use closure::{Argument, Closure, Pattern};
 pub use control::Choice;
 pub use declaration::{Declaration, Kinetic, Potential};
@@ -23,7 +24,7 @@ pub use field::Field;
 pub(crate) use field::{mass, member_name, promises_as_markdown};
 pub use groups::{DeclaredGroup, Definition};
 pub use keys::Located;
-pub(crate) use keys::{dials_of_method, keys_as_markdown};
+pub(crate) use keys::{dials_of_method, has_words, keys_as_markdown, keys_as_rust};
 pub use methods::DeclaredMethod;
 pub use opaque::Opaque;
 pub(crate) use spelling::{joined, listed, parenthesized, shortened, tail, tokens as spell_tokens};

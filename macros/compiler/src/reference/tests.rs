@@ -2,7 +2,7 @@
 
 use clebsch_symbolic::Graph;
 
-use super::reference;
+use super::{keys_for_editors, reference};
 use crate::compile;
 
 const PAGE: &str = include_str!("../../../reference.md");
@@ -16,6 +16,12 @@ fn the_page_is_up_to_date() {
     let expansion = snapshot.splitn(3, "---\n").nth(2).unwrap_or_default();
     let is_printed = PAGE == reference(declaration, expansion);
     assert!(is_printed, "cargo run -p clebsch-compiler --example reference > macros/reference.md");
+}
+
+#[test]
+fn the_texts_for_editors_are_up_to_date() {
+    let is_printed = keys_for_editors() == include_str!("../../../../runtime/src/__private/keys.rs");
+    assert!(is_printed, "cargo run -p clebsch-compiler --example reference hints > runtime/src/__private/keys.rs");
 }
 
 /// The names that the error for an unknown one lists, in backticks behind `are` or `it is`.

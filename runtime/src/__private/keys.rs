@@ -1,0 +1,203 @@
+//! The keys of `#[clebsch(…)]` and their words, for editors: a derive names them where they are written.
+//!
+//! Printed by `cargo run -p clebsch-compiler --example reference hints > runtime/src/__private/keys.rs`; a test compares the two.
+
+/// The type of the first argument is the group, that of the second the space of configurations. The value is the moved configuration. Whether the action is left or right is found.
+///
+/// Example: `action = |F: SO<3>, R: SO<3>| …`
+pub mod action {}
+
+/// The kinetic part of the discrete Lagrangian of one step, in J·s. The macro subtracts h·V. With `controls` or `dynamics` it is the price of the input of one step.
+///
+/// Example: `cost = |h, F| …`
+pub mod cost {}
+
+/// The Lagrangian ℓ(q, ξ), most often the kinetic energy, in joules. The macro discretises it. The last argument is a new name for ξ, the velocity in the basis of the group.
+///
+/// Example: `lagrangian = |omega| …`
+pub mod lagrangian {}
+
+/// The potential energy V(q), in joules. Where no formula exists, `opaque(Self::value, Self::gradient)` names two methods of the struct. `opaque(t, …)` is for methods that take the time first.
+///
+/// Example: `potential = |q| …`
+pub mod potential {}
+
+/// A symmetry that lies outside the declared group, such as rotations of a system of translations. The value is the pair of the moved configuration and the group element of the moved step. The macro checks it and adds its momentum to the conserved ones. `[closure, closure]` offers several.
+///
+/// Example: `symmetry = |S: SO<3>, q, F| (S * q, S * F * S.transpose())`
+pub mod symmetry {}
+
+/// A force that is no gradient, in the components of the momentum. A last argument with a type is an input, which each step is given or which `effort` chooses.
+///
+/// Example: `force = |omega, torque: Vector3| torque - self.damping * omega`
+pub mod force {}
+
+/// A force as a covector of the configuration, in its shape. It takes the same arguments as `force`.
+///
+/// Example: `force_on = |x, thrust: Vector3| thrust`
+pub mod force_on {}
+
+/// The velocity that an input gives, in the basis of the group. It moves the configuration directly, without mass or momentum.
+///
+/// Example: `controls = |u: Vector2| vector![u.x, u.y, 0]`
+pub mod controls {}
+
+/// The next configuration, by any map of a vector space. It replaces `action`. Its two typed arguments are the configuration and the input.
+///
+/// Example: `dynamics = |h, x: Vector2, u: Vector1| x + h * vector![x.y, u.x]`
+pub mod dynamics {}
+
+/// The price of the input of one step. Plans make the sum of these prices least.
+///
+/// Example: `effort = |h, torque| h * torque.norm_squared() / 2`
+pub mod effort {}
+
+/// Inequalities between scalars, with `<=` or `>=`, that hold in every step of a plan.
+///
+/// Example: `bounds = |u| [u.x <= 1, -1 <= u.x]`
+pub mod bounds {}
+
+/// The price of the end of a plan, or of a path of least action with a free end. It is added to the prices of all steps.
+///
+/// Example: `endpoint = |q| …`
+pub mod endpoint {}
+
+/// The order of accuracy: the error at a fixed time shrinks like this power of h.
+///
+/// Example: `order = 2`
+///
+/// * 1: Drift, then kick: h·V at the end of the step.
+/// * 2: Half kick, drift, half kick: h·V/2 at each end. Time-symmetric, with one gradient a step.
+/// * 4: Composed of 5 steps of order 2, or a splitting where the drift is exact.
+/// * 6: Composed of 9 steps of order 2, or a splitting where the drift is exact.
+/// * 8: Composed of 17 steps of order 2.
+/// * 16: Collocation of Hamilton's equations at the eight nodes of Gauss and Legendre.
+pub mod order {}
+
+/// How the velocity ξ of a step belongs to its group element F. `controls` take `cayley` and `exponential`.
+///
+/// Example: `discretization = cayley`
+pub mod discretization {
+    /// ξ = 2(F − I)(F + I)⁻¹/h, projected to the Lie algebra if it leaves it. A step cannot turn by π.
+    pub mod cayley {}
+
+    /// ξ = log(F)/h.
+    pub mod exponential {}
+
+    /// ξ = P(F − I)/h with the orthogonal projection P to the Lie algebra.
+    pub mod projection {}
+
+    /// (F − I)/h for ξ in the form ½tr(ξ 𝕄 ξᵀ) of the kinetic energy. On SO(3) it ends near h|ω| = 1.
+    pub mod moser_veselov {}
+
+    /// The discrete Lagrangian is the action of the free motion. A step without a potential has no error in h.
+    pub mod exact {}
+}
+
+/// The coordinates in which a step looks for its group element F.
+///
+/// Example: `chart = exponential`
+pub mod chart {
+    /// F = (I − Z)⁻¹(I + Z).
+    pub mod cayley {}
+
+    /// F = exp ξ.
+    pub mod exponential {}
+}
+
+/// How a step starts to solve its momentum equation ρ(x) = 0.
+///
+/// Example: `solver = fixed_point`
+pub mod solver {
+    /// Newton's method.
+    pub mod newton {}
+
+    /// x ← x − s·h·Σ⁻¹ρ(x), then Newton's method where that does not contract.
+    pub mod fixed_point {}
+}
+
+/// The most iterations for each momentum equation, a positive integer. A step that needs more is `Error::NotConverged`, in bounded time.
+///
+/// Example: `iterations = 4`
+pub mod iterations {}
+
+/// An iteration ends before a correction below this fraction of the step, a number between 0 and 1. The step is then no longer symplectic, and energies drift.
+///
+/// Example: `tolerance = 1e-8`
+pub mod tolerance {}
+
+/// How a step adds its increments to configuration and momentum.
+///
+/// Example: `summation = compensated`
+pub mod summation {
+    /// Floating-point addition.
+    pub mod plain {}
+
+    /// Kahan's summation: the rounding error of a step is added in the next one.
+    pub mod compensated {}
+}
+
+/// How the code of a step is written.
+///
+/// Example: `code = matrices`
+pub mod code {
+    /// Entry by entry, without loops.
+    pub mod unrolled {}
+
+    /// Operations on matrices, for large groups.
+    pub mod matrices {}
+}
+
+/// Motions of the group that move no configuration, such as turns about a point on a sphere.
+///
+/// Example: `isotropy = free`
+pub mod isotropy {
+    /// They are no motions: `state()` refuses a momentum along them.
+    pub mod fixed {}
+
+    /// They are motions: `state()` takes any momentum.
+    pub mod free {}
+}
+
+/// Further items that the macro derives, a list of words.
+///
+/// Example: `emit = [generated]`
+pub mod emit {
+    /// The constant `GENERATED`, the generated code as text; needs the feature `generated`.
+    pub mod generated {}
+
+    /// The constant `DERIVATION_LATEX`, the formulas in LaTeX.
+    pub mod latex {}
+
+    /// The methods `step_tangent` and `step_sensitivity`, the derivatives of a step.
+    pub mod tangent {}
+
+    /// The method `boundary()`, the path of least action between two configurations.
+    pub mod boundary {}
+
+    /// Steps of the momentum alone: the configuration is `()`.
+    pub mod momentum {}
+}
+
+/// The scalar type: `f64`, `f32` or a type parameter of the struct. Fields and spaces that name a scalar decide it otherwise.
+///
+/// Example: `scalar = f64`
+pub mod scalar {}
+
+/// A group of your own: `group NAME = |F: Matrix4| a == b`, or `group NAME = basis([A, B])`.
+pub mod group {}
+
+/// A further way to step the same system, a unit struct of yours: `method Fine = (order = 6)`.
+pub mod method {}
+
+/// Promises on the values of a field.
+pub mod field {
+    /// A square matrix with Aᵀ = A.
+    pub mod symmetric {}
+
+    /// A square matrix with zeros off its diagonal.
+    pub mod diagonal {}
+
+    /// A vector of length one.
+    pub mod unit {}
+}
