@@ -83,15 +83,15 @@ impl Number for Residue {
         Residue::new(sum)
     }
     fn reciprocal(self) -> Residue {
-        let (mut power, mut base, mut exponent) = (Residue(1), self, PRIME - 2);
-        while exponent > 0 {
-            if exponent & 1 == 1 {
-                power = power.multiply(base);
-            }
-            base = base.multiply(base);
-            exponent >>= 1;
+        // Euclid's algorithm: each remainder is its factor times this residue, modulo the prime
+        let (mut remainder, mut next) = (PRIME as i64, self.0 as i64);
+        let (mut factor, mut next_factor) = (0, 1);
+        while next != 0 {
+            let quotient = remainder / next;
+            (remainder, next) = (next, remainder - quotient * next);
+            (factor, next_factor) = (next_factor, factor - quotient * next_factor);
         }
-        power
+        Residue::from_integer(factor)
     }
     fn fractional_power(self, (numerator, denominator): (i64, i64)) -> Residue {
         match self.0 {

@@ -53,11 +53,13 @@ impl<K: Hash + Eq> Interner<K> {
 
     /// The slot where a value stands, or the one that it would take.
     fn slot(&self, hash: u64, value: &K) -> usize {
-        let mask = self.slots.len() - 1;
+        // slices: without optimisation the index of a vector is five calls
+        let (slots, hashes) = (self.slots.as_slice(), self.hashes.as_slice());
+        let mask = slots.len() - 1;
         let mut slot = hash as usize & mask;
-        while self.slots[slot] != 0 {
-            let position = self.slots[slot] as usize - 1;
-            if self.hashes[position] == hash && self.values[position] == *value {
+        while slots[slot] != 0 {
+            let position = slots[slot] as usize - 1;
+            if hashes[position] == hash && self.values[position] == *value {
                 break;
             }
             slot = (slot + 1) & mask;

@@ -7,9 +7,15 @@
 use std::cell::Cell;
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
 
+/// What has been counted, and the limit.
+#[derive(Copy, Clone)]
+struct Account {
+    spent: u64,
+    limit: u64,
+}
+
 thread_local! {
-    static SPENT: Cell<u64> = const { Cell::new(0) };
-    static LIMIT: Cell<u64> = const { Cell::new(u64::MAX) };
+    static ACCOUNT: Cell<Account> = const { Cell::new(Account { spent: 0, limit: u64::MAX }) };
 }
 
 /// The work was not done within its limit.
@@ -18,9 +24,13 @@ pub struct Exhausted;
 
 /// Counts work. Beyond the limit of [`within`] it does not return.
 pub fn spend(units: usize) {
-    let spent = SPENT.get().saturating_add(units as u64);
-    SPENT.set(spent);
-    if spent > LIMIT.get() {
+    let is_exhausted = ACCOUNT.with(|account| {
+        let Account { spent, limit } = account.get();
+        let spent = spent.saturating_add(units as u64);
+        account.set(Account { spent, limit });
+        spent > limit
+    });
+    if is_exhausted {
         // an end that is expected: no panic hook runs, and nothing is printed
         resume_unwind(Box::new(Exhausted));
     }
@@ -28,7 +38,7 @@ pub fn spend(units: usize) {
 
 /// What has been counted on this thread.
 pub fn spent() -> u64 {
-    SPENT.get()
+    ACCOUNT.get().spent
 }
 
 /// Does what may take this much work at most, and no more than what is left where this stands within another limit. After an error
@@ -37,9 +47,9 @@ pub fn spent() -> u64 {
 /// # Errors
 /// Where it takes more.
 pub fn within<T>(units: u64, work: impl FnOnce() -> T) -> Result<T, Exhausted> {
-    let outer = LIMIT.get();
-    LIMIT.set(SPENT.get().saturating_add(units).min(outer));
+    let Account { spent, limit: outer } = ACCOUNT.get();
+    ACCOUNT.set(Account { spent, limit: spent.saturating_add(units).min(outer) });
     let result = catch_unwind(AssertUnwindSafe(work));
-    LIMIT.set(outer);
+    ACCOUNT.set(Account { limit: outer, ..ACCOUNT.get() });
     result.map_err(|payload| if payload.is::<Exhausted>() { Exhausted } else { resume_unwind(payload) })
 }
