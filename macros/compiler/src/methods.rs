@@ -1,6 +1,6 @@
 //! Methods: several programs of one system.
 
-use clebsch_symbolic::Elements;
+use clebsch_symbolic::{Elements, both};
 use proc_macro2::Ident;
 
 use crate::diagnostic::{Diagnostics, bail};
@@ -24,7 +24,7 @@ impl<'g> MechanicsProgram<'g> {
     /// Whether the steps of another program of the system are differentiated with respect to the same quantities.
     pub(crate) fn has_the_same_quantities(&self, other: &Program<'g>) -> bool {
         let Program::Mechanics(other) = other else { return false };
-        let [these, others] = [&self.formulas, &other.formulas].map(|formulas| &formulas.quantities);
+        let [these, others] = both([&self.formulas, &other.formulas], |formulas| &formulas.quantities);
         these.iter().map(|quantity| &quantity.name).eq(others.iter().map(|quantity| &quantity.name))
     }
 }

@@ -8,7 +8,7 @@ use std::ops::Range;
 
 use crate::memory::Images;
 use crate::node::{ExprNode, Id, Operation, Term};
-use crate::{Expr, IntoList, Shape, integer};
+use crate::{Expr, IntoList, Shape, both, integer};
 
 impl<'g> Expr<'g> {
     /// The entry in row i and column j, counted from zero.
@@ -41,7 +41,7 @@ impl<'g> Expr<'g> {
             ExprNode::Literal(entries) => graph.literal(shape, positions().map(|k| entries[k].clone()).into_list()),
             ExprNode::Stack(entries) => graph.stack(shape, positions().map(|k| graph.expr(entries[k])).into_list()),
             ExprNode::Hadamard(a, b) => {
-                let [a, b] = [a, b].map(|factor| graph.expr(*factor).block(row, column, shape));
+                let [a, b] = both([a, b], |factor| graph.expr(*factor).block(row, column, shape));
                 a.hadamard(b)
             }
             ExprNode::Of(Operation::Block(r, c), inner) => graph.expr(*inner).block(r + row, c + column, shape),

@@ -52,6 +52,11 @@ pub fn indexed<B>(count: usize, mut f: impl FnMut(usize) -> B) -> Vec<B> {
     counted(count, &mut f)
 }
 
+/// f(a) and f(b).
+pub fn both<A, B>([a, b]: [A; 2], mut f: impl FnMut(A) -> B) -> [B; 2] {
+    [f(a), f(b)]
+}
+
 fn mapped<'a, A, B>(list: &'a [A], f: &mut dyn FnMut(&'a A) -> B) -> Vec<B> {
     let mut values = Vec::with_capacity(list.len());
     for element in list {

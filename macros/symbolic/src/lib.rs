@@ -38,7 +38,7 @@ mod tests;
 pub mod work;
 
 pub use algebra::{Algebra, Basis, Sparse};
-pub use each::{Elements, IntoElements, IntoList, indexed};
+pub use each::{Elements, IntoElements, IntoList, both, indexed};
 pub use evaluate::{Matrix, Number};
 pub use expr::Expr;
 pub use graph::Graph;

@@ -3,7 +3,7 @@
 use std::fmt;
 
 use crate::node::{Analytic, Exponent, ExprNode, Function, Id, Operation, Term};
-use crate::{Elements, Expr, Graph, IntoList, Rational, Shape, work};
+use crate::{Elements, Expr, Graph, IntoList, Rational, Shape, both, work};
 
 /// A notation of formulas.
 #[derive(Copy, Clone, PartialEq, Eq, Debug)]
@@ -85,7 +85,7 @@ impl Printer<'_> {
                 format!("{name}({})", self.all(arguments).join(", "))
             }
             ExprNode::Hadamard(a, b) => {
-                let [a, b] = [a, b].map(|factor| self.print(*factor, Binding::Atom));
+                let [a, b] = both([a, b], |factor| self.print(*factor, Binding::Atom));
                 return (a + self.notation.either(" ∘ ", " \\circ ") + &b, Binding::Sum);
             }
             ExprNode::Of(operation, a) => self.operation(*operation, *a, shape),

@@ -8,7 +8,7 @@ use std::iter::Sum;
 use std::ops::{Add, AddAssign, Div, Mul, MulAssign, Neg, Sub, SubAssign};
 
 use crate::natural::Natural;
-use crate::work;
+use crate::{both, work};
 
 /// A fraction of machine words in lowest terms: exponents, and the coefficients that fit. Its numerator has a negative.
 #[derive(Copy, Clone, PartialEq, Eq, Hash, Debug)]
@@ -186,7 +186,7 @@ impl Rational {
     /// ±a/b, where b is not zero.
     fn of(is_negative: bool, numerator: Natural, denominator: Natural) -> Rational {
         let common = numerator.common_divisor(&denominator);
-        let [numerator, denominator] = [numerator, denominator].map(|part| part.divided(&common).0);
+        let [numerator, denominator] = both([numerator, denominator], |part| part.divided(&common).0);
         Rational::in_lowest_terms(Long { is_negative, numerator, denominator })
     }
 
@@ -331,7 +331,7 @@ impl Rational {
             return self.clone();
         }
         let Long { is_negative, numerator, denominator } = self.long();
-        let [numerator, denominator] = [numerator, denominator].map(|part| part.power(exponent.unsigned_abs()));
+        let [numerator, denominator] = both([numerator, denominator], |part| part.power(exponent.unsigned_abs()));
         let is_negative = is_negative && exponent % 2 != 0;
         let power = Long { is_negative, numerator, denominator };
         if exponent < 0 { Rational::fitted(power).recip() } else { Rational::in_lowest_terms(power) }

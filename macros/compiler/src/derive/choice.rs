@@ -1,7 +1,7 @@
 //! Price, bounds and the price of the end, each with its derivatives. The kernels of a choice of inputs compute matrices over the motions
 //! of a configuration and the entries of the input.
 
-use clebsch_symbolic::{Expr, IntoList, Shape};
+use clebsch_symbolic::{Expr, IntoList, Shape, both};
 
 use super::matrices::Inserted;
 use super::{Bend, Id, InputStep, MatrixForm, MechanicsFormulas, SteeredFormulas, SystemFormulas};
@@ -157,7 +157,7 @@ impl<'a, 'g> Choice<'a, 'g> {
         match (id, self.step) {
             (Id::StepExpanded, StepOfChoice::Steered(step)) => {
                 let curvature = curvature(&|i, j| of_price(i, j) + symmetric(&step.curvature, i, j));
-                let slopes = [&step.by_place, &step.by_input].map(|columns| at.columns(columns));
+                let slopes = both([&step.by_place, &step.by_input], |columns| at.columns(columns));
                 [&slopes, price_and_slopes().as_slice(), &curvature].concat()
             }
             (Id::ByInput, StepOfChoice::Forced(bend)) => {

@@ -4,7 +4,7 @@
 //! exp η′ = (F⁻¹ exp(η) F)(F⁻¹ F(w)) for a right action and (F(w) F⁻¹)(F exp(η) F⁻¹) for a left one, w = (η, u): to first order
 //! η′ = Ad η + b(w), and to second order ½ b″ + ½ [Ad η, b] or ½ [b, Ad η] more (Baker, Campbell, Hausdorff).
 
-use clebsch_symbolic::{Block, Chart, Elements, Expr, IntoList, Property, Role, Shape, indexed};
+use clebsch_symbolic::{Block, Chart, Elements, Expr, IntoList, Property, Role, Shape, both, indexed};
 
 use super::SystemFormulas;
 use super::choice::{Direction, Endpoint, Jet, Steering};
@@ -38,7 +38,7 @@ impl<'g> SystemFormulas<'g> {
     /// The derivatives with respect to h and t.
     fn by_time(&self, value: Expr<'g>) -> [Expr<'g>; 2] {
         let one = self.model.graph.integer(1);
-        [self.model.step_size, self.model.time].map(|symbol| value.differential(&[(symbol, one)]))
+        both([self.model.step_size, self.model.time], |symbol| value.differential(&[(symbol, one)]))
     }
 
     /// Everything that a declared choice of inputs needs.
@@ -121,7 +121,7 @@ pub(super) fn step<'g>(model: &Steered<'g>, formulas: &SystemFormulas<'g>) -> In
     };
     let second =
         |i: usize, j: usize| graph.total(Shape::scalar(), parts.iter().map(|part| part.curvature(&directions, i, j)));
-    let by_time = [model.step_size, model.time].map(|symbol| {
+    let by_time = both([model.step_size, model.time], |symbol| {
         let slope = |(part, increment): (&Factored<'g>, &Expr<'g>)| {
             let change = increment.differential(&[(symbol, graph.integer(1))]);
             part.costate.dot(logarithmic(&part.factor, change))
@@ -154,7 +154,7 @@ impl<'g> Factored<'g> {
         let second = (self.changes[i].differential(&directions[j]) + self.changes[j].differential(&directions[i])) / 2;
         let mut sum = logarithmic(&self.factor, second);
         if !group.is_translation() {
-            let [a, b] = [i, j].map(|i| divided(&self.factor, self.changes[i]));
+            let [a, b] = both([i, j], |i| divided(&self.factor, self.changes[i]));
             let product = (group.compose(a, b) + group.compose(b, a)) / 2;
             sum = sum - group.projected_coordinates(product) + self.bracket(i, b) + self.bracket(j, a);
         }

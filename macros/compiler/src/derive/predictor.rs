@@ -1,6 +1,6 @@
 //! What iterations start from, and equations in the form in which they are solved.
 
-use clebsch_symbolic::{Elements, Expr, IntoElements, IntoList, Shape};
+use clebsch_symbolic::{Elements, Expr, IntoElements, IntoList, Shape, both};
 
 use super::exact::{by_inertia, inertia_inverse};
 use super::symbols::{at_zero, entries, rows_at};
@@ -77,7 +77,7 @@ impl<'g> MechanicsFormulas<'g> {
         let zero = at_zero(self.symbols.blocks.iter().map(|block| block.coordinates));
         let right_side = -equation.residual.substitute(&zero);
         if keeps_matrices {
-            return [right_side, equation.directional].map(MatrixForm::Whole);
+            return both([right_side, equation.directional], MatrixForm::Whole);
         }
         let columns = equation.columns(&self.symbols).into_iter().map(|column| column.substitute(&zero));
         [MatrixForm::Whole(right_side), MatrixForm::of_columns(columns)]

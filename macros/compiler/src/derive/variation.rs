@@ -1,7 +1,7 @@
 //! Second derivatives of a discrete Lagrangian: its Legendre transforms differentiated along the motions of both ends of an edge, and
 //! with respect to everything that is fixed during a step.
 
-use clebsch_symbolic::{Elements, Expr, IntoList, Property, indexed};
+use clebsch_symbolic::{Elements, Expr, IntoList, Property, both, indexed};
 
 use super::choice::Direction;
 use super::force::total;
@@ -141,9 +141,9 @@ impl<'g> Source<'_, 'g> {
             momenta,
             derivatives,
             carried: [model.graph.below(&adjoint), first.differential(&together), last.differential(&together)],
-            slopes: (!self.quantities.is_empty()).then(|| [first, last].map(slopes)),
+            slopes: (!self.quantities.is_empty()).then(|| both([first, last], slopes)),
             bend: model.control.as_ref().map(|_| {
-                let ends = [&together, &at_end].map(|motions| system.symbols.along_basis(motions));
+                let ends = both([&together, &at_end], |motions| system.symbols.along_basis(motions));
                 control::bend(system, (first, last), ends.concat())
             }),
         }

@@ -1,6 +1,6 @@
 //! Tokens of calls: functions of matrices, and the methods behind an opaque potential with their check against each other.
 
-use clebsch_symbolic::Shape;
+use clebsch_symbolic::{Shape, both};
 use proc_macro2::TokenStream;
 use quote::{format_ident, quote};
 
@@ -66,7 +66,7 @@ impl Emitter<'_, '_> {
     pub(super) fn potential_check(&self) -> TokenStream {
         let Some(opaque) = self.opaque else { return TokenStream::new() };
         let scope = self.scope_of_system();
-        let [value, gradient] = [false, true].map(|is_gradient| scope.method(is_gradient));
+        let [value, gradient] = both([false, true], |is_gradient| scope.method(is_gradient));
         let time_parameter = opaque.takes_time.then(|| quote!(t: T,));
         let time = opaque.takes_time.then(|| quote!(t,));
         let mut entry = 0;

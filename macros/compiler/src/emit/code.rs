@@ -1,6 +1,6 @@
 //! Tokens of straight-line code.
 
-use clebsch_symbolic::{Function, Rational, integer, work};
+use clebsch_symbolic::{Function, Rational, both, integer, work};
 use proc_macro2::{Delimiter, Group, Ident, Literal, Punct, Spacing, Span, TokenStream, TokenTree};
 use quote::{TokenStreamExt, format_ident, quote};
 
@@ -150,7 +150,7 @@ impl Scope<'_, '_> {
             Some((0, 1)) => quote!(<T as runtime::Zero>::zero()),
             Some((1, 1)) => quote!(<T as runtime::One>::one()),
             Some((numerator, denominator)) => {
-                let [numerator, denominator] = [numerator, denominator].map(Literal::i64_unsuffixed);
+                let [numerator, denominator] = both([numerator, denominator], Literal::i64_unsuffixed);
                 quote!(<T as runtime::Scalar>::from_ratio(#numerator, #denominator))
             }
             None => self.rounded(float(value)),
@@ -185,7 +185,7 @@ fn float(value: &Rational) -> TokenStream {
     let tokens = match decimal(&magnitude) {
         Some(text) => part(text),
         None => {
-            let [above, below] = [magnitude.numer(), magnitude.denom()].map(|number| part(format!("{number}.0")));
+            let [above, below] = both([magnitude.numer(), magnitude.denom()], |number| part(format!("{number}.0")));
             quote!((#above / #below))
         }
     };

@@ -1,6 +1,6 @@
 //! Steps of order 16: Hamilton's equations at all stages, found by sweeps over them.
 
-use clebsch_symbolic::IntoList;
+use clebsch_symbolic::{IntoList, both};
 use proc_macro2::{Literal, TokenStream};
 use quote::quote;
 
@@ -15,7 +15,7 @@ impl Emitter<'_, '_> {
         let numbers = self.numbers_of_pair();
         let (scope, count) = (self.scope_of_step(), size(self.formulas.weighted().len()));
         let words = |word: &str| {
-            let [q, p] = [quote!(q), quote!(p)].map(|name| self.entries(&name));
+            let [q, p] = both([quote!(q), quote!(p)], |name| self.entries(&name));
             Some(match word {
                 "Numbers" => quote!([T; #numbers]),
                 "Equations" => self.trait_of_parts("HamiltonEquations", std::slice::from_ref(&numbers)),

@@ -1,6 +1,6 @@
 //! What a stepper computes once: its type, and the checks and code that make it.
 
-use clebsch_symbolic::{IntoList, Role};
+use clebsch_symbolic::{IntoList, Role, both};
 use proc_macro2::{Ident, TokenStream};
 use quote::{format_ident, quote};
 
@@ -16,7 +16,7 @@ impl Emitter<'_, '_> {
         let name = self.names.free("Constants");
         let constants = self.constants_of_stepper().into_iter().map(|[name, ty, _]| quote!(#name: #ty,));
         let [declared, parameter] =
-            [quote!(<T: runtime::Scalar>), quote!(<T>)].map(|tokens| self.is_generic().then_some(tokens));
+            both([quote!(<T: runtime::Scalar>), quote!(<T>)], |tokens| self.is_generic().then_some(tokens));
         quote! {
             /// What no step changes: made once per stepper.
             #[derive(::core::clone::Clone, ::core::fmt::Debug)]
@@ -129,7 +129,7 @@ impl Emitter<'_, '_> {
         if count == self.dimension {
             return quote!(inertia);
         }
-        let [first, count] = [first, count].map(size);
+        let [first, count] = both([first, count], size);
         quote!(runtime::Blocks::block::<#count, #count>(&inertia, #first, #first))
     }
 

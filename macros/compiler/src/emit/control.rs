@@ -1,6 +1,6 @@
 //! The implementation of the trait `Controlled`: what choosing the inputs needs.
 
-use clebsch_symbolic::Elements;
+use clebsch_symbolic::{Elements, both};
 use proc_macro2::TokenStream;
 use quote::quote;
 
@@ -115,8 +115,8 @@ impl SystemEmitter<'_, '_> {
             "EndExpanded" => self.endpoint_expanded().unwrap_or(quote!(runtime::no_endpoint())),
             "Moved" => {
                 let scope = self.scope_of_system();
-                let [increment, advance] = [Id::Increment, Id::Advance].map(|id| self.kernels.kernel(id));
-                let [before, within] = [increment, advance].map(|kernel| scope.locals(kernel));
+                let [increment, advance] = both([Id::Increment, Id::Advance], |id| self.kernels.kernel(id));
+                let [before, within] = both([increment, advance], |kernel| scope.locals(kernel));
                 let (increment, advance) = (scope.element(increment, 0), scope.configuration(advance));
                 quote! {
                     let (h, q) = (*constants, x);
@@ -126,7 +126,7 @@ impl SystemEmitter<'_, '_> {
             }
             "Passed" => {
                 let (scope, kernel) = (self.scope_of_system(), self.kernels.kernel(Id::ByInput));
-                let (locals, [before, after]) = (scope.locals(kernel), [0, 1].map(|k| scope.output(kernel, k)));
+                let (locals, [before, after]) = (scope.locals(kernel), both([0, 1], |k| scope.output(kernel, k)));
                 quote! {
                     let (constants, h) = (&constants.0, constants.1);
                     let (q, n) = x;
@@ -145,8 +145,8 @@ impl SystemEmitter<'_, '_> {
     /// φ with its derivatives, at `q` and `t`.
     pub(super) fn endpoint_expanded(&self) -> Option<TokenStream> {
         let (scope, kernel) = (self.scope_of_system(), self.kernels.find(Id::PriceOfEndExpanded)?);
-        let (locals, [price, by_time]) = (scope.locals(kernel), [0, 1].map(|k| scope.scalar(kernel, k)));
-        let [slope, curvature] = [2, 3].map(|k| scope.output(kernel, k));
+        let (locals, [price, by_time]) = (scope.locals(kernel), both([0, 1], |k| scope.scalar(kernel, k)));
+        let [slope, curvature] = both([2, 3], |k| scope.output(kernel, k));
         Some(quote!(#locals runtime::endpoint(#price, #by_time, &#slope, &#curvature)))
     }
 }

@@ -1,6 +1,6 @@
 //! The types of the momentum equations: closed forms, and what Newton's method needs.
 
-use clebsch_symbolic::{Role, Shape};
+use clebsch_symbolic::{Role, Shape, both};
 use proc_macro2::{Ident, TokenStream};
 use quote::{format_ident, quote};
 
@@ -54,7 +54,7 @@ impl<'e, 'a, 'g> EquationType<'e, 'a, 'g> {
         let mut scope = emitter.scope(quote!(system), Some(quote!(c)));
         scope.momenta = solve.momenta.clone();
         scope.coordinates = if solve.given.is_empty() { solve.components.clone() } else { solve.given.clone() };
-        let [vector, target] = [solve.dimension, solve.momenta.len()].map(|rows| emitter.vector_type(rows));
+        let [vector, target] = both([solve.dimension, solve.momenta.len()], |rows| emitter.vector_type(rows));
         EquationType { emitter, solve, scope, vector, target }
     }
 

@@ -1,6 +1,6 @@
 //! How a generated function is written: its documentation, its signature and its body.
 
-use clebsch_symbolic::{Elements, IntoList};
+use clebsch_symbolic::{Elements, IntoList, both};
 use proc_macro2::TokenStream;
 use quote::{format_ident, quote};
 
@@ -171,7 +171,7 @@ impl Block<'_> {
     ) -> TokenStream {
         let inline = inline.or_else(|| function.is_inline.then(|| quote!(#[inline])));
         let name = format_ident!("{}", function.name);
-        let [arguments, result] = [function.arguments, function.result].map(|text| self.parsed(text, words));
+        let [arguments, result] = both([function.arguments, function.result], |text| self.parsed(text, words));
         quote!(#inline fn #name #arguments -> #result { #code })
     }
 

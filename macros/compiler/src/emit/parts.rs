@@ -1,6 +1,6 @@
 //! The parts of a step: one function for each, as the schemes of the runtime call them.
 
-use clebsch_symbolic::Group;
+use clebsch_symbolic::{Group, both};
 use proc_macro2::TokenStream;
 use quote::{format_ident, quote};
 
@@ -72,7 +72,7 @@ impl Emitter<'_, '_> {
         let sums = if self.formulas.is_compensated() { quote!(Compensated) } else { quote!(Plain) };
         let is_short = self.is_short().then(|| flag("IS_SHORT", true));
         let no_covectors = (!self.model.has_covectors()).then(|| flag("HAS_COVECTORS", false));
-        let [coordinates, moves] = ["X", "Moves"].map(|word| self.word_of_step(word));
+        let [coordinates, moves] = both(["X", "Moves"], |word| self.word_of_step(word));
         let words = |word: &str| self.word_of_step(word);
         let functions = self.functions(PARTS, (0, 0), &words, |function, kernel| self.shared_part(function, kernel));
         let items = quote! {

@@ -4,7 +4,7 @@ use std::cell::RefCell;
 use std::hash::Hash;
 use std::ops::Deref;
 
-use clebsch_symbolic::{Elements, Group, Rational, Role, Shape, Symbol, Table};
+use clebsch_symbolic::{Elements, Group, Rational, Role, Shape, Symbol, Table, both};
 use proc_macro2::{Literal, TokenStream, TokenTree};
 use quote::{ToTokens, format_ident, quote};
 
@@ -274,7 +274,7 @@ impl Scope<'_, '_> {
         let is_zero = |entry: &Code| matches!(entry, Code::Number(value) if value.is_zero());
         let zeros = entries.iter().filter(|entry| is_zero(entry)).count();
         if shape.columns > LONGEST_ROW && 2 * zeros > entries.len() {
-            let [rows, columns] = [shape.rows, shape.columns].map(size);
+            let [rows, columns] = both([shape.rows, shape.columns], size);
             let zero = self.number(&Rational::zero());
             let kept = entries.iter().enumerate().filter(|(_, entry)| !is_zero(entry)).map(|(place, entry)| {
                 let index = index(false, (place / shape.columns, place % shape.columns));

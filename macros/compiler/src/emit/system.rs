@@ -1,6 +1,6 @@
 //! The implementation of the trait `Clebsch` for the user's struct, and what goes with it.
 
-use clebsch_symbolic::{Elements, Group, Property, Role};
+use clebsch_symbolic::{Elements, Group, Property, Role, both};
 use proc_macro2::TokenStream;
 use quote::{format_ident, quote};
 
@@ -203,7 +203,7 @@ impl<'g> Emitter<'_, 'g> {
     /// What a momentum is asked for where motions fix the configuration: by a function of the projection, or of the motions ξ_Q(q).
     fn isotropy(&self, kernel: &Kernel, [of_projection, of_motions]: [&str; 2]) -> TokenStream {
         let scope = self.scope_of_system();
-        let [of_projection, of_motions] = [of_projection, of_motions].map(|name| format_ident!("{name}"));
+        let [of_projection, of_motions] = both([of_projection, of_motions], |name| format_ident!("{name}"));
         if self.keeps_matrices {
             let projection = scope.body(kernel);
             return quote!(runtime::#of_projection(mu, |mu| { #projection }));

@@ -1,6 +1,6 @@
 //! The implementations of `Variational` and `Sensitive`: motions, edges, and their derivatives.
 
-use clebsch_symbolic::Role;
+use clebsch_symbolic::{Role, both};
 use proc_macro2::TokenStream;
 use quote::{format_ident, quote};
 
@@ -123,7 +123,7 @@ impl Emitter<'_, '_> {
             return TokenStream::new();
         }
         let quantities = &self.formulas.quantities;
-        let [dimension, count] = [self.dimension, quantities.len()].map(size);
+        let [dimension, count] = both([self.dimension, quantities.len()], size);
         let names = quantities.iter().map(|quantity| quantity.name.as_str());
         // a composed step asks which columns are those of its size and of its time
         let column = |constant: &str, name: &str| {

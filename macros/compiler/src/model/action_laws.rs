@@ -1,7 +1,7 @@
 //! The laws of the action, checked exactly and factor by factor: the identity moves nothing, products act as one after the
 //! other, different factors do not meet, and every factor moves something. The side of each factor is found here.
 
-use clebsch_symbolic::{Chart, Elements, Expr, Graph, Group, IntoList, Operation, Role, View, identity, indexed};
+use clebsch_symbolic::{Chart, Elements, Expr, Graph, Group, IntoList, Operation, Role, View, both, identity, indexed};
 
 use super::{Configuration, Factor, LeafSpace, Side};
 use crate::diagnostic::Diagnostics;
@@ -115,7 +115,7 @@ impl<'g> Action<'_, 'g> {
             let then_second = moved(second, &moved(first, &points));
             let then_first = moved(first, &moved(second, &points));
             if !identity::equal(&then_second, &then_first) {
-                let factors = [first, second].map(|index| &self.factors[index]);
+                let factors = both([first, second], |index| &self.factors[index]);
                 diagnostics.push(self.do_not_commute(factors, [&then_second, &then_first]));
             }
         }

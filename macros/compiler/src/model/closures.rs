@@ -1,6 +1,6 @@
 //! The closures as a whole: what each of them gives, and what it has to give.
 
-use clebsch_symbolic::{Expr, Graph, IntoList, Shape};
+use clebsch_symbolic::{Expr, Graph, IntoList, Shape, both};
 use syn::{BinOp, Expr as Syntax, ExprBinary};
 
 use super::elaborate::{Context, Elaborator};
@@ -198,7 +198,7 @@ fn because<'g>(elaborator: &mut Elaborator<'_, '_, 'g>, tail: &Syntax, value: &V
     let Syntax::Binary(ExprBinary { left: a, op: BinOp::Mul(_), right: b, .. }) = tail else { return None };
     let left = elaborator.elaborate(a)?.matrix()?;
     let right = elaborator.elaborate(b)?.matrix()?;
-    let [left, right] = [left, right].map(|factor| Value::Matrix(factor).describe());
+    let [left, right] = both([left, right], |factor| Value::Matrix(factor).describe());
     let (a, b, text) = (spell(a), spell(b), spell(tail));
     Some(format!("`{text}` is {} because `{a}` is {left} and `{b}` is {right}", value.describe()))
 }

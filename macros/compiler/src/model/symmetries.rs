@@ -1,6 +1,6 @@
 //! Symmetries that the user offers: `|S: SO<3>, q, F| (q′, F′)`, checked to be actions that agree with the action of the system.
 
-use clebsch_symbolic::{Elements, Expr, Group, IntoList, Role, identity};
+use clebsch_symbolic::{Elements, Expr, Group, IntoList, Role, both, identity};
 use syn::Type;
 
 use super::action_errors::{ascii, first_difference};
@@ -134,7 +134,7 @@ impl<'g> ActedSystem<'_, '_, 'g> {
         if !identity::equal(&stepped_then_moved, &moved_then_stepped) {
             let leaf = first_difference(&stepped_then_moved, &moved_then_stepped);
             let (q, s, f) = (&self.space.leaves[leaf].name, &offered.name, self.arguments.names.element.spell());
-            let [one, other] = [&stepped_then_moved, &moved_then_stepped].map(|images| ascii(images[leaf]));
+            let [one, other] = both([&stepped_then_moved, &moved_then_stepped], |images| ascii(images[leaf]));
             refuse!(diagnostics, &closure.body, "the symmetry does not agree with the action";
                 note "a step by `{f}` and then `{s}` moves {q} to {one}, `{s}` first and then the moved step to {other}";
                 help "{}", self.example(offered, leaf));

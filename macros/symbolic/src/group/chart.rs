@@ -4,7 +4,7 @@ use super::motion::{blocks, left_matrix, motion};
 use super::{Block, Group};
 use crate::memory::Map;
 use crate::node::{Analytic, ExprNode, Operation};
-use crate::{Elements, Expr, Function, Graph, IntoElements, IntoList, Shape, identity, indexed, rational};
+use crate::{Elements, Expr, Function, Graph, IntoElements, IntoList, Shape, both, identity, indexed, rational};
 
 /// Coordinates of a group near the identity: F as a function of x, with F = I at x = 0.
 #[derive(Copy, Clone, PartialEq, Eq, Hash, PartialOrd, Ord, Debug)]
@@ -74,7 +74,7 @@ impl Chart {
             }
             Chart::Exponential if group == Group::UnitQuaternions => {
                 let quarter = x[0].norm_squared() / 4;
-                let [cosine, sine] = [0, 1].map(|k| quarter.function(Function::Stumpff(k)));
+                let [cosine, sine] = both([0, 1], |k| quarter.function(Function::Stumpff(k)));
                 quaternion(sine / 2 * x[0], cosine)
             }
             Chart::Exponential => exponential(combination(group, x)),
@@ -126,7 +126,7 @@ impl Chart {
             (Chart::Exponential, Group::UnitQuaternions) => {
                 // cos − 1 = −s c₂(s)
                 let quarter = x[0].norm_squared() / 4;
-                let [sine, versine] = [1, 2].map(|k| quarter.function(Function::Stumpff(k)));
+                let [sine, versine] = both([1, 2], |k| quarter.function(Function::Stumpff(k)));
                 quaternion(sine / 2 * x[0], -(quarter * versine))
             }
             (Chart::Exponential, _) => {
@@ -138,7 +138,7 @@ impl Chart {
                         z * z.analytic(Analytic::Phi)
                     }
                     (_, Some(s)) => {
-                        let [sine, versine] = [1, 2].map(|k| s.function(Function::Stumpff(k)));
+                        let [sine, versine] = both([1, 2], |k| s.function(Function::Stumpff(k)));
                         sine * z - s * versine * group.identity(graph)
                     }
                     _ => element - group.identity(graph),
@@ -218,7 +218,7 @@ fn in_one_plane(z: Expr<'_>) -> Option<Expr<'_>> {
 /// exp Z = exp Z₊ exp Z₋ of an antisymmetric 4×4 matrix, Z± = (Z ± Z̃)/2, whose squares are −s±I and which commute.
 fn double_turn(z: Expr<'_>) -> Expr<'_> {
     let identity = z.graph().identity(4);
-    let halves = [1, -1].map(|sign| {
+    let halves = both([1, -1], |sign| {
         let half = (z + sign * dual(z)) / 2;
         let s = (1..4).fold(z.graph().integer(0), |s, j| s + half.entry(0, j).powi(2));
         let sine = s.function(Function::Stumpff(1)) * half;

@@ -1,6 +1,6 @@
 //! The rows of a step: kicks, the momentum equation, the momentum after the move, splittings and collocation.
 
-use clebsch_symbolic::{Elements, Expr, IntoList, Property, Role};
+use clebsch_symbolic::{Elements, Expr, IntoList, Property, Role, both};
 
 use super::Names;
 use crate::derive::{Formula, Id, MechanicsFormulas, MomentumEquation, Solution};
@@ -135,8 +135,8 @@ impl<'g> MechanicsFormulas<'g> {
         let velocity = self.collocation.as_ref()?.velocity.clone();
         let row = Formula::new(Id::HamiltonEquations, format!("({q}′, {p}′)"), velocity);
         let if_linear = |text: String| if self.energy.gyroscopic.is_zero() { String::new() } else { text };
-        let [a, a_latex] = [" − A", " - A"].map(|text| if_linear(text.to_string()));
-        let [less, less_latex] = [format!(" − A·{xi}"), format!(" - A\\cdot {xi}")].map(if_linear);
+        let [a, a_latex] = both([" − A", " - A"], |text| if_linear(text.to_string()));
+        let [less, less_latex] = both([format!(" − A·{xi}"), format!(" - A\\cdot {xi}")], if_linear);
         let v = if self.potential_energy.is_zero() { "" } else { " + V" };
         Some(row.in_words(
             format!("({xi}_Q({q}), −∂_{q}(⟨{p}, {xi}_Q({q})⟩{less}{v})), {xi} = Σ⁻¹(J({q}, {p}){a})"),

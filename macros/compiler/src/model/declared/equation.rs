@@ -2,7 +2,7 @@
 //! along the group that this algebra generates.
 
 use clebsch_symbolic::{
-    Elements, Expr, Graph, Group, IntoList, Property, Rational, Role, Shape, Sparse, indexed, reduce,
+    Elements, Expr, Graph, Group, IntoList, Property, Rational, Role, Shape, Sparse, both, indexed, reduce,
 };
 use quote::ToTokens;
 use syn::Expr as Syntax;
@@ -129,7 +129,10 @@ impl<'g> GroupEquation<'_, 'g> {
             if a != b {
                 let shape = left.shape();
                 let [a, b] =
-                    [a, b].map(|side| if shape.is_scalar() { side[0].to_string() } else { spell_matrix(shape, &side) });
+                    both(
+                        [a, b],
+                        |side| if shape.is_scalar() { side[0].to_string() } else { spell_matrix(shape, &side) },
+                    );
                 bail!(self.body, "the identity is not in `{}`", self.name;
                     help "write an equation that `{symbol} = I` solves";
                     note "with {symbol} = I the left side of `{}` is {a} and the right side {b}", shortened(self.body));
@@ -156,7 +159,7 @@ impl<'g> GroupEquation<'_, 'g> {
     fn is_closed(&self, basis: &[Sparse]) -> Result<(), Diagnostic> {
         let shape = self.symbol.shape();
         let Some((i, j, bracket)) = open_bracket(self.graph, shape, basis) else { return Ok(()) };
-        let [e, f] = [i, j].map(|k| spell_matrix(shape, &dense(shape, &[(1, &basis[k])])));
+        let [e, f] = both([i, j], |k| spell_matrix(shape, &dense(shape, &[(1, &basis[k])])));
         let (i, j, bracket) = (i + 1, j + 1, spell_matrix(shape, &bracket));
         bail!(self.body, "the matrices with `{}` are no group", shortened(self.body);
             note "near the identity they move along E{i} = {e} and E{j} = {f}, but not along [E{i}, E{j}] = {bracket}")
