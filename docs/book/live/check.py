@@ -96,6 +96,21 @@ class Page:
     def click(self, button):
         self.browser.run("document.querySelector(`#live button[name=${arguments[0]}]`).click()", button)
 
+    def picture(self):
+        return self.browser.run("return document.querySelector('#live .scene').toDataURL()")
+
+    def drag(self):
+        """Moves the pointer over the picture with its button down."""
+        self.browser.run("document.querySelector('#live .scene').scrollIntoView()")
+        scene = self.browser.call("POST", "/element", {"using": "css selector", "value": "#live .scene"})
+        moves = [
+            {"type": "pointerMove", "origin": scene, "x": 0, "y": 0},
+            {"type": "pointerDown", "button": 0},
+            {"type": "pointerMove", "origin": scene, "x": 60, "y": 20},
+            {"type": "pointerUp", "button": 0},
+        ]
+        self.browser.call("POST", "/actions", {"actions": [{"type": "pointer", "id": "pointer", "actions": moves}]})
+
     def slide(self, name, value):
         """Moves a slider to the value that its label shows."""
         found = self.browser.run(
@@ -198,6 +213,11 @@ def check(page, check_scene):
     paused = page.wait("it pauses", lambda data: data["status"] == "paused")
     time.sleep(0.3)
     page.claim("it makes no steps in a pause", page.data()["steps"] == paused["steps"])
+
+    before = page.picture()
+    page.drag()
+    time.sleep(0.3)
+    page.claim("the pointer turns the picture", page.picture() != before)
 
     check_scene(page)
 

@@ -29,10 +29,13 @@ const REFUSALS = {
 };
 
 /** Steps that the button makes, in as many pieces as the chart gets points. */
-const JUMP = { pieces: 200, steps: 500, label: "100 000 steps" };
+const JUMP = { pieces: 1000, steps: 100, label: "100 000 steps" };
 
 /** The longest time that one frame makes up for, s. */
 const LONGEST_FRAME = 0.1;
+
+/** Time between points of the path and of the chart, s, unless steps are longer. */
+const SPACING = 0.02;
 
 /** Points of the path and of the chart. */
 const MOST_POINTS = 1500;
@@ -64,6 +67,8 @@ export async function show(scene) {
     const message = append(root, "p", { className: "message" });
     message.setAttribute("role", "status");
     const chart = append(root, "canvas", { className: "chart" });
+    describe(canvas, "The scene, drawn as it moves. Drag it to look from another side.");
+    describe(chart, "Chart of the energy against time. The largest energy error is among the numbers above it.");
 
     let module;
     try {
@@ -114,7 +119,7 @@ export async function show(scene) {
     }
 
     function advance(steps) {
-        if (refusal === 0 && steps > 0) {
+        if (refusal === 0) {
             refusal = module.advance(steps);
             record();
         }
@@ -155,9 +160,12 @@ export async function show(scene) {
         requestAnimationFrame(frame);
         if (!isPaused) {
             owed += Math.min((now - last) / 1000, LONGEST_FRAME) / values.step_size;
-            const steps = Math.floor(owed);
-            owed -= steps;
-            advance(steps);
+            const piece = Math.max(Math.round(SPACING / values.step_size), 1);
+            while (owed >= 1) {
+                const steps = Math.min(Math.floor(owed), piece);
+                owed -= steps;
+                advance(steps);
+            }
         }
         last = now;
         write();
@@ -191,6 +199,12 @@ function append(parent, tag, properties = {}) {
     const element = Object.assign(document.createElement(tag), properties);
     parent.append(element);
     return element;
+}
+
+/** Gives a picture its text for screen readers. */
+function describe(canvas, text) {
+    canvas.setAttribute("role", "img");
+    canvas.setAttribute("aria-label", text);
 }
 
 /** A slider with its label; `values` make its notches, where it has them. */
