@@ -51,29 +51,22 @@ pub fn placed() -> Matrix4<f64> {
     placed
 }
 
-/// Calls the macro `$scenes` with a line for each fixture that can be stepped: a name, the system with its parameters, a configuration on its
-/// orbit and a step size.
+/// Calls the macro `$scenes` with a line for one fixture of each kind: a name, the system with its parameters, a configuration on its orbit and a
+/// step size. Lines behind `$scenes` are added to these.
 ///
 /// The caller imports `clebsch_tests::fixtures::*`, `clebsch_tests::scenes::*` and `nalgebra::*`.
 #[rustfmt::skip]
 #[macro_export]
-macro_rules! every_scene {
-    ($scenes:ident) => {
+macro_rules! scenes_of_each_kind {
+    ($scenes:ident $($more:tt)*) => {
         $scenes! {
-            a_bounded_top: bounded_top::BoundedTop { mass_matrix: inertia(), weight: 1.3, center: centre() }, turned(), 0.05;
-            a_centred_body: centred_body::CentredBody { mass: 1.2, inertia: inertia(), gravity: 9.81 }, placed(), 0.05;
             a_collocated_top: collocated_top::CollocatedTop { moments: principal(), weight: 1.3 }, quaternion(), 0.1;
             a_compensated_top: compensated_top::CompensatedTop { mass_matrix: inertia(), weight: 1.3, center: centre() }, turned(), 0.05;
             a_damped_body: damped_body::DampedBody { inertia: inertia(), damping: 0.1 }, turned(), 0.1;
             an_exact_body: exact_body::ExactBody { moments: principal() }, turned(), 0.1;
-            an_exact_body_in_four_dimensions: exact_body4::ExactBody4 { mass: four() }, Matrix4::identity(), 0.1;
             a_first_order_top: first_order_top::FirstOrderTop { mass_matrix: inertia(), weight: 1.3, center: centre() }, turned(), 0.05;
-            a_fluid_ellipsoid: fluid_ellipsoid::FluidEllipsoid { mass: 1.2 }, Matrix3::identity(), 0.05;
             a_flying_body: flying_body::FlyingBody { mass: 1.2, mass_matrix: inertia().cast(), hook: centre().cast(), stiffness: 2.0 },
                 (Vector3::new(0.5, 0.2, -0.3), turned().cast()), 0.05;
-            a_free_particle: free_particle::FreeParticle { mass: 1.2 }, Vector1::new(0.5), 0.1;
-            a_free_rigid_body: free_rigid_body::FreeRigidBody { inertia: inertia() }, turned(), 0.1;
-            a_generic_body: generic_body::GenericBody<f64> { mass_matrix: inertia(), weight: 1.3, center: centre() }, turned(), 0.05;
             a_generic_body_in_single_precision: generic_body::GenericBody<f32> { mass_matrix: inertia().cast(), weight: 1.3, center: centre().cast() },
                 turned().cast(), 0.05;
             a_gravity_gradient: gravity_gradient::GravityGradient { inertia: inertia(), orbital_rate: 0.8 }, turned(), 0.05;
@@ -81,46 +74,65 @@ macro_rules! every_scene {
             harmonics: harmonics::Harmonics { mass: 1.2 , coefficients: [[0.1, 0.2, 0.1, 0.05]; 4] }, centre(), 0.05;
             a_heavy_top: heavy_top::HeavyTop { mass_matrix: inertia(), weight: 1.3, center: centre() }, turned(), 0.05;
             a_reduced_heavy_top: heavy_top_reduced::HeavyTopReduced { mass_matrix: inertia(), moment: centre() }, unit(), 0.05;
+            a_planar_pendulum: planar_pendulum::PlanarPendulum { 0: 1.2, 1: 0.8 }, Vector2::new(0.6, -0.8), 0.05;
+            a_spherical_pendulum: spherical_pendulum::SphericalPendulum { mass: 0.7, length: 1.3, gravity: 9.81 }, unit(), 0.05;
+            a_spin_chain: spin_chain::SpinChain<3> { exchange: 0.7, field: centre() }, [unit(), Vector3::x(), -unit()], 0.05;
+            a_split_top: split_top::SplitTop { inertia: inertia(), weight: 1.3, center: centre() }, turned(), 0.1;
+            a_steered_bob: steered_bob::SteeredBob { mass: 1.2, gravity: 9.81, drag: 0.2 }, unit(), 0.05;
+            a_tolerant_top: tolerant_top::TolerantTop { mass_matrix: inertia(), weight: 1.3, center: centre() }, turned(), 0.05;
+            a_momentum_that_tumbles: tumbling_momentum::TumblingMomentum { inertia: inertia() }, (), 0.1;
+            $($more)*
+        }
+    };
+}
+
+/// The same with a line for each fixture that can be stepped.
+#[rustfmt::skip]
+#[macro_export]
+macro_rules! every_scene {
+    ($scenes:ident) => {
+        $crate::scenes_of_each_kind! {
+            $scenes
+            a_bounded_top: bounded_top::BoundedTop { mass_matrix: inertia(), weight: 1.3, center: centre() }, turned(), 0.05;
+            a_free_particle: free_particle::FreeParticle { mass: 1.2 }, Vector1::new(0.5), 0.1;
+            a_midpoint_top: midpoint_top::MidpointTop { mass_matrix: inertia(), weight: 1.3, stiffness: 0.7, center: centre() }, turned(), 0.05;
+            neumanns_motion: neumann::Neumann { stiffness: four() }, Vector4::new(0.6, 0.0, 0.8, 0.0), 0.05;
+            a_principal_body: principal_body::PrincipalBody { moments: principal() }, turned(), 0.1;
+            a_promised_top: promised_top::PromisedTop { inertia: Matrix3::from_diagonal(&principal()), weight: 1.3, up: unit(), center: centre() }, turned(), 0.05;
+            a_quaternion_top: quaternion_top::QuaternionTop { inertia: inertia(), moment: centre() }, quaternion(), 0.05;
+            a_projected_body: projected_body::ProjectedBody { inertia: inertia() }, turned(), 0.05;
+            a_top_of_three_ways: three_ways::ThreeWays { moments: Vector3::new(2.0, 1.5, 1.0), weight: 3.0, center: centre() }, turned(), 0.05;
+            two_bodies: two_bodies::TwoBodies { mass: [1.0, 2.0], gravitation: 1.1 }, [Vector3::x(), -Vector3::y()], 0.05;
+            a_watched_top: watched_top::WatchedTop { mass: principal(), weight: 1.3 }, turned(), 0.05;
+            a_centred_body: centred_body::CentredBody { mass: 1.2, inertia: inertia(), gravity: 9.81 }, placed(), 0.05;
+            an_exact_body_in_four_dimensions: exact_body4::ExactBody4 { mass: four() }, Matrix4::identity(), 0.1;
+            a_fluid_ellipsoid: fluid_ellipsoid::FluidEllipsoid { mass: 1.2 }, Matrix3::identity(), 0.05;
+            a_free_rigid_body: free_rigid_body::FreeRigidBody { inertia: inertia() }, turned(), 0.1;
+            a_generic_body: generic_body::GenericBody<f64> { mass_matrix: inertia(), weight: 1.3, center: centre() }, turned(), 0.05;
             a_heisenberg_geodesic: heisenberg_geodesic::HeisenbergGeodesic { mass: principal() }, Matrix3::identity(), 0.05;
             linear_optics: linear_optics::LinearOptics { }, Matrix4::identity(), 0.05;
             a_lopsided_pendulum: lopsided_pendulum::LopsidedPendulum { mass: 1.2, gravity: 9.81 }, unit(), 0.05;
             a_lorentz_frame: lorentz_frame::LorentzFrame { inertia: 1.2, field: Vector4::new(0.1, 0.2, 0.3, 0.4), spin: Vector4::new(1.0, 0.5, 0.2, 0.1) },
                 Matrix4::identity(), 0.05;
-            a_midpoint_top: midpoint_top::MidpointTop { mass_matrix: inertia(), weight: 1.3, stiffness: 0.7, center: centre() }, turned(), 0.05;
-            neumanns_motion: neumann::Neumann { stiffness: four() }, Vector4::new(0.6, 0.0, 0.8, 0.0), 0.05;
             neumanns_motion_in_many_dimensions: neumann20::Neumann20 { stiffness: many() }, SVector::from_fn(|i, _| if i == 4 { 1.0 } else { 0.0 }), 0.05;
             a_paper_pendulum: paper_pendulum::PaperPendulum { gravity: 9.81 }, unit(), 0.05;
-            a_planar_pendulum: planar_pendulum::PlanarPendulum { 0: 1.2, 1: 0.8 }, Vector2::new(0.6, -0.8), 0.05;
-            a_principal_body: principal_body::PrincipalBody { moments: principal() }, turned(), 0.1;
             a_principal_body_in_four_dimensions: principal_body4::PrincipalBody4 { j_d: Vector4::new(1.0, 1.5, 0.8, 1.2) }, Matrix4::identity(), 0.1;
-            a_promised_top: promised_top::PromisedTop { inertia: Matrix3::from_diagonal(&principal()), weight: 1.3, up: unit(), center: centre() }, turned(), 0.05;
-            a_quaternion_top: quaternion_top::QuaternionTop { inertia: inertia(), moment: centre() }, quaternion(), 0.05;
             a_relativistic_particle: relativistic_particle::RelativisticParticle { mass: 1.2, force: centre() }, centre(), 0.05;
             a_body_in_four_dimensions: rigid_body4::RigidBody4 { j_d: four() }, Matrix4::identity(), 0.1;
             a_body_in_five_dimensions: driven_body5::DrivenBody5 { j_d: many(), drag: 0.2 }, SMatrix::identity(), 0.1;
             a_body_in_seven_dimensions: rigid_body7::RigidBody7 { j_d: many() }, SMatrix::identity(), 0.1;
             a_sided_pair: sided_pair::SidedPair { }, (turned(), unit()), 0.1;
-            a_projected_body: projected_body::ProjectedBody { inertia: inertia() }, turned(), 0.05;
             a_top_of_eighth_order: eighth_order_top::EighthOrderTop { moments: principal(), weight: 1.3, center: centre() }, turned(), 0.05;
             a_top_of_sixth_order: sixth_order_top::SixthOrderTop { inertia: inertia(), weight: 1.3, center: centre() }, turned(), 0.05;
             a_spatial_body: spatial_body::SpatialBody { mass_matrix: four(), gravity: 9.81 }, placed(), 0.05;
             a_geodesic_of_the_sphere: sphere_geodesic::SphereGeodesic { }, Vector4::new(0.6, 0.0, 0.8, 0.0), 0.1;
-            a_spherical_pendulum: spherical_pendulum::SphericalPendulum { mass: 0.7, length: 1.3, gravity: 9.81 }, unit(), 0.05;
-            a_spin_chain: spin_chain::SpinChain<3> { exchange: 0.7, field: centre() }, [unit(), Vector3::x(), -unit()], 0.05;
             a_spin_pair: spin_pair::SpinPair { inertia: [1.0, 1.3], anisotropy: [inertia(), inertia()], exchange: [[0.1, 0.2], [0.3, 0.4]] },
                 [unit(), Vector3::x()], 0.05;
-            a_split_top: split_top::SplitTop { inertia: inertia(), weight: 1.3, center: centre() }, turned(), 0.1;
-            a_steered_bob: steered_bob::SteeredBob { mass: 1.2, gravity: 9.81, drag: 0.2 }, unit(), 0.05;
             a_steered_body: steered_body::SteeredBody { inertia: inertia(), damping: 0.1, top: 0.5 }, turned(), 0.05;
             a_tolerant_exact_top: tolerant_exact_top::TolerantExactTop { inertia: inertia(), weight: 1.3, center: centre() }, turned(), 0.1;
-            a_top_of_three_ways: three_ways::ThreeWays { moments: Vector3::new(2.0, 1.5, 1.0), weight: 3.0, center: centre() }, turned(), 0.05;
-            a_tolerant_top: tolerant_top::TolerantTop { mass_matrix: inertia(), weight: 1.3, center: centre() }, turned(), 0.05;
-            a_momentum_that_tumbles: tumbling_momentum::TumblingMomentum { inertia: inertia() }, (), 0.1;
-            two_bodies: two_bodies::TwoBodies { mass: [1.0, 2.0], gravitation: 1.1 }, [Vector3::x(), -Vector3::y()], 0.05;
             two_pendulums: two_pendulums::TwoPendulums { mass: [1.0, 2.0], gravity: 9.81, coupling: centre() }, (unit(), Vector3::x()), 0.05;
             an_underwater_vehicle: underwater_vehicle::UnderwaterVehicle { inertia: Matrix6::from_diagonal(&Vector6::new(1.0, 1.2, 1.4, 2.0, 2.2, 2.5)), weight: 1.3, center: centre() },
                 placed(), 0.05;
-            a_watched_top: watched_top::WatchedTop { mass: principal(), weight: 1.3 }, turned(), 0.05;
             a_weighted_group: weighted_sl2::WeightedSl2 { weight: Matrix2::new(1.0, 1.2, 0.9, 1.1) }, Matrix2::identity(), 0.05;
         }
     };

@@ -6,7 +6,7 @@
 
 mod by_hand;
 mod jacobians;
-#[path = "../random/kernels.rs"]
+#[path = "../../laws/tests/random/kernels.rs"]
 mod kernels;
 mod program;
 

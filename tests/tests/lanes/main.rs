@@ -8,12 +8,15 @@ mod systems;
 use clebsch::{Clebsch, Error, F32x8, F64x4, F64x8, Scalar, State};
 use clebsch_tests::oracle::random::Random;
 use lift::Lift;
-use nalgebra::{Matrix3, Matrix4, SVector, Vector3};
+#[cfg(feature = "heavy")]
+use nalgebra::Matrix4;
+use nalgebra::{Matrix3, SVector, Vector3};
 use side_by_side::{Count, same};
 use systems::{
-    Body, Body4, CollocatedTop, CompensatedBody, ExactBody, ExactBody4, FixedBody, Flyer, Pendulum, Satellite,
-    SixthTop, SplitTop, TolerantBody, Top,
+    Body, CollocatedTop, CompensatedBody, ExactBody, Flyer, Pendulum, Satellite, SplitTop, TolerantBody, Top,
 };
+#[cfg(feature = "heavy")]
+use systems::{Body4, ExactBody4, FixedBody, SixthTop};
 
 const H: f64 = 0.1;
 /// States of each system, and the steps of each.
@@ -94,6 +97,7 @@ fn bodies_with_compensated_sums() {
     assert_mixed(compare!(F64x8, CompensatedBody { moments: moments() }, H, |random| {
         (random.attitude::<3>(), momentum::<3>(&mut random, 2.0 / H))
     }));
+    #[cfg(feature = "heavy")]
     assert_mixed(compare!(F32x8, CompensatedBody { moments: moments() }, H, |random| {
         (random.attitude::<3>(), momentum::<3>(&mut random, 2.0 / H))
     }));
@@ -105,9 +109,11 @@ fn bodies_to_a_tolerance() {
     assert_mixed(compare!(F64x8, TolerantBody { moments: moments() }, H, |random| {
         (random.attitude::<3>(), momentum::<3>(&mut random, longest))
     }));
+    #[cfg(feature = "heavy")]
     assert_mixed(compare!(F64x8, FixedBody { moments: moments() }, H, |random| {
         (random.attitude::<3>(), momentum::<3>(&mut random, longest))
     }));
+    #[cfg(feature = "heavy")]
     assert_mixed(compare!(F32x8, TolerantBody { moments: moments() }, H, |random| {
         (random.attitude::<3>(), momentum::<3>(&mut random, longest))
     }));
@@ -121,6 +127,7 @@ fn heavy_tops() {
     )));
 }
 
+#[cfg(feature = "heavy")]
 #[test]
 fn heavy_tops_of_sixth_order() {
     assert_mixed(compare!(
@@ -150,6 +157,7 @@ fn stages_of_sixteenth_order() {
         (nalgebra::Quaternion::new(q[3], q[0], q[1], q[2]), momentum::<3>(random, 1e2 / H))
     };
     assert_mixed(compare!(F64x8, CollocatedTop { moments: moments(), weight: 3.0 }, H, |random| top(&mut random)));
+    #[cfg(feature = "heavy")]
     assert_mixed(compare!(F32x8, CollocatedTop { moments: moments(), weight: 3.0 }, H, |random| top(&mut random)));
 }
 
@@ -160,6 +168,12 @@ fn exact_motions() {
     assert_mixed(compare!(F64x8, ExactBody { inertia: inertia }, H, |random| {
         (random.attitude::<3>(), momentum::<3>(&mut random, 1e8 / H))
     }));
+}
+
+/// The same in four dimensions.
+#[cfg(feature = "heavy")]
+#[test]
+fn exact_motions_in_four_dimensions() {
     let turn = Random::new(12).attitude::<4>();
     let mass = turn * Matrix4::from_diagonal(&nalgebra::Vector4::new(0.4, 0.7, 1.0, 1.3)) * turn.transpose();
     assert_mixed(compare!(F64x8, ExactBody4 { mass: mass }, H, |random| {
@@ -175,6 +189,7 @@ fn spherical_pendulums() {
     }));
 }
 
+#[cfg(feature = "heavy")]
 #[test]
 fn bodies_in_four_dimensions() {
     let j_d = Matrix4::from_diagonal(&nalgebra::Vector4::new(0.4, 0.7, 1.0, 1.3));

@@ -1,7 +1,9 @@
 //! The systems that are stepped on lanes: implicit, in closed form, coupled, with the time, of several factors, composed.
 
 use clebsch::{Clebsch, Scalar};
-use nalgebra::{Matrix3, Matrix4, Vector3};
+#[cfg(feature = "heavy")]
+use nalgebra::Matrix4;
+use nalgebra::{Matrix3, Vector3};
 
 /// An implicit step of three unknowns without kicks.
 #[derive(Clebsch, Clone, Debug)]
@@ -39,6 +41,7 @@ pub struct TolerantBody<T: Scalar> {
 }
 
 /// The same by fixed points.
+#[cfg(feature = "heavy")]
 #[derive(Clebsch, Clone, Debug)]
 #[clebsch(
     action         = |F: SO<3>, R: SO<3>| R * F,
@@ -66,6 +69,7 @@ pub struct Top<T: Scalar> {
 }
 
 /// The same in nine steps.
+#[cfg(feature = "heavy")]
 #[derive(Clebsch, Clone, Debug)]
 #[clebsch(
     action    = |F: SO<3>, R: SO<3>| R * F,
@@ -93,6 +97,7 @@ pub struct ExactBody<T: Scalar> {
 }
 
 /// The same in four dimensions.
+#[cfg(feature = "heavy")]
 #[derive(Clebsch, Clone, Debug)]
 #[clebsch(
     action         = |F: SO<4>, R: SO<4>| R * F,
@@ -147,6 +152,7 @@ pub struct Pendulum<T: Scalar> {
 }
 
 /// Six unknowns.
+#[cfg(feature = "heavy")]
 #[derive(Clebsch, Clone, Debug)]
 #[clebsch(
     action = |F: SO<4>, R: SO<4>| R * F,

@@ -72,6 +72,7 @@ both!(
     }
 );
 
+#[cfg(feature = "heavy")]
 both!(
     body_5,
     SMatrix::identity(),
@@ -104,6 +105,7 @@ both!(
     }
 );
 
+#[cfg(feature = "heavy")]
 both!(
     neumann_5_first_order,
     pole(),
@@ -172,6 +174,7 @@ both!(
     }
 );
 
+#[cfg(feature = "heavy")]
 both!(
     agree_forced: driven_body_5,
     SMatrix::identity(),
@@ -207,6 +210,7 @@ both!(
     }
 );
 
+#[cfg(feature = "heavy")]
 both!(
     agree_forced: pushed_body_5,
     SMatrix::identity(),
@@ -241,6 +245,7 @@ both!(
     }
 );
 
+#[cfg(feature = "heavy")]
 both!(
     agree_forced: damped_point,
     pole(),
@@ -378,6 +383,7 @@ both!(
     }
 );
 
+#[cfg(feature = "heavy")]
 both!(
     two_bodies,
     (Matrix4::identity(), SMatrix::identity()),
@@ -410,6 +416,7 @@ both!(
     }
 );
 
+#[cfg(feature = "heavy")]
 both!(
     free_body_by_newton,
     SMatrix::identity(),
@@ -466,6 +473,7 @@ both!(
     }
 );
 
+#[cfg(feature = "heavy")]
 both!(
     linear_optics,
     Matrix4::identity(),

@@ -9,29 +9,34 @@ use nalgebra::SMatrix;
 
 use crate::checks;
 
-// where the Cayley map leaves the group, its projection makes long formulas: `projection` stands for it on Sim(n)
+// each family in its least size; where the Cayley map leaves the group, its projection makes long formulas: `projection` stands for it on Sim(n)
 groups! {
     so2:         [SO<2>],         2, 1,  cayley,     group::so(2);
     so3:         [SO<3>],         3, 3,  cayley,     group::so(3);
+    so12:        [SO<1, 2>],      3, 3,  cayley,     group::pseudo_so(1, 2);
+    se2:         [SE<2>],         3, 3,  cayley,     group::se(2);
+    sim2:        [Sim<2>],        3, 4,  projection, group::sim(2);
+    gl2:         [GL<2>],         2, 4,  cayley,     group::gl(2);
+    aff1:        [Aff<1>],        2, 2,  cayley,     group::aff(1);
+    sl2:         [SL<2>],         2, 3,  cayley,     group::sl(2);
+    sp2:         [Sp<2>],         2, 3,  cayley,     group::sp(2);
+    u1:          [U<1>],          2, 1,  cayley,     group::u(1);
+    heisenberg1: [Heisenberg<1>], 3, 3,  cayley,     group::heisenberg(1);
+}
+
+// larger ones of the same families
+#[cfg(feature = "heavy")]
+groups! {
     so4:         [SO<4>],         4, 6,  cayley,     group::so(4);
     so5:         [SO<5>],         5, 10, cayley,     group::so(5);
-    so12:        [SO<1, 2>],      3, 3,  cayley,     group::pseudo_so(1, 2);
     so13:        [SO<1, 3>],      4, 6,  cayley,     group::pseudo_so(1, 3);
-    se2:         [SE<2>],         3, 3,  cayley,     group::se(2);
     se3:         [SE<3>],         4, 6,  cayley,     group::se(3);
-    sim2:        [Sim<2>],        3, 4,  projection, group::sim(2);
     sim3:        [Sim<3>],        4, 7,  projection, group::sim(3);
-    gl2:         [GL<2>],         2, 4,  cayley,     group::gl(2);
     gl3:         [GL<3>],         3, 9,  cayley,     group::gl(3);
-    aff1:        [Aff<1>],        2, 2,  cayley,     group::aff(1);
     aff2:        [Aff<2>],        3, 6,  cayley,     group::aff(2);
-    sl2:         [SL<2>],         2, 3,  cayley,     group::sl(2);
     sl3:         [SL<3>],         3, 8,  cayley,     group::sl(3);
-    sp2:         [Sp<2>],         2, 3,  cayley,     group::sp(2);
     sp4:         [Sp<4>],         4, 10, cayley,     group::sp(4);
-    u1:          [U<1>],          2, 1,  cayley,     group::u(1);
     u2:          [U<2>],          4, 4,  cayley,     group::u(2);
-    heisenberg1: [Heisenberg<1>], 3, 3,  cayley,     group::heisenberg(1);
     heisenberg2: [Heisenberg<2>], 4, 5,  cayley,     group::heisenberg(2);
 }
 

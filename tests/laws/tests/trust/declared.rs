@@ -28,20 +28,8 @@ fn units(n: usize, places: &[&[(usize, usize)]]) -> Group {
 groups! {
     rotations: [Rotations], 3, 3, cayley, pseudo_so(3, 0),
         { group Rotations = |R: Matrix3| R.transpose() * R == I, };
-    lorentz: [Lorentz], 4, 6, cayley, pseudo_so(1, 3), {
-        group Lorentz = |F: Matrix4| {
-            let eta = Matrix4::from_diagonal(&vector![1, -1, -1, -1]);
-            F.transpose() * eta * F == eta
-        },
-    };
     unimodular: [Unimodular], 2, 3, cayley, solutions(2, |xi| matrix(1, &[xi.trace()])),
         { group Unimodular = |F: Matrix2| F.determinant() == 1, };
-    symplectic: [Symplectic], 4, 10, cayley, form(&matrix(4, &[0., 0., 1., 0., 0., 0., 0., 1., -1., 0., 0., 0., 0., -1., 0., 0.])), {
-        group Symplectic = |F: Matrix4| {
-            let omega = Matrix4::new(0, 0, 1, 0,  0, 0, 0, 1,  -1, 0, 0, 0,  0, -1, 0, 0);
-            F.transpose() * omega * F == omega
-        },
-    };
     // F D Fᵀ = D with D = diag(1, 1, 0) leaves the last row (0 0 d), and the second summand makes d = 1
     motions: [Motions], 3, 3, cayley, solutions(3, |xi| {
         let d = matrix(3, &[1., 0., 0., 0., 1., 0., 0., 0., 0.]);
@@ -100,5 +88,22 @@ groups! {
             Matrix3::new(0, 0, 1,  0, 0, 0,  0, 0, 0),
             Matrix3::new(0, 0, 0,  0, 0, 1,  0, 0, 0),
         ]),
+    };
+}
+
+// groups of 4x4 matrices
+#[cfg(feature = "heavy")]
+groups! {
+    lorentz: [Lorentz], 4, 6, cayley, pseudo_so(1, 3), {
+        group Lorentz = |F: Matrix4| {
+            let eta = Matrix4::from_diagonal(&vector![1, -1, -1, -1]);
+            F.transpose() * eta * F == eta
+        },
+    };
+    symplectic: [Symplectic], 4, 10, cayley, form(&matrix(4, &[0., 0., 1., 0., 0., 0., 0., 1., -1., 0., 0., 0., 0., -1., 0., 0.])), {
+        group Symplectic = |F: Matrix4| {
+            let omega = Matrix4::new(0, 0, 1, 0,  0, 0, 0, 1,  -1, 0, 0, 0,  0, -1, 0, 0);
+            F.transpose() * omega * F == omega
+        },
     };
 }
