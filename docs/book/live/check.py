@@ -163,6 +163,8 @@ class Page:
         for name, value in sliders.items():
             self.slide(name, value)
         self.click("restart")
+        # the attributes are those of the last frame, which may be of the motion before
+        self.wait("it starts again", lambda data: float(data["steps"]) == 0)
         self.click("jump")
         data = self.wait(f"{JUMP} steps", lambda data: float(data["steps"]) == JUMP)
         energy, momentum = float(data["energyError"]), float(data["momentumError"])
