@@ -33,8 +33,8 @@ const DIMENSIONS: [(&str, &str); 8] = [
     ("unicycle.Free", "3, 2, 0"),
 ];
 
-/// Studies have their systems in every order and discretization; they are those of fixtures.
-const STUDIES: [&str; 2] = ["extremes", "work_precision"];
+/// Studies have their systems in every order and discretization, and the pictures of the book have theirs; they are those of fixtures.
+const STUDIES: [&str; 3] = ["extremes", "figures", "work_precision"];
 
 fn main() {
     let root = Path::new("../..");
