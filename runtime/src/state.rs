@@ -84,6 +84,16 @@ impl<S: Clebsch, M: Method<S>> State<S, M> {
 }
 
 /// (q, N) of one body: of the single one, or of that in a lane.
+///
+/// ```
+/// # use clebsch::{Body, Clebsch};
+/// # #[derive(Clebsch, Clone, Debug)]
+/// # #[clebsch(action = |a: Translation<1>, x: Vector1| x + a, cost = |h, a| self.mass * a.norm_squared() / (2 * h))]
+/// # struct Particle { mass: f64 }
+/// # use nalgebra::Vector1;
+/// let body: Body<Particle> = (Vector1::zeros(), Vector1::new(6.0));
+/// assert_eq!(body.1.x, 6.0);
+/// ```
 pub type Body<S> = (<Q<S> as Space<T<S>>>::Lane, <Mu<S> as Space<T<S>>>::Lane);
 
 impl<S: Clebsch<Time = Clock<<S as Clebsch>::Scalar>>, M: Method<S>> State<S, M> {

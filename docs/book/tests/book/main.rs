@@ -1,5 +1,6 @@
-//! What the README and the book promise: a derivation that is printed, links that lead somewhere, plain sentences.
+//! Promises of the README, the book and the reference: a derivation that is printed, links that lead somewhere, plain sentences, examples.
 
+mod examples;
 mod language;
 mod links;
 mod pages;

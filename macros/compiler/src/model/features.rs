@@ -142,7 +142,15 @@ pub(crate) fn refused_with(key: &str) -> Vec<String> {
             }
         }
     }
-    refused.into_each(|(own, others)| format!("{own}: not with {}", others.join("; ")))
+    refused.into_each(|(own, others)| conflicts(own, &others))
+}
+
+/// Keys and values in one line, and below it a list of the features that have no name.
+fn conflicts(own: &str, others: &[&str]) -> String {
+    let (named, described): (Vec<&str>, Vec<&str>) = others.iter().partition(|feature| feature.starts_with('`'));
+    let gap = if named.is_empty() { "" } else { " " };
+    let below = described.iter().map(|feature| format!("\n  * {feature}"));
+    format!("{own}: not with{gap}{}{}", named.join(", "), below.collect::<String>())
 }
 
 /// The table of what does not go together in Markdown.
