@@ -35,7 +35,8 @@
 //!
 //! | to | see |
 //! |---|---|
-//! | know what a declaration gives | the trait [`Clebsch`], one method for each derived formula |
+//! | write a declaration | the derive macro [`Clebsch`](derive@Clebsch): every key, value, group, field attribute and function |
+//! | read the formulas of a declaration | the trait [`Clebsch`](trait@Clebsch), one method for each derived formula |
 //! | integrate | [`Stepper`]: a system with its step size; [`State`] is what it steps, [`Trajectory`] iterates |
 //! | step one system in several ways | [`Clebsch::stepper_by`] and [`Method`]; [`Stepper::state_of`] takes a state over from one to another |
 //! | step a state in place | the trait [`Drive`], one set of words for all that has a state of its own |
