@@ -1,17 +1,16 @@
 //! The exported functions of a system: what is called where, in a program whose stack and code are looked at.
 //!
-//! What is asked of a concrete type is written as a call of a method. Where the system has none of that name, because nothing is conserved or
-//! because it has lanes, [`Absent`] has one that does nothing.
+//! What is asked of a concrete type is written as a call of a method. Where the system has none of that name, because it has lanes, [`Absent`]
+//! has one that does nothing. What a declaration has to ask for is a method of [`Asked`] instead: every stepper has a method of its name.
 
-use clebsch::{Clebsch, Error, Method, Space, State, Stepper};
+use clebsch::{Clebsch, Conserves, Differentiated, Error, Method, Space, State, Stepper, Tangent, Variational};
+use nalgebra::SVector;
 
 /// The steps of a plan, and the edges of a path.
 pub const STEPS: usize = 16;
 
 /// What a stepper does not have itself.
 pub trait Absent<S: Clebsch, M: Method<S>> {
-    fn conserved(&self, _: &State<S, M>) {}
-    fn step_tangent(&self, _: &State<S, M>) {}
     fn suggest_step_size(&self, _: &State<S, M>, _: S::Scalar, _: S::Scalar) {}
     fn state_at(&self, _: S::Scalar, _: S::Configuration, _: S::Momentum) {}
     fn cotangent_state_at(&self, _: S::Scalar, _: S::Configuration, _: S::Configuration) {}
@@ -20,6 +19,35 @@ pub trait Absent<S: Clebsch, M: Method<S>> {
 }
 
 impl<S: Clebsch, M: Method<S>> Absent<S, M> for Stepper<S, M> {}
+
+/// A stepper with what its declaration asks for.
+pub struct Asked<'a, S: Clebsch, M: Method<S>>(pub &'a Stepper<S, M>);
+
+impl<S: Conserves, M: Method<S>> Asked<'_, S, M> {
+    #[inline]
+    pub fn conserved(&self, state: &State<S, M>) -> S::Conserved {
+        self.0.conserved(state)
+    }
+}
+
+impl<S, M, const N: usize> Asked<'_, S, M>
+where
+    S: Variational<N> + Clebsch<Momentum = SVector<<S as Clebsch>::Scalar, N>>,
+    M: Differentiated<S, N>,
+{
+    #[inline]
+    pub fn step_tangent(&self, state: &State<S, M>) -> Result<(State<S, M>, Tangent<S::Scalar, N>), Error> {
+        self.0.step_tangent(state)
+    }
+}
+
+/// What a declaration does not ask for.
+pub trait Unasked<S: Clebsch, M: Method<S>> {
+    fn conserved(&self, _: &State<S, M>) {}
+    fn step_tangent(&self, _: &State<S, M>) {}
+}
+
+impl<S: Clebsch, M: Method<S>> Unasked<S, M> for Asked<'_, S, M> {}
 
 /// Whether an operation succeeds, under the name `clebsch.operation.system`.
 #[macro_export]
@@ -50,7 +78,7 @@ macro_rules! stepping {
             use clebsch::{Clebsch, CotangentState, Integrator, SavedState, State, Stepper};
             use core::hint::black_box;
             #[allow(unused_imports, reason = "a system may have it all")]
-            use $crate::roots::{self, Absent};
+            use $crate::roots::{self, Absent, Asked, Unasked};
 
             type S = $type;
             type M = $method;
@@ -109,7 +137,7 @@ macro_rules! stepping {
                 *state = stepper.step_symmetric(state)?;
             });
             $crate::export!("step_tangent", $name, |stepper: &Stepper<S, M>, state: &State<S, M>| {
-                let _ = black_box(stepper.step_tangent(state));
+                let _ = black_box(Asked(stepper).step_tangent(state));
             });
             $crate::export!("advance", $name, |stepper: &Stepper<S, M>, state: &mut State<S, M>, steps: usize| {
                 *state = stepper.advance(state, steps)?;
@@ -131,7 +159,7 @@ macro_rules! stepping {
                 *energies = [stepper.energy(state), stepper.kinetic_energy(state), stepper.synchronized_energy(state)];
             });
             $crate::export!("momenta", $name, |stepper: &Stepper<S, M>, state: &State<S, M>, mu: &mut N| {
-                let _ = black_box(stepper.conserved(state));
+                let _ = black_box(Asked(stepper).conserved(state));
                 *mu = stepper.synchronized(state);
             });
             $crate::export!("formulas", $name, |stepper: &Stepper<S, M>, t: &T, q: &Q, p: &Q, mu: &mut N| {

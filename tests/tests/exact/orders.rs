@@ -173,7 +173,6 @@ orders!(second: bodies [256, 512, 1024], quaternions [256, 512, 1024], satellite
 orders!(fourth: bodies [32, 64, 128], quaternions [32, 64, 128], satellite [32, 64, 128], points [16, 32, 64], opaque [16, 32, 64]);
 orders!(sixth: bodies [16, 32, 64], quaternions [16, 32, 64], satellite [16, 32, 64], points [12, 24, 48], opaque [16, 32, 64]);
 orders!(eighth: bodies [16, 32], quaternions [16, 32], satellite [16, 32], points [12, 24, 48], opaque [12, 24, 48]);
-#[cfg(feature = "heavy")]
 orders!(sixteenth: bodies [4, 5, 6, 7], quaternions [3, 4, 5], satellite [6, 7, 8], points [4, 5, 6, 7], opaque [4, 5, 6, 7]);
 
 /// A free body has no error in h, whatever the step: turns of 0.02 to 9 rad a step.

@@ -131,5 +131,4 @@ systems!(second, 2);
 systems!(fourth, 4);
 systems!(sixth, 6);
 systems!(eighth, 8);
-#[cfg(feature = "heavy")]
 systems!(sixteenth, 16);
