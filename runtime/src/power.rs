@@ -242,6 +242,24 @@ pub trait Power<const N: usize>:
         Ok(())
     }
 
+    /// The same in place.
+    // a function of its own: its references are known to be of different arrays, which halves the time of a step
+    #[inline]
+    fn drift_in_place(
+        &self,
+        c: &C<Self>,
+        t: T<Self>,
+        q: &mut Q<Self>,
+        mu: &mut Mu<Self>,
+        kick: Option<&Mu<Self>>,
+    ) -> Result<(), Error> {
+        for i in 0..N {
+            let n = kick.map_or(mu[i], |kick| plus(&mu[i], &kick[i]));
+            (q[i], mu[i]) = self.moved(c, t, i, &q[i], &n)?;
+        }
+        Ok(())
+    }
+
     /// F⁻ℓd, where the kick at the start has the weight `part` of a step.
     #[inline]
     fn power_legendre(&self, h: T<Self>, t: T<Self>, q: &Q<Self>, f: &F<Self>, part: f64) -> Mu<Self> {

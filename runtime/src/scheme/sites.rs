@@ -117,10 +117,7 @@ impl<S: Power<N>, K: SiteKicks<S, N>, const N: usize> Scheme<S> for SitesInTurn<
         let mut room = [Space::origin(); N];
         let mut clock = Clock::at(t);
         for _ in 0..steps {
-            for i in 0..N {
-                let n = K::kick(&left).map_or(mu[i], |kick| plus(&mu[i], &kick[i]));
-                (q[i], mu[i]) = system.moved(constants, clock.now(), i, &q[i], &n)?;
-            }
+            system.drift_in_place(constants, clock.now(), &mut q, &mut mu, K::kick(&left))?;
             clock = clock.after_step(constants.h);
             if K::END != 0.0 {
                 let kick = K::place(&mut left, &mut room);
