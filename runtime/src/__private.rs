@@ -31,8 +31,8 @@ pub use crate::orbit::{
 };
 pub use crate::orientation::Orientation;
 pub use crate::parameters::{
-    InertiaInverse, annihilator_defect, annihilator_projection, check_diagonal, check_finite, check_symmetric,
-    check_unit, constant, distance_of_projection, invert, invert_uniform, orientation_of_inertia,
+    Constant, InertiaInverse, annihilator_defect, annihilator_projection, check_diagonal, check_finite,
+    check_symmetric, check_unit, constant, distance_of_projection, invert, invert_uniform, orientation_of_inertia,
     orientation_of_uniform, projection,
 };
 pub use crate::parts::{

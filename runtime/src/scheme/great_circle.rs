@@ -76,7 +76,13 @@ pub trait Turns<S: GreatCircles<M>, M: Method<S>, const N: usize>: Sized {
     }
 
     /// As many steps, in place.
-    fn turn(at: At<'_, S, M>, steps: usize, state: Places<'_, S, Self, M, N>) -> Result<(), Error>;
+    fn turn(
+        at: At<'_, S, M>,
+        steps: usize,
+        q: &mut Point<S, N>,
+        plane: &mut Self::Plane,
+        gradient: &mut Self::Gradient,
+    ) -> Result<(), Error>;
 }
 
 /// Where a turn finds q, what is held of the momentum, and the gradient, and writes the next ones.
@@ -97,8 +103,14 @@ impl<S: GreatCircles<M, Configuration = Point<S, N>>, M: Method<S>, const N: usi
         gradient * ratio
     }
 
-    #[inline(always)]
-    fn turn(at: At<'_, S, M>, steps: usize, (q, w, gradient): Places<'_, S, Self, M, N>) -> Result<(), Error> {
+    #[inline]
+    fn turn(
+        at: At<'_, S, M>,
+        steps: usize,
+        q: &mut Point<S, N>,
+        w: &mut Point<S, N>,
+        gradient: &mut Point<S, N>,
+    ) -> Result<(), Error> {
         if steps == 0 {
             return Ok(());
         }
@@ -123,8 +135,14 @@ impl<S: GreatCircles<M, Configuration = Point<S, N>>, M: Method<S>, const N: usi
     #[inline(always)]
     fn gradient(_: At<'_, S, M>, _: &Point<S, N>) {}
 
-    #[inline(always)]
-    fn turn(at: At<'_, S, M>, steps: usize, (q, w, ()): Places<'_, S, Self, M, N>) -> Result<(), Error> {
+    #[inline]
+    fn turn(
+        at: At<'_, S, M>,
+        steps: usize,
+        q: &mut Point<S, N>,
+        w: &mut Point<S, N>,
+        (): &mut (),
+    ) -> Result<(), Error> {
         let At { system, constants, t, .. } = at;
         let a = S::turn(constants);
         for _ in 0..steps {
@@ -147,8 +165,14 @@ impl<S: GreatCircles<M>, M: Method<S>, const N: usize> Turns<S, M, N> for Unpush
     #[inline(always)]
     fn gradient(_: At<'_, S, M>, _: &Point<S, N>) {}
 
-    #[inline(always)]
-    fn turn(at: At<'_, S, M>, steps: usize, (q, plane, ()): Places<'_, S, Self, M, N>) -> Result<(), Error> {
+    #[inline]
+    fn turn(
+        at: At<'_, S, M>,
+        steps: usize,
+        q: &mut Point<S, N>,
+        plane: &mut Self::Plane,
+        (): &mut (),
+    ) -> Result<(), Error> {
         let a = S::turn(at.constants);
         (0..steps).try_for_each(|_| turn_freely(a, plane, q))
     }
@@ -186,7 +210,7 @@ where
     #[inline]
     fn step(at: At<'_, S, M>, state: Before<'_, S, Self, M>, _: &S::Input) -> Stepped<S, Self, M> {
         let (mut q, mut held, mut left) = (*state.0, *state.1, *state.2);
-        C::turn(at, 1, (&mut q, &mut held, &mut left))?;
+        C::turn(at, 1, &mut q, &mut held, &mut left)?;
         Ok((q, held, left))
     }
 
@@ -198,12 +222,12 @@ where
         (q, held, left): Places<'_, S, C, M, N>,
     ) -> Result<(), Error> {
         (*q, *held, *left) = (*state.0, *state.1, *state.2);
-        C::turn(at, 1, (q, held, left))
+        C::turn(at, 1, q, held, left)
     }
 
     fn steps(at: At<'_, S, M>, _: T<S>, steps: usize, state: Before<'_, S, Self, M>, _: &U<S>) -> Stepped<S, Self, M> {
         let (mut q, mut held, mut left) = (*state.0, *state.1, *state.2);
-        C::turn(at, steps, (&mut q, &mut held, &mut left))?;
+        C::turn(at, steps, &mut q, &mut held, &mut left)?;
         Ok((q, held, left))
     }
 

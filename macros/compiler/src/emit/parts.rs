@@ -8,8 +8,8 @@ use super::function::{Body, Function};
 use super::functions::{PARTS, SUBSTEP};
 use super::scope::{nested, size};
 use super::{Emitter, flag};
-use crate::derive::Id;
-use crate::lower::Kernel;
+use crate::derive::{Id, Solution};
+use crate::lower::{Kernel, Solve};
 use crate::model::LeafSpace;
 
 /// The most operations of a step, apart from those of iterations, that is inlined wherever it is called.
@@ -67,6 +67,15 @@ impl Emitter<'_, '_> {
         is_single && self.program.cost_of_moves(0).total() <= SHORT_STEP
     }
 
+    /// A part of a step that takes no iteration stands in the step, however long it is: a call hands vectors through memory.
+    fn within_step<'k>(&self, body: Body<'k>) -> Body<'k> {
+        let is_explicit = |solve: &Solve| matches!(solve.solution, Solution::ClosedForm | Solution::Explicit);
+        let mut solves = self.program.steps.iter().flat_map(|step| &step.solves);
+        let is_single = self.formulas.stepped == 1 && self.formulas.stages().is_none();
+        let stands = is_single && (self.program.turns_in_plane() || !self.keeps_matrices && solves.all(is_explicit));
+        if stands && body.inline.is_none() { body.inlined(quote!(#[inline(always)])) } else { body }
+    }
+
     /// Increment, advance and lift, which all substeps share.
     fn shared_parts(&self) -> TokenStream {
         let sums = if self.formulas.is_compensated() { quote!(Compensated) } else { quote!(Plain) };
@@ -74,7 +83,9 @@ impl Emitter<'_, '_> {
         let no_covectors = (!self.model.has_covectors()).then(|| flag("HAS_COVECTORS", false));
         let [coordinates, moves] = both(["X", "Moves"], |word| self.word_of_step(word));
         let words = |word: &str| self.word_of_step(word);
-        let functions = self.functions(PARTS, (0, 0), &words, |function, kernel| self.shared_part(function, kernel));
+        let functions = self.functions(PARTS, (0, 0), &words, |function, kernel| {
+            self.shared_part(function, kernel).map(|body| self.within_step(body))
+        });
         let items = quote! {
             type Sums = runtime::#sums;
             type Coordinates = #coordinates;
@@ -148,8 +159,9 @@ impl Emitter<'_, '_> {
     fn substep(&self, index: usize) -> TokenStream {
         let ends_as_it_starts = self.ends_as_it_starts(index).then(|| flag("ENDS_AS_IT_STARTS", true));
         let words = |word: &str| self.word_of_step(word);
-        let functions = self
-            .functions(SUBSTEP, (index, 0), &words, |function, kernel| self.part_of_substep(index, function, kernel));
+        let functions = self.functions(SUBSTEP, (index, 0), &words, |function, kernel| {
+            self.part_of_substep(index, function, kernel).map(|body| self.within_step(body))
+        });
         self.implementation("Substep", &[size(index)], quote!(#ends_as_it_starts #functions))
     }
 

@@ -138,6 +138,9 @@ proptest! {
         let kicked: Spins = std::array::from_fn(|i| mu[i] + start[i]);
         let (mut image, mut moved) = ([Vector3::x(); N], [Vector3::x(); N]);
         prop_assert!(ring.drift_into(&constants, t, &q, &mu, Some(&start), &mut image, &mut moved).is_ok());
+        let (mut in_place, mut carried) = (q, mu);
+        ring.drift_in_place(&constants, t, &mut in_place, &mut carried, Some(&start))?;
+        prop_assert_eq!((in_place, carried), (image, moved));
         prop_assert_eq!((image, moved, ()), FreeSites::<N>::step(at, (&q, &kicked, &()), &())?);
         prop_assert_eq!(next, image);
         prop_assert_eq!(kick, ring.power_kick(t + H, &next, constants.part(-0.5)));

@@ -1,6 +1,7 @@
 //! Numbers, masks, spaces and times: what generated code computes with.
 
 use crate::arbitrary::{cases, vector};
+use clebsch::__private as private;
 use clebsch::{Clock, Conserved, F64x8, Mask, Scalar, Space, Time};
 use nalgebra::{Matrix2, Quaternion, SMatrix, Vector2};
 use num_traits::{One, Zero};
@@ -99,6 +100,18 @@ proptest! {
         prop_assert_eq!(Scalar::finite(x), x.is_finite());
         prop_assert_eq!(F64x8::from_f64(x).to_array().map(f64::to_bits), [x.to_bits(); 8]);
         prop_assert_eq!(F64x8::splat(x).to_f64().to_bits(), x.to_bits());
+    }
+
+    /// A constant has the value of its `f64` or `f32`, which `to_f64` gives, rounded once to the scalar.
+    #[test]
+    fn constants_are_rounded_once(x in any::<f64>()) {
+        let single = x as f32;
+        prop_assert_eq!(private::constant::<f64>(x).to_bits(), x.to_bits());
+        prop_assert_eq!(private::constant::<f32>(x).to_bits(), single.to_bits());
+        prop_assert_eq!(private::constant::<f32>(single).to_bits(), single.to_bits());
+        prop_assert_eq!(private::constant::<f64>(single).to_bits(), f64::from(single).to_bits());
+        prop_assert_eq!(private::Constant::to_f64(single).to_bits(), f64::from(single).to_bits());
+        prop_assert_eq!(private::constant::<F64x8>(x).to_array().map(f64::to_bits), [x.to_bits(); 8]);
     }
 
     /// Comparisons, choices and finiteness lane by lane; `one_number` for a single number.
