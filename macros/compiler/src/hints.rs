@@ -26,6 +26,7 @@ pub(crate) fn hints(item: &TokenStream) -> TokenStream {
         found.paths.extend(words.filter_map(|word| ident(&word)).map(|word| quote!(field::#word)));
     }
     let Found { krate, paths } = found;
+    // rustc does not know the condition, which rust-analyzer sets
     quote! {
         #[allow(unexpected_cfgs)]
         const _: () = {

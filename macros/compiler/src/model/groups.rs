@@ -146,6 +146,11 @@ fn built_in(ty: &Type, maker: &Maker, sizes: &[&GenericArgument], names: GroupNa
         bail!(ty, "`{text}` needs an even size";
             help "write `{name}<{}>`", n + 1; note "its matrices act on as many momenta as coordinates");
     }
+    // the motions of a line have no rotations, and a name for themselves
+    let same = [("SE", "Translation<1>"), ("Sim", "Aff<1>")].into_iter().find(|(other, _)| n == 1 && other == name);
+    if let Some((_, same)) = same {
+        bail!(ty, "`{text}` has no rotations"; help "write `{same}`, which is the same group");
+    }
     if n < *least {
         bail!(ty, "`{text}` has only one element"; help "`{name}<n>` needs n ≥ {least}");
     }
