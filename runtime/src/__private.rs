@@ -1,6 +1,7 @@
-//! What generated code names, and nothing else. Not part of the public interface: it changes without notice.
+//! The items that generated code names, and no others. Not part of the public interface: it changes without notice.
 //!
-//! What is the same for every problem is here and compiled once. The compiler's side is the module `block` in its `emit` stage.
+//! Code that is the same for every problem is here, and is compiled once. The compiler's side is the module `block` in
+//! its `emit` stage.
 
 pub mod keys;
 

@@ -12,8 +12,9 @@ use nalgebra::{SMatrix, SVector};
 
 type Columns<T> = [[T; 3]; 3];
 
-/// x of A x = b with 3 or 6 unknowns, the sign of det A, and the lanes in which both are safe: A is regular, finite, and not too
-/// ill-conditioned. Accuracy: the relative error of x in the norm in which the columns of A have the length 1 is below 2¹⁶ ε.
+/// x of A x = b with 3 or 6 unknowns, the sign of det A, and the lanes in which both are safe. A lane is safe if A is
+/// regular, finite, and not too ill-conditioned. Accuracy: the relative error of x in the norm in which the columns of
+/// A have the length 1 is below 2¹⁶ ε.
 #[inline(always)]
 pub(crate) fn solve<T: Scalar, const M: usize>(
     a: &SMatrix<T, M, M>,
@@ -59,7 +60,7 @@ fn part<T: Scalar, const M: usize>(b: &SVector<T, M>, i: usize) -> [T; 3] {
     [b[i], b[i + 1], b[i + 2]]
 }
 
-/// Whether a difference has more than a few digits of what it was made of.
+/// Whether a difference has more than a few digits of its operands.
 #[inline(always)]
 fn keeps_digits<T: Scalar>(difference: &[T; 3], a: &[T; 3], b: &[T; 3]) -> T::Mask {
     (cancelled::<T>() * (norm(a) + norm(b))).at_most(norm(difference))

@@ -3,8 +3,9 @@
 //! ```text
 //! Y_i = y + h Σ_j a_ij K_j,    K_i = f(t + c_i h, Y_i),    y⁺ = y + h Σ_i b_i K_i,    y = (q, p)
 //! ```
-//! Symplectic on T*Q, the same forwards and backwards, and keeps every invariant that is quadratic in (q, p): with a linear action the momentum
-//! map of each symmetry, and where q lies on an orbit of rotations the equations of that orbit.
+//! The method is symplectic on T*Q, and the same forwards and backwards. It conserves every invariant that is quadratic
+//! in (q, p). With a linear action these are the momentum map of each symmetry and, where q lies on an orbit of
+//! rotations, the equations of that orbit.
 //!
 //! The nodes lie the same about the middle of the step, and so a_ij − b_j/2 changes its sign where both stages are mirrored. Of sums and differences
 //! of the slopes K at mirrored nodes, two matrices of half the size make all stages:
@@ -28,7 +29,8 @@ const SWEEPS_OF_DERIVATIVES: u32 = 4;
 /// A change that no longer shrinks is rounding where it is below this multiple of ε.
 const ROUNDING: i64 = 1024;
 
-/// Nodes and weights of Gauss and Legendre on [0, 1], and what they make of slopes: those of the first half of the nodes, the others are mirrored.
+/// Nodes and weights of Gauss and Legendre on [0, 1], and the matrices that act on slopes. Only those of the first half
+/// of the nodes are stored; the others are mirrored.
 #[derive(Clone, Copy, Debug)]
 pub struct Gauss<const H: usize> {
     /// c_i
@@ -90,8 +92,8 @@ impl<const H: usize> Gauss<H> {
 /// `tolerance` of them, where only rounding changes them, or after `most`. Ended one sweep earlier, energies would drift ten times as fast.
 ///
 /// # Errors
-/// [`Error::NotFinite`] where a slope is not, [`Error::NotConverged`] where sweeps do not contract: the step is too long. With several lanes these
-/// stand for all; lanes that fail beside others become NaN.
+/// [`Error::NotFinite`] where a slope is not, [`Error::NotConverged`] where sweeps do not contract: the step is too
+/// long. An error stands for all lanes. A lane that fails while others succeed becomes NaN.
 #[inline]
 pub fn collocate<T: Scalar, const N: usize, const S: usize, const H: usize>(
     gauss: &Gauss<H>,
@@ -199,7 +201,8 @@ impl<T: Scalar, const H: usize> Table<T, H> {
         }
     }
 
-    /// The slopes at all stages, in the lanes that are open, and |h ΔK| of those of q and of p: the sums over all stages and entries.
+    /// The slopes at all stages, in the lanes that are open. With them, |h ΔK| of q and of p: the sums over all stages
+    /// and entries.
     #[inline(always)]
     fn sweep<const N: usize, const S: usize>(
         &self,

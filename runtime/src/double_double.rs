@@ -17,8 +17,9 @@ use qd::Quad;
 /// assert!(remainder.to_f64().abs() < 1e-31);
 /// ```
 ///
-/// Sums, differences, products, quotients and square roots are right to a few 2⁻¹⁰⁴; so are elementary functions of numbers of order one,
-/// an absolute error for logarithms, sines and cosines. The range is that of `f64`, but below 10⁻²⁹² the second number has lost digits.
+/// Sums, differences, products, quotients and square roots are right to a few 2⁻¹⁰⁴. So are elementary functions of
+/// numbers of order one; for logarithms, sines and cosines this is an absolute error. The range is that of `f64`, but
+/// below 10⁻²⁹² the second number has lost digits.
 ///
 /// For references take order 2: the sizes of orders 6 and 8, and the weights of splittings with `discretization = exact`, have 17 digits.
 ///
@@ -39,7 +40,7 @@ impl DoubleDouble {
         [self.0.0, self.0.1]
     }
 
-    /// Sine and cosine of what the nearest number of quarter turns leaves, and that number modulo 4.
+    /// Sine and cosine of the remainder after the nearest number of quarter turns, and that number modulo 4.
     fn turned(self) -> (Self, Self, i64) {
         let quarter = Self::PI / Self::from(2.0);
         let turns = libm::round((self / quarter).to_f64());

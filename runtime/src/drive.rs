@@ -1,4 +1,4 @@
-//! What is stepped in place: a [`Stepper`](crate::Stepper) with a state of its own.
+//! Drivers step a state of their own in place: a [`Stepper`](crate::Stepper) with its state.
 
 #[cfg(feature = "alloc")]
 mod ensemble;
@@ -39,7 +39,7 @@ pub use sites::{SiteError, SiteStorage, Sites};
 /// # Ok::<(), clebsch::Error>(())
 /// ```
 pub trait Drive {
-    /// What [`state`](Self::state) shows of it.
+    /// The view of it that [`state`](Self::state) returns.
     type State<'a>
     where
         Self: 'a;
@@ -49,7 +49,7 @@ pub trait Drive {
     /// One step.
     ///
     /// # Errors
-    /// Those of a step. The state is then what it was.
+    /// Those of a step. After an error the state is unchanged.
     fn step(&mut self) -> Result<(), Self::Error>;
 
     /// So many steps.

@@ -60,7 +60,7 @@ macro_rules! duals {
     )*};
 }
 
-/// Numbers, or the entries of a matrix of derivatives, of which there are none in a constant.
+/// Numbers, or the entries of a matrix of derivatives; a constant has no such matrix.
 trait Parts {
     /// Whether all of them pass.
     fn all(&self, pass: impl Fn(f64) -> bool) -> bool;

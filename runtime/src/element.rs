@@ -1,4 +1,4 @@
-//! Group elements from what a step computes.
+//! Group elements from the results of a step.
 
 use crate::linear::{divided, function};
 use crate::matrices::shifted;

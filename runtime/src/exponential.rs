@@ -1,11 +1,12 @@
 //! The exponential of a matrix and the function φ(z) = (eᶻ − 1)/z of it: Taylor series, scaled and doubled.
 //!
-//! Terms are added until they cannot be seen, whatever the precision of the scalar; derivatives of dual numbers come along. Errors are a few units
-//! in the last place of |exp A| for |A| ≤ 1, and grow like |A| beyond. Scaling looks at powers of A, and exp A − I is doubled: neither large
-//! entries beside the diagonal, as of a translation, nor a small A cost digits.
+//! Terms are added until they cannot be seen, whatever the precision of the scalar; derivatives of dual numbers come
+//! along. Errors are a few units in the last place of |exp A| for |A| ≤ 1, and grow like |A| beyond. Scaling looks at
+//! powers of A, and exp A − I is doubled. So neither large off-diagonal entries, as of a translation, nor a small A
+//! cost digits.
 //!
-//! Source: Higham, *Functions of Matrices*, 2008, sections 10.3 and 10.7.4; Al-Mohy and Higham, *A New Scaling and Squaring Algorithm for the
-//! Matrix Exponential*, 2009, theorem 4.2.
+//! Source: Higham, *Functions of Matrices*, 2008, sections 10.3 and 10.7.4. Theorem 4.2 of Al-Mohy and Higham, *A New
+//! Scaling and Squaring Algorithm for the Matrix Exponential*, 2009.
 
 use crate::linear::{function, norm, product};
 use crate::matrices::shifted;
@@ -53,7 +54,7 @@ pub fn phi<T: Scalar, const N: usize>(a: &SMatrix<T, N, N>) -> SMatrix<T, N, N> 
     })
 }
 
-/// A/2ˢ, of which all powers from the second on are at most one in norm (or A/2ˢ itself is), and s.
+/// A/2ˢ and s. From the second on, all powers of A/2ˢ are at most one in norm (or A/2ˢ itself is).
 fn scale<T: Real, const N: usize>(a: &SMatrix<T, N, N>) -> (SMatrix<T, N, N>, u32) {
     let (one, half) = (T::one(), T::from_ratio(1, 2));
     let mut first = norm(a);

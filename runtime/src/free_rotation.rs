@@ -5,15 +5,17 @@
 //! ```text
 //! d ρ − m × ρ = ρ₀ m,    m = h M/2,    d = diag(d₁, d₂, d₃)
 //! ```
-//! where the d_i depend on the body, on h and on the two invariants |M|² and M·J⁻¹M alone: this is the equation of Moser and Veselov for a body
-//! of modified inertia, linear in the Gibbs vector ρ/ρ₀. With x_i = 1/J_i, a = |M|², e = M·J⁻¹M and, (i, j, k) in any order,
+//! where the d_i depend only on the body, on h and on the two invariants |M|² and M·J⁻¹M. This is the equation of Moser
+//! and Veselov for a body of modified inertia, linear in the Gibbs vector ρ/ρ₀. With x_i = 1/J_i, a = |M|², e = M·J⁻¹M
+//! and, (i, j, k) in any order,
 //!
 //! ```text
 //! D′_i = −½ (a + D_i²) (x_i + P_i (e − a x_i)/(℘(τ/2) − e_i + a P_i)),    D_i = 2 d_i/τ
 //! P_i = (x_i − x_j)(x_i − x_k),    e_i = a x_j x_k + e x_i − their mean,    ℘ with the roots e_i
 //! ```
-//! so that d_i is a power series in τ² whose coefficients are homogeneous polynomials in a and e, made once for a body, without a division by
-//! differences of inertia. Where few terms are not enough, d of a part of the time is found, and doubled by formulas as often as it takes.
+//! So d_i is a power series in τ². Its coefficients are homogeneous polynomials in a and e, computed once for a body,
+//! without a division by differences of inertia. Where few terms are not enough, the series gives d for a part of the
+//! time. Formulas then double that time as often as needed.
 //!
 //! Source: the equation is that of J. Moser and A. P. Veselov, *Discrete versions of some classical integrable systems and factorization of
 //! matrix polynomials*, Comm. Math. Phys. 139 (1991); that modified constants make it exact, R. I. McLachlan and A. Zanna, *The discrete
@@ -49,12 +51,13 @@ fn duplications<T: Scalar>() -> u32 {
     good.last().unwrap_or(1)
 }
 
-/// What a motion keeps: d_i x over 2ⁿ, and 2⁻ⁿ, by which m is multiplied too; 0 where the motion is too long.
+/// The constants of a motion: d_i x over 2ⁿ, and 2⁻ⁿ, by which m is multiplied too. They are 0 if the motion is too
+/// long.
 pub type KeptRotation<T> = SVector<T, 4>;
 
 type Vector<T> = SVector<T, 3>;
 
-/// What no free motion of a body over a given time changes.
+/// The constants of all free motions of a body over a given time.
 #[derive(Clone, Copy, Debug)]
 pub struct FreeRotation<T> {
     /// h x/2 with the largest x of x_i = 1/J_i by size: m = `scale` M is free of units.
@@ -73,7 +76,7 @@ pub struct FreeRotation<T> {
 type Tensor<T> = (SMatrix<T, 3, 3>, SMatrix<T, 3, 3>, Vector<T>);
 
 impl<T: Scalar> FreeRotation<T> {
-    /// The free motions over the time `h` of a body with the inertia tensor `inertia`, of which the lower triangle is read.
+    /// The free motions over the time `h` of a body with the inertia tensor `inertia`; only its lower triangle is read.
     ///
     /// # Errors
     /// [`Error::SingularKineticEnergy`] where a principal moment is 0, [`Error::NotFinite`].
@@ -111,8 +114,9 @@ impl<T: Scalar> FreeRotation<T> {
 
     /// A multiple (w, x) of the quaternion of the rotation that starts with the momentum `momentum`: its Gibbs vector is x/w.
     ///
-    /// Accuracy: a few units in the last place of the angle. Work: a polynomial of degree up to 14 in two variables, and for long motions
-    /// some hundred operations each time that the angle doubles. Lanes are turned one after the other; those that fail beside others are NaN.
+    /// Accuracy: a few units in the last place of the angle. Work: a polynomial of degree up to 14 in two variables,
+    /// and for long motions some hundred operations each time that the angle doubles. Lanes are turned one after the
+    /// other. A lane that fails while others succeed is NaN.
     ///
     /// # Errors
     /// [`Error::Unsolvable`] where the angle is more than a thousand or so; [`Error::NotFinite`].
@@ -154,7 +158,7 @@ impl<T: Scalar> FreeRotation<T> {
         Ok((w, self.in_coordinates(x)))
     }
 
-    /// What the motion with the momentum `momentum` keeps, for many steps of it.
+    /// The constants of the motion with the momentum `momentum`, for many steps along it.
     pub fn motion(&self, momentum: &Vector<T>) -> KeptRotation<T> {
         let m = self.without_units(momentum);
         let mut kept = KeptRotation::<T>::from_element(T::zero());
@@ -278,7 +282,7 @@ impl<T: Scalar> OfLane<'_, T> {
         found.unwrap_or(SVector::from_element(T::Lane::from_f64(f64::NAN)))
     }
 
-    /// d_i x of the whole time, or the coefficients of d; `None` where that is beyond the reach of the series.
+    /// d_i x for all of the time, or the coefficients of d; `None` beyond the reach of the series.
     #[inline(always)]
     fn modified_inertia(self, m: &Vector<T::Lane>) -> Option<Vector<T::Lane>> {
         self.sum_of_series(self.invariants(m)).map(|sum| self.scaled(sum))
@@ -348,7 +352,8 @@ impl<T: Scalar> OfLane<'_, T> {
         }
     }
 
-    /// d_i x, or the coefficients of X d, of 2ⁿ times the time that `sum` belongs to, over 2ⁿ; `None` where that has to be shorter.
+    /// d_i x, or the coefficients of X d, for 2ⁿ times the time of `sum`, over 2ⁿ. `None` if the time has to be
+    /// shorter.
     fn made_longer(self, invariants: [T::Lane; 2], sum: [T::Lane; 4], times: u32) -> Option<Vector<T::Lane>> {
         let [a, b, c, p] = sum;
         match &self.free.axes {

@@ -13,23 +13,25 @@
 //! # Conventions
 //! * The pairing of matrices is ⟨A, B⟩ = tr(AᵀB), the sum of the products of their entries; for vectors the dot product.
 //! * E_ij has a one in row i and column j, counted from 1. x^ is the skew matrix with x^ y = x × y.
-//! * A momentum is given by its components m_i = ⟨M, E_i⟩ in the basis E_i of the group's page, one block after the other for a
-//!   product of groups. Its representing matrix M = Σ G^{ij} m_j E_i, with the Gram matrix G_ij = ⟨E_i, E_j⟩ and its inverse G^{ij},
-//!   is what [`momentum_matrix`](crate::Clebsch::momentum_matrix) returns.
+//! * A momentum is given by its components m_i = ⟨M, E_i⟩ in the basis E_i of the group's page. For a product of groups
+//!   the blocks follow one after the other. Its representing matrix is M = Σ G^{ij} m_j E_i, returned by
+//!   [`momentum_matrix`](crate::Clebsch::momentum_matrix). Here G^{ij} is the inverse of the Gram matrix G_ij = ⟨E_i,
+//!   E_j⟩.
 //! * Components are those of the declared Lagrangian: a cost that is doubled doubles them. Where the basis is dimensionless they
 //!   have the unit of a discrete Lagrangian, J·s; those along a translation have J·s per unit of length.
 //! * An action is *left* if Φ_gh = Φ_g Φ_h, as in `F * q`; then momenta are spatial. It is *right* if Φ_gh = Φ_h Φ_g, as in
 //!   `q * F`; then momenta are those of the body frame. Ad*_F is (Ad_F)*, without an inverse inside.
-//! * A velocity ξ, the argument of a `lagrangian`, has the coordinates of ξ = Σ ξ_i E_i; m·ξ = ⟨M, ξ⟩ is twice
-//!   the kinetic energy of a Lagrangian that is quadratic in ξ.
+//! * A velocity ξ, the argument of a `lagrangian`, has the coordinates of ξ = Σ ξ_i E_i. If the Lagrangian is quadratic
+//!   in ξ, m·ξ = ⟨M, ξ⟩ is twice its kinetic energy.
 
 use core::convert::Infallible;
 
-/// The rotations of P-dimensional space, `SO<P>`; with a second number the maps of P + Q dimensions that keep
-/// x₁² + … + x_P² − x_{P+1}² − … − x_{P+Q}², such as the Lorentz group `SO<1, 3>` or `SO<3, 1>`.
+/// The rotations of P-dimensional space, `SO<P>`. With a second number: the maps of P + Q dimensions that preserve x₁²
+/// + … + x_P² − x_{P+1}² − … − x_{P+Q}². The Lorentz group is `SO<1, 3>` or `SO<3, 1>`.
 ///
-/// Matrices F with FᵀηF = η and det F = 1, η = diag(1, …, 1, −1, …, −1); η = I for `SO<N>`. Where Q > 0 these are two components,
-/// and steps stay in that of the identity: for the Lorentz group, the one that keeps the direction of time.
+/// Matrices F with FᵀηF = η and det F = 1, η = diag(1, …, 1, −1, …, −1); η = I for `SO<N>`. For Q > 0 these are two
+/// components, and steps stay in that of the identity. In the Lorentz group it is the one that preserves the direction
+/// of time.
 ///
 /// | group | matrices | basis, in order | component for a physical Lagrangian |
 /// |---|---|---|---|
@@ -64,8 +66,9 @@ pub struct SO<const P: usize, const Q: usize = 0>(Infallible);
 ///
 /// Matrices: 2N×2N, FᵀF = I, FᵀΩF = Ω. Basis: A = E_ji − E_ij for i < j; B = E_ji + E_ij for i < j; B = E_ii; the other blocks are 0.
 ///
-/// A vector of N complex numbers is its real parts followed by its imaginary parts. Pairs i < j are in the order (12), …, (N−1 N). Every entry stands
-/// twice in the real form: the Gram matrix is 4 for pairs and 2 for B = E_ii, and M = ¼ Σ m E over the pairs + ½ Σ m E over the others.
+/// A vector of N complex numbers is its real parts followed by its imaginary parts. Pairs i < j are in the order (12),
+/// …, (N−1 N). Every entry stands twice in the real form. So the Gram matrix is 4 for pairs and 2 for B = E_ii. M is ¼
+/// Σ m E over the pairs + ½ Σ m E over the others.
 ///
 /// `U<1>` is the circle. The component along B = E_ii is the momentum of the phase of number i.
 ///
@@ -88,10 +91,11 @@ pub struct U<const N: usize>(Infallible);
 /// | `SU<2>` | `nalgebra::Quaternion`, coordinates i, j, k, w | i/2, j/2, k/2 |
 /// | `SU<N>` | 2N×2N as of [`U`], with determinant 1 in complex form | as of [`U`], with B = E_ii − E_{i+1,i+1} for i < N at the end |
 ///
-/// * `SU<2>`: `Q * v` turns v as its rotation does, and components are those of `SO<3>`: the angular momentum π₁, π₂, π₃.
-///   Quaternions pair by the dot product of their four coordinates; the Gram matrix is ¼ I and the representing quaternion is
-///   2(π₁ i + π₂ j + π₃ k). Q and −Q are the same rotation and two configurations.
-/// * `SU<N>`: the Gram matrix is 4 for pairs; for the last N − 1 it has 4 on the diagonal and −2 beside it, twice the Cartan matrix.
+/// * `SU<2>`: `Q * v` turns v as its rotation does, and components are those of `SO<3>`: the angular momentum π₁, π₂,
+///   π₃. Quaternions pair by the dot product of their four coordinates. The Gram matrix is ¼ I, and the representing
+///   quaternion is 2(π₁ i + π₂ j + π₃ k). Q and −Q are the same rotation and two configurations.
+/// * `SU<N>`: the Gram matrix is 4 for pairs. For the last N − 1 it is twice the Cartan matrix: 4 on the diagonal and
+///   −2 next to it.
 ///
 /// ```
 /// # use clebsch::Clebsch;
@@ -128,8 +132,9 @@ pub struct Translation<const N: usize>(Infallible);
 ///
 /// Matrices: (N+1)×(N+1), R and a above (0 … 0 1). Basis: that of [`SO`] in the upper left, for the angular momentum; E_{i,N+1}, for the linear one.
 ///
-/// The Gram matrix is 2 for the turns and 1 for the shifts: M has ½ π^ (N = 3) in the upper left and p in the last column, and its
-/// last row is 0. A group that is not closed under transposition: Ad*_F M is the part of FᵀMF⁻ᵀ in the Lie algebra.
+/// The Gram matrix is 2 for the turns and 1 for the shifts. For N = 3, M has ½ π^ in the upper left and p in the last
+/// column, and its last row is 0. A group that is not closed under transposition: Ad*_F M is the part of FᵀMF⁻ᵀ in the
+/// Lie algebra.
 ///
 /// For a right action, `q * F`, both momenta are in the body frame, about the body's origin; for a left action spatial, about that of space.
 ///
@@ -229,8 +234,8 @@ pub struct GL<const N: usize>(Infallible);
 ///
 /// Matrices: N×N with det F = 1. Basis, in order: E_ii − E_{i+1,i+1} for i < N; then E_ij for i ≠ j by rows.
 ///
-/// For `SL<2>` these are H = diag(1, −1), E = E₁₂ and F = E₂₁. The Gram matrix is the Cartan matrix for the first N − 1 (2 on
-/// the diagonal, −1 beside it) and I for the others: for `SL<2>`, M = ½ m_H H + m_E E + m_F F.
+/// For `SL<2>` these are H = diag(1, −1), E = E₁₂ and F = E₂₁. The Gram matrix is the Cartan matrix for the first N − 1
+/// (2 on the diagonal, −1 next to it) and I for the others. For `SL<2>`, M = ½ m_H H + m_E E + m_F F.
 ///
 /// ```
 /// # use clebsch::Clebsch;

@@ -4,7 +4,8 @@
 //! cleanly, it follows the path from the identity with bounded work, until that arrives or turns back. In the latter case no solution is
 //! connected to the identity. [`solve_linear_equation`] does without iteration where ρ is affine in ξ.
 //!
-//! Solves are inlined once, in the part of the step that calls them: the result of a call lies in memory, for which small steps would wait.
+//! Solves are inlined once, in the part of the step that calls them. The result of a call lies in memory, and small
+//! steps would wait for it.
 
 mod fixed_point;
 mod jacobian;
@@ -26,10 +27,12 @@ use nalgebra::SVector;
 
 /// An implicit equation ρ(ξ; μ) = 0 for M unknowns ξ, given N components of momentum, the target μ.
 ///
-/// ρ is affine in μ, and ξ = 0 solves it for μ = 0, so that sμ with s from 0 to 1 leads from the identity to the solution.
-/// Wanted is the solution on the branch that starts there, which ends where det Dρ changes its sign, as h grows or as s does.
+/// ρ is affine in μ, and ξ = 0 solves it for μ = 0. So sμ with s from 0 to 1 leads from the identity to the solution.
+/// Solves look for the solution on the branch that starts there. The branch ends where det Dρ changes its sign, as h or
+/// s grows.
 ///
-/// If the momentum of the identity is not 0, as for a cost with a potential of q and F together, it is subtracted from μ, and so from ρ.
+/// The momentum of the identity may not be 0, as for a cost with a potential of q and F together. It is then subtracted
+/// from μ, and so from ρ.
 ///
 /// ```
 /// use clebsch::implicit::{Equation, solve};
@@ -56,10 +59,10 @@ use nalgebra::SVector;
 /// # Ok::<(), clebsch::Error>(())
 /// ```
 pub trait Equation<T: Scalar, const M: usize, const N: usize = M> {
-    /// What does not change during the iteration.
+    /// Values that do not change during the iteration.
     type Terms;
 
-    /// What Dρ(ξ) is given as: `SMatrix<T, M, M>`, or what is inverted faster.
+    /// The form of Dρ(ξ): `SMatrix<T, M, M>`, or a form that is inverted faster.
     type Jacobian: Jacobian<T, M>;
 
     /// The terms for the target μ.
@@ -109,8 +112,9 @@ pub trait Equation<T: Scalar, const M: usize, const N: usize = M> {
 
     /// Whether ρ has poles in the chart, as where det(I + F) vanishes.
     ///
-    /// `false` by the provided method. Beside a pole a correction is as small as the distance to it, while the residual is as large as its inverse: where there
-    /// are any, what is found is compared with the residual at the start too.
+    /// `false` by the provided method. Near a pole a correction is as small as the distance to it, while the residual
+    /// is as large as its inverse. If ρ has poles, [`solve`] also compares the residual of its result with that at the
+    /// start.
     #[inline]
     fn has_poles() -> bool {
         false
@@ -118,9 +122,10 @@ pub trait Equation<T: Scalar, const M: usize, const N: usize = M> {
 
     /// The sign of det Dρ which every solution on the branch has; `None` where it is singular.
     ///
-    /// The provided method makes one linearisation, at ξ = 0 and μ = 0. It is asked for in every solve: answer from a constant where one is at
-    /// hand, made by [`orientation`], or the sign of det Σ/h, which Dρ has there for short steps. Where a force or a potential in the cost
-    /// gives it another one, the step is too long: a solution that is not connected to those of short steps is refused.
+    /// The provided method makes one linearisation, at ξ = 0 and μ = 0. It is called in every solve, so a constant is
+    /// best. Make one by [`orientation`], or answer with the sign of det Σ/h, which Dρ has there for short steps. A
+    /// force or a potential in the cost may change this sign. The step is then too long: a solution that is not
+    /// connected to those of short steps is refused.
     #[inline]
     fn orientation(&self) -> Option<Orientation> {
         at_identity(self)
@@ -164,15 +169,18 @@ fn allowed(most: u32, limit: Option<u32>, spent: u32) -> u32 {
     limit.map_or(most, |limit| most.min(limit.saturating_sub(spent)))
 }
 
-/// The solution ξ of ρ(ξ; `target`) = 0 that is connected to ξ = 0, in each lane as for a single number; NaN in lanes without one.
+/// The solution ξ of ρ(ξ; `target`) = 0 that is connected to ξ = 0. Each lane has the result of a single number; lanes
+/// without a solution are NaN.
 ///
-/// Accuracy: the correction that Newton's method would make next is below [`Equation::tolerance`] of ξ, a quarter of a unit in its last
-/// place by default, or the residual is round-off. It is always the latter where Newton's method alone does not decide. Work: at most 12
-/// linearisations, then at most [`LINEARIZATIONS`] more (ten to two hundred in practice); in all not more than [`Equation::limit`].
+/// Accuracy: the next correction of Newton's method is below [`Equation::tolerance`] of ξ, by default a quarter of a
+/// unit in its last place. Otherwise the residual is round-off. It is always the latter where Newton's method alone
+/// does not decide. Work: at most 12 linearisations, then at most [`LINEARIZATIONS`] more (ten to two hundred in
+/// practice); in all not more than [`Equation::limit`].
 ///
 /// # Errors
-/// Where no lane has a solution: [`Error::Unsolvable`] where no solution is connected to the identity, with the largest fraction of `target` for which there is
-/// one; [`Error::NotFinite`] where `target` or the equation is not; [`Error::NotConverged`] where the work was not enough.
+/// If no lane has a solution: [`Error::Unsolvable`] if no solution is connected to the identity, with the largest
+/// fraction of `target` that has one. [`Error::NotFinite`] if `target` or the equation is not finite.
+/// [`Error::NotConverged`] if the work was not enough.
 #[inline(always)]
 pub fn solve<T: Scalar, const M: usize, const N: usize>(
     equation: &impl Equation<T, M, N>,
@@ -197,8 +205,9 @@ fn solve_after<T: Scalar, E: Equation<T, M, N>, const M: usize, const N: usize>(
     Ok(if T::DERIVATIVES == 0 { xi } else { with_derivatives(equation, target, xi) })
 }
 
-/// Newton's method from the predictor: ξ, in which lanes it is the solution, and how many linearisations were made, at most `most`. A lane
-/// stays as it is once it has arrived, and is given up as soon as it does not contract cleanly, or leaves the branch.
+/// Newton's method from the predictor: ξ, in which lanes it is the solution, and how many linearisations were made, at
+/// most `most`. A lane stays as it is once it has arrived. A lane that does not contract cleanly, or leaves the branch,
+/// is given up at once.
 ///
 /// Near a solution the corrections obey |Δ_{k+1}| ≈ C|Δ_k|². With C from the last two, |Δ_k|³/|Δ_{k−1}|² would come next, and is not made if
 /// it is negligible. The predictor counts as the correction of ξ = 0; where it is 0 the first correction is the predictor.

@@ -1,7 +1,8 @@
 //! Several numbers side by side, in the lanes of vector registers: one body in each.
 //!
-//! Every operation gives in each lane the bits that it gives for a single number: sums, products, quotients and roots are rounded as
-//! IEEE 754 says, nothing is contracted or approximated, and functions without a vector form of that kind are taken lane by lane.
+//! In each lane, every operation gives the bits that it gives for a single number. Sums, products, quotients and roots
+//! are rounded as IEEE 754 says. Nothing is contracted or approximated. Functions without a vector form of that kind
+//! are taken lane by lane.
 
 use crate::{Mask, Scalar};
 use core::fmt::{self, Display, Formatter};

@@ -28,8 +28,8 @@
 //! # Ok::<(), clebsch::Error>(())
 //! ```
 //!
-//! The attitude stays a rotation, the spatial momentum `R * π` is constant to round-off, and the energy is too, for any number of
-//! steps: the step is the exact motion of a discrete mechanical system, not an approximation that drifts.
+//! The attitude stays a rotation. The spatial momentum `R * π` and the energy are constant to round-off, for any number
+//! of steps. The step is the exact motion of a discrete mechanical system, not an approximation that drifts.
 //!
 //! # What is where
 //!
@@ -37,30 +37,30 @@
 //! |---|---|
 //! | write a declaration | the derive macro [`Clebsch`](derive@Clebsch): every key, value, group, field attribute and function |
 //! | read the formulas of a declaration | the trait [`Clebsch`](trait@Clebsch), one method for each derived formula |
-//! | integrate | [`Stepper`]: a system with its step size; [`State`] is what it steps, [`Trajectory`] iterates |
+//! | integrate | [`Stepper`] is a system with its step size; it steps a [`State`], and [`Trajectory`] iterates |
 //! | step one system in several ways | [`Clebsch::stepper_by`] and [`Method`]; [`Stepper::state_of`] takes a state over from one to another |
 //! | step a state in place | the trait [`Drive`], one set of words for all that has a state of its own |
 //! | step a large state in place, on the heap if you like | [`Stepper::integrator`]; [`Integrator`], in a `Box` |
 //! | choose the step size for an error | [`Stepper::suggest_step_size`] |
-//! | know what no step changes | [`Stepper::conserved`], which exists where conserved momenta were found; [`Conserved`] |
+//! | know the quantities that no step changes | [`Stepper::conserved`], which exists where conserved momenta were found; [`Conserved`] |
 //! | step the momentum without its configuration | `emit = [momentum]`: a [`Clebsch::Configuration`] of `()` |
 //! | read steps of `order = 1` to second order | [`Stepper::synchronized`], started by [`Stepper::staggered_state`] |
 //! | follow a potential in time | [`Stepper::state_at`] and [`State::time`], which exist where the time matters |
 //! | work on the cotangent bundle | [`CotangentState`] and [`Stepper::step_symmetric`] |
 //! | differentiate a step | [`Stepper::step_tangent`] and [`Stepper::step_sensitivity`], with `emit = [tangent]`; [`Tangent`] |
 //! | know the basis of a momentum | [`group`]: matrices, basis, pairing and signs |
-//! | handle failures | [`Error`]: each kind with its numbers and what to change |
+//! | handle failures | [`Error`]: each kind with its numbers and the change that helps |
 //! | go from here to there in a given time | [`Stepper::boundary`], with `emit = [boundary]`; [`Extremal`] |
 //! | give each step an input of its forces | [`Stepper::step_with`] |
 //! | choose the inputs at the least price, within bounds | [`Controlled::control`], with `controls`, `dynamics` or `effort`; [`Control::solve`], [`Optimum`] and its [`Stage`]s |
 //! | solve an implicit equation of one's own | [`implicit`] |
-//! | integrate in another number type | [`Scalar`], and [`Space`] for what is made of scalars; [`Real`] for one that has an order |
+//! | integrate in another number type | [`Scalar`], and [`Space`] for collections of scalars; [`Real`] for a scalar that has an order |
 //! | step many bodies at once | [many bodies](crate#many-bodies), on lanes and on all cores |
-//! | step N equal sites that are tied to each other | a const generic N: an array of sites is a system, and [`Stepper::sites`] steps them in [`SiteStorage`]; [`Power`] is what is derived |
+//! | step N equal sites that are tied to each other | a const generic N: an array of sites is a system, and [`Stepper::sites`] steps them in [`SiteStorage`]; the macro derives [`Power`] |
 //!
 //! # Features
 //!
-//! All are off by default, and none changes what another computes, but for `std`.
+//! All are off by default. Only `std` changes results that exist without it.
 //!
 //! | feature | gives |
 //! |---|---|
@@ -78,37 +78,44 @@
 //! Every dial has an end, such as h|ω| = 1 for `discretization = moser_veselov`. Beyond it a step is [`Error::Unsolvable`], which gives the longest
 //! one, or energies grow. `docs/book/src/evidence/extremes.md` of the repository has the table of all dials, measured.
 //!
-//! A step ends after at most 12 linearisations by Newton's method (with `solver = fixed_point` 32 residuals before them), and where these do not decide
-//! after [`implicit::LINEARIZATIONS`] more along the path from the identity, whose last point may take four more, or 64 sweeps with `order = 16`.
+//! The work of a step is bounded. Newton's method takes at most 12 linearisations; with `solver = fixed_point` at most
+//! 32 residuals come before them. If these do not decide, at most [`implicit::LINEARIZATIONS`] more follow along the
+//! path from the identity. The last point of this path may take four more. With `order = 16` a step takes at most 64
+//! sweeps.
 //!
 //! # Many bodies
 //!
-//! A declaration over `T: Scalar` runs on lanes: with `F64x8` for `T` a [`State`] holds eight bodies, and a step makes the step of each. Lanes
-//! are independent: each has, bit for bit, the result that it would have alone, however many iterations the others need and whether or not
-//! they fail. [`Stepper::step`] asks for all lanes to succeed, [`Stepper::step_each`] steps those that can be, and
-//! [`Stepper::failure`] says why another cannot. Parameters and step sizes are lanes too, so that each body can have its own.
+//! A declaration over `T: Scalar` runs on lanes: with `F64x8` for `T` a [`State`] holds eight bodies, and a step makes
+//! the step of each. Lanes are independent. Each has, bit for bit, the result that it would have alone. It does not
+//! matter how many iterations the others need, or whether they fail. [`Stepper::step`] asks for all lanes to succeed,
+//! [`Stepper::step_each`] steps those that can be, and [`Stepper::failure`] says why another cannot. Parameters and
+//! step sizes are lanes too, so that each body can have its own.
 //!
 //! `Ensemble` does this for any number of bodies. Build for the instruction set of the machine, by
-//! `RUSTFLAGS="-C target-cpu=native"`: without it registers are those of the oldest processor of the architecture, and lanes gain little.
+//! `RUSTFLAGS="-C target-cpu=native"`. Otherwise the registers are those of the oldest processor of the architecture,
+//! and lanes gain little.
 //!
 //! # What holds everywhere
 //!
 //! * Momenta are components in a documented basis; those of a right action (`R * F`) are in the body frame.
-//! * A step changes nothing but what it returns: on an [`Error`] the state that was passed in is still good.
+//! * A step changes nothing but its result: after an [`Error`] the state that was passed in is still good.
 //! * Nothing allocates and no input makes it panic.
-//! * What comes in a [`Result`] is finite where it is `Ok`: a number that is not is refused by its name, and so is what overflows on the way. Formulas
-//!   without one, such as [`Stepper::energy`], [`Stepper::legendre`], [`Stepper::momentum_map`] or [`Stepper::synchronized`], are evaluated as they stand, and so are
-//!   the methods of the trait [`Clebsch`]: NaN in is NaN out, and what overflows is infinite or NaN.
+//! * Every number in an `Ok` is finite. A number that is not finite, and an overflow, is an error that names the
+//!   quantity. Formulas without a [`Result`] are evaluated as they stand: [`Stepper::energy`], [`Stepper::legendre`],
+//!   [`Stepper::momentum_map`], [`Stepper::synchronized`] and the methods of the trait [`Clebsch`]. They return NaN for
+//!   NaN, and infinity or NaN after an overflow.
 //!
 //! # The same bits everywhere
 //!
-//! Without the feature `std` (the default) a run takes from the platform nothing but additions, multiplications, divisions and square roots of IEEE 754;
-//! elementary functions are those of `libm`. So it has the same bits on every processor and operating system, in debug and in release builds, in
-//! lanes and alone: `runtime/tests/platforms.rs` pins them, on x86-64, aarch64, i686 and the big-endian s390x.
+//! Without the feature `std` (the default) a run uses only additions, multiplications, divisions and square roots of
+//! IEEE 754 of the platform. Elementary functions are those of `libm`. So it has the same bits on every processor and
+//! operating system, in debug and in release builds, in lanes and alone. `runtime/tests/platforms.rs` pins them, on
+//! x86-64, aarch64, i686 and the big-endian s390x.
 //!
-//! With `std`, sines, exponentials, logarithms, powers and the like are those of the platform's mathematical library. They differ in their last place from one
-//! platform, and from one release of it, to another, and so does every step whose declaration or discretization has such functions in it. Steps without them,
-//! such as those of tops by a cost with (F − I), stay the same.
+//! With `std`, sines, exponentials, logarithms, powers and the like are those of the platform's mathematical library.
+//! They differ in their last place between platforms, and between releases of one. So does every step whose declaration
+//! or discretization uses such functions. Steps without them, such as those of tops by a cost with (F − I), stay the
+//! same.
 #![cfg_attr(docsrs, feature(doc_cfg))]
 #![no_std]
 #![forbid(unsafe_code)]

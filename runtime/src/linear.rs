@@ -10,12 +10,14 @@ use core::array::from_fn;
 use nalgebra::{ArrayStorage, SMatrix, SVector};
 use num_traits::Zero;
 
-/// x of A x = b, and the sign of det A in the lanes in which A is regular; `None` where there is no such lane.
+/// x of A x = b, and the sign of det A in the lanes in which A is regular. `None` if there is no such lane.
 pub type Solution<T, const M: usize> = Option<(SVector<T, M>, Orientation)>;
 
-/// Runs `$body` for `$k` from 0 to `$n` − 1, or backwards; each of the first four times is code of its own, in which indices are constants.
+/// Runs `$body` for `$k` from 0 to `$n` − 1, or backwards. Each of the first four times is code of its own, in which
+/// indices are constants.
 ///
-/// Otherwise a loop with bounds that depend on it stays a loop for lanes, with the matrix in memory: eight free bodies took half as long again.
+/// Otherwise a loop with bounds that depend on it stays a loop for lanes, with the matrix in memory. Eight free bodies
+/// then took half as long again.
 macro_rules! unrolled {
     ($k:ident in 0..$n:ident $body:block) => {
         unrolled!(@ $k $n $body 0 1 2 3);
@@ -106,7 +108,8 @@ pub fn solve_linear<T: Scalar, const M: usize>(a: &SMatrix<T, M, M>, b: &SVector
     orientation.lanes::<T>().all().then_some(x)
 }
 
-/// x of A x = b and the sign of det A, by cofactors or by elimination with pivoting; `None` where A is singular or not finite in all lanes.
+/// x of A x = b and the sign of det A, by cofactors or by elimination with pivoting. `None` if A is singular or not
+/// finite in all lanes.
 #[inline(always)]
 pub fn solve_dense<T: Scalar, const M: usize>(a: &SMatrix<T, M, M>, b: &SVector<T, M>) -> Solution<T, M> {
     if !matches!(M, 3 | 6) {
@@ -174,9 +177,10 @@ pub(crate) fn eliminated<T: Scalar, const M: usize>(rows: [[T; M]; M], b: &SVect
     Some((SVector::from_fn(|i, _| unknowns[i][0]), orientation))
 }
 
-/// x of A x = b and the sign of det A for a symmetric matrix. A = L D Lᵀ without pivoting where A is definite, which is stable (Higham,
-/// *Accuracy and Stability of Numerical Algorithms*, theorem 10.3): M³/6 + 3M²/2 multiplications to leading orders and M divisions, about
-/// half the work of [`solve_dense`] for large M, and no exchanges of rows. Where the pivots differ in sign, [`solve_dense`] takes over.
+/// x of A x = b and the sign of det A for a symmetric matrix. Where A is definite, A = L D Lᵀ needs no pivoting. This
+/// is stable (Higham, *Accuracy and Stability of Numerical Algorithms*, theorem 10.3). To leading orders it takes M³/6
+/// + 3M²/2 multiplications and M divisions. For large M this is about half the work of [`solve_dense`], and rows are
+/// not exchanged. Where the pivots differ in sign, [`solve_dense`] takes over.
 #[inline]
 pub fn solve_symmetric<T: Scalar, const M: usize>(a: &SMatrix<T, M, M>, b: &SVector<T, M>) -> Solution<T, M> {
     let mut l = rows(a);

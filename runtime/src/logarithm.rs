@@ -70,8 +70,9 @@ fn inverse_hyperbolic_tangent<T: Real, const N: usize>(x: &SMatrix<T, N, N>) -> 
     Some(sum)
 }
 
-/// The principal square root X by X ← (X + Y⁻¹)/2, Y ← (Y + X⁻¹)/2 from A and I, where Y is X A⁻¹; `None` if it does not converge. The
-/// product form of the iteration, which needs one inverse less, loses the square of the digits for angles near π.
+/// The principal square root X by X ← (X + Y⁻¹)/2, Y ← (Y + X⁻¹)/2 from A and I, where Y is X A⁻¹. `None` if the
+/// iteration does not converge. The product form of the iteration, which needs one inverse less, loses the square of
+/// the digits for angles near π.
 fn square_root<T: Real, const N: usize>(a: &SMatrix<T, N, N>) -> Option<SMatrix<T, N, N>> {
     let identity = SMatrix::identity();
     let (mut x, mut y) = (*a, identity);

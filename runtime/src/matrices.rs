@@ -81,7 +81,7 @@ fn determinant_of_one<T: Real, const N: usize>(mut a: [[T; N]; N]) -> T {
 
 /// Blocks of matrices.
 pub trait Blocks<T> {
-    /// The block from row i and column j on; what lies outside is zero.
+    /// The block from row i and column j on; entries outside are zero.
     fn block<const R: usize, const C: usize>(&self, i: usize, j: usize) -> SMatrix<T, R, C>;
 }
 
@@ -134,7 +134,8 @@ pub fn axial<T: Scalar>(a: &SMatrix<T, 3, 3>) -> SVector<T, 3> {
     columns([[a32 - a23, a13 - a31, a21 - a12]])
 }
 
-/// Σ x_k E_k in the basis E_ji − E_ij of so(n), i < j in the order (12) (13) … (n−1 n): the rotation of axis i towards axis j.
+/// Σ x_k E_k in the basis E_ji − E_ij of so(n): the rotation of axis i towards axis j. The order of i < j is (12) (13)
+/// … (n−1 n).
 #[inline]
 pub fn skew<T: Scalar, const M: usize, const N: usize>(x: &SVector<T, M>) -> SMatrix<T, N, N> {
     let mut z = [[T::zero(); N]; N];

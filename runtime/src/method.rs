@@ -41,10 +41,11 @@ use core::fmt::Debug;
 /// # Ok::<(), clebsch::Error>(())
 /// ```
 ///
-/// The action, the momentum map, the potential and the conserved momenta are those of the system; the discrete Lagrangian and its Legendre transforms
-/// belong to a method. `#[derive(Clebsch)]` implements this trait for the struct of each key `method`, with defaults for the dials that it does not name.
+/// The action, the momentum map, the potential and the conserved momenta are those of the system. The discrete
+/// Lagrangian and its Legendre transforms belong to a method. `#[derive(Clebsch)]` implements this trait for the struct
+/// of each key `method`, with defaults for the dials that it does not name.
 pub trait Method<S: Clebsch>: Sized {
-    /// What no step of one size changes: computed once per stepper.
+    /// The constants of all steps of one size, computed once per stepper.
     type Constants: Clone + Debug;
     /// How a step is made of its parts.
     #[doc(hidden)]
@@ -57,7 +58,7 @@ pub trait Method<S: Clebsch>: Sized {
     /// The derivation of the steps, as [`Clebsch::DERIVATION`].
     const DERIVATION: &'static str;
 
-    /// Checks the parameters and computes what no step changes.
+    /// Checks the parameters and computes the constants.
     ///
     /// # Errors
     /// [`Error::NotFinite`], [`Error::NotSymmetric`] or [`Error::SingularKineticEnergy`].

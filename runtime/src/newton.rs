@@ -1,4 +1,4 @@
-//! What Newton's method on a path of least action and on a plan of least price have in common.
+//! The common part of Newton's method for a path of least action and for a plan of least price.
 //!
 //! Both eliminate a block tridiagonal Hessian from the end, pivot by pivot. Both leave Newton's method where pivots are not definite or it stalls.
 
@@ -17,7 +17,8 @@ pub(crate) use spectrum::{Equilibrated, Spectrum};
 use crate::Real;
 use crate::space::larger;
 
-/// How a sweep takes the Hessian, and what it adds to its diagonal: multiples of a stiffness that path or plan have by themselves.
+/// How a sweep takes the Hessian, and the shift of its diagonal. The shift is a multiple of a stiffness that the path
+/// or plan itself has.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub(crate) struct Curvature<T> {
     /// Whether eigenvalues of the wrong sign are turned over, so that steps go downhill. Else steps go to the critical point of the model.

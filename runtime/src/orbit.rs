@@ -36,8 +36,9 @@ pub fn length_defect<T: Scalar, const N: usize>(q: &SVector<T, N>) -> T {
     (q.iter().fold(T::zero(), |sum, &x| sum + x * x) - T::one()).abs()
 }
 
-/// R, brought back to the next rotation by one step R(3I − RᵀR)/2 of Newton and Schulz, where |Re|², e = (1, …, 1), is off N by more than
-/// 8Nε. Without it, rounding of products would add up like √steps. |Re|² costs N² additions that nothing waits for; corrections are rare.
+/// R, brought back to the next rotation where |Re|², e = (1, …, 1), is off N by more than 8Nε. It takes one step R(3I −
+/// RᵀR)/2 of Newton and Schulz. Without it, rounding of products would add up like √steps. |Re|² costs N² additions
+/// that nothing waits for; corrections are rare.
 ///
 /// Source: Higham, *Functions of Matrices*, section 8.3.
 #[inline(always)]
@@ -52,7 +53,8 @@ pub fn orthogonal<T: Scalar, const N: usize>(r: SMatrix<T, N, N>) -> SMatrix<T, 
     r.zip_map(&change, |entry, change| T::select(is_off, entry + change, entry))
 }
 
-/// The same for R + δ, where δ is what sums have left: the correction is added as the step was, and its rest is left in turn.
+/// The same for R + δ, where δ is the rounding error of sums. The correction is added as the step was, and its rounding
+/// error is returned in turn.
 #[inline(always)]
 pub fn orthogonal_with_rest<T: Scalar, const N: usize>(
     r: SMatrix<T, N, N>,
@@ -77,7 +79,7 @@ fn is_off_rotations<T: Scalar, const N: usize>(r: &SMatrix<T, N, N>) -> T::Mask 
     (T::from_ratio(8, 1) * T::EPSILON * expected).below((square - expected).abs())
 }
 
-/// R(I − RᵀR − Rᵀδ − δᵀR)/2, what takes R + δ to the rotation next to it.
+/// R(I − RᵀR − Rᵀδ − δᵀR)/2, the correction from R + δ to the nearest rotation.
 #[cold]
 #[inline(never)]
 fn to_rotations<T: Scalar, const N: usize>(r: &SMatrix<T, N, N>, rest: &SMatrix<T, N, N>) -> SMatrix<T, N, N> {
@@ -91,7 +93,7 @@ fn to_rotations<T: Scalar, const N: usize>(r: &SMatrix<T, N, N>, rest: &SMatrix<
     SMatrix::from_fn(|i, j| (0..N).fold(T::zero(), |sum, k| sum + r[(i, k)] * missing[(k, j)]))
 }
 
-/// `sum` + `change` with the rest, in the lanes of the mask.
+/// `sum` + `change` with its rounding error, in the lanes of the mask.
 fn accumulate_where<T: Scalar, const R: usize, const C: usize>(
     mask: T::Mask,
     sum: SMatrix<T, R, C>,

@@ -1,4 +1,4 @@
-//! What a stepper checks and computes from the fields of a struct, once.
+//! The values that a stepper checks and computes from the fields of a struct, once.
 
 use crate::linear::{eliminate, power_of_two_near, rows};
 use crate::orientation::Orientation;
@@ -187,8 +187,8 @@ pub fn annihilator_defect<T: Scalar, const M: usize, const D: usize>(rows: &[[T;
     T::from_lanes(|lane| length(&rest(&orthonormal(rows.lane(lane)), &mu.lane(lane))))
 }
 
-/// The vector of the span of `rows` that is nearest to `mu`; `mu` itself, to the bit, where it lies there exactly. Made twice, for what the
-/// first time leaves is round-off of `mu`, not of the result.
+/// The vector of the span of `rows` that is nearest to `mu`; `mu` itself, to the bit, where it lies there exactly. The
+/// projection is made twice: the first leaves round-off of `mu`, not of the result.
 pub fn annihilator_projection<T: Scalar, const M: usize, const D: usize>(
     rows: &[[T; M]; D],
     mu: &SVector<T, M>,
@@ -200,8 +200,8 @@ pub fn annihilator_projection<T: Scalar, const M: usize, const D: usize>(
     })
 }
 
-/// An orthonormal basis of the span of `rows`, zeros for the rows that depend on those before them. Modified Gram–Schmidt, each row made
-/// orthogonal twice. A row of which less than √ε is left counts as dependent.
+/// An orthonormal basis of the span of `rows`, zeros for the rows that depend on those before them. Modified
+/// Gram–Schmidt, each row made orthogonal twice. A row counts as dependent if less than √ε of it remains.
 fn orthonormal<T: Real, const M: usize, const D: usize>(mut basis: [[T; M]; D]) -> [[T; M]; D] {
     for k in 0..D {
         let (before, others) = basis.split_at_mut(k);
@@ -218,7 +218,7 @@ fn orthonormal<T: Real, const M: usize, const D: usize>(mut basis: [[T; M]; D]) 
     basis
 }
 
-/// What is left of `mu` without its components along `basis`.
+/// `mu` without its components along `basis`.
 fn rest<T: Real, const M: usize>(basis: &[[T; M]], mu: &SVector<T, M>) -> [T; M] {
     let mut rest: [T; M] = from_fn(|i| mu[i]);
     basis.iter().for_each(|unit| remove(&mut rest, unit));

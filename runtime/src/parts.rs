@@ -11,19 +11,19 @@ pub(crate) type Q<S> = <S as Clebsch>::Configuration;
 pub(crate) type F<S> = <S as Clebsch>::Element;
 pub(crate) type Mu<S> = <S as Clebsch>::Momentum;
 pub(crate) type U<S> = <S as Clebsch>::Input;
-/// What no step of S changes.
+/// The constants of S, which no step changes.
 pub(crate) type C<S> = <S as Clebsch>::Constants;
 /// The coordinates that a solve finds.
 type X<S, M> = <S as Parts<M>>::Coordinates;
 
-/// What all substeps of a step share: how q moves, and what the step is made of.
+/// The parts that all substeps of a step share: how q moves, and the types of a step.
 #[allow(unused_variables, reason = "provided methods take what others need")]
 pub trait Parts<M: Method<Self> = Declared>: Clebsch {
     /// How a step adds to q and N.
     type Sums: Sums;
     /// x, the coordinates of the group element that a solve finds.
     type Coordinates;
-    /// What moves q and N.
+    /// The data that moves q and N.
     type Moves: Moves<Self::Coordinates, F<Self>>;
 
     /// Whether a step has so few operations that it is inlined wherever it is called: a call hands states through memory.
@@ -38,7 +38,7 @@ pub trait Parts<M: Method<Self> = Declared>: Clebsch {
     /// F = I + D.
     fn element(d: &F<Self>) -> F<Self>;
 
-    /// What of x and D the move takes; D is made where it is needed.
+    /// The motion: D, x, or both. `d` computes D only if the motion needs it.
     #[inline(always)]
     fn motion(&self, x: &Self::Coordinates, d: impl FnOnce() -> F<Self>) -> MotionOf<Self, M> {
         Self::Moves::of(x, d)
@@ -60,7 +60,7 @@ pub trait Parts<M: Method<Self> = Declared>: Clebsch {
     }
 }
 
-/// What moves q and N: the increment D = F − I, the coordinates x where those are enough, or both.
+/// The data that moves q and N: the increment D = F − I, the coordinates x if they are enough, or both.
 pub trait Moves<X, D> {
     /// D, x, or both.
     type Motion;
@@ -69,7 +69,7 @@ pub trait Moves<X, D> {
     fn of(x: &X, d: impl FnOnce() -> D) -> Self::Motion;
 }
 
-/// One type for each: what it takes, and how that is made of x and of what makes D.
+/// One type for each line: its motion, and how the motion is made of x and of the function that makes D.
 macro_rules! moves {
     ($($doc:literal $name:ident: $motion:ty, |$x:pat_param, $d:pat_param| $made:expr;)*) => { $(
         #[doc = $doc]
@@ -92,22 +92,23 @@ moves! {
     "q moves by x, N by D." ByBoth: (X, D), |x, d| (*x, d());
 }
 
-/// What moves q and N in a step of S by M.
+/// The data that moves q and N in a step of S by M.
 pub type MotionOf<S, M = Declared> =
     <<S as Parts<M>>::Moves as Moves<<S as Parts<M>>::Coordinates, <S as Clebsch>::Element>>::Motion;
 
 /// The coordinates that a solve finds.
 pub type Solved<X> = Result<X, Error>;
 
-/// What rounding has taken off q, where sums are compensated.
+/// The rounding error of q so far, where sums are compensated.
 pub type RestOf<S, M = Declared> =
     <<S as Parts<M>>::Sums as Sums>::Rest<<S as Clebsch>::Scalar, <S as Clebsch>::Configuration>;
 
-/// The parts of substep K: 0 for a step that is one, 0 and 1 for a step and its adjoint. The last one can be inverted, `inverse_legendre`.
-/// Every time is that at which the step starts, of which this is a substep. A part that a declaration does not have is `None` and costs nothing.
+/// The parts of substep K: 0 for a step that is one, 0 and 1 for a step and its adjoint. The last one can be inverted,
+/// `inverse_legendre`. Every time is that at which the step starts, not the substep. A part that a declaration does not
+/// have is `None` and costs nothing.
 #[allow(unused_variables, reason = "provided methods take what others need")]
 pub trait Substep<const K: usize, M: Method<Self> = Declared>: Parts<M> {
-    /// Whether what acts at the end of a substep is what acts at its start, so that one kick serves both.
+    /// Whether the same kick acts at the end of a substep and at its start, so that it is computed once.
     const ENDS_AS_IT_STARTS: bool = false;
 
     /// J(q, ∂U₀), the kick at the start, with −r(q, I) where sums are not compensated.
@@ -122,7 +123,7 @@ pub trait Substep<const K: usize, M: Method<Self> = Declared>: Parts<M> {
         if Self::ENDS_AS_IT_STARTS { self.start_kick(c, t, q) } else { None }
     }
 
-    /// −r(q, I): what a coupled cost, or one with a term that is linear in the velocity, gives at F = I.
+    /// −r(q, I): the value at F = I of a coupled cost, or of a cost with a term that is linear in the velocity.
     #[inline(always)]
     fn rest(&self, c: &M::Constants, t: T<Self>, q: &Q<Self>) -> Option<Mu<Self>> {
         None
@@ -184,12 +185,12 @@ pub trait Substep<const K: usize, M: Method<Self> = Declared>: Parts<M> {
     }
 }
 
-/// Free motions that are exact: a step follows one, and what one keeps is made once for all steps of it.
+/// Exact free motions: a step follows one. The constants of the motion are computed once for all of its steps.
 pub trait FreeMotion<M: Method<Self> = Declared>: Parts<M> {
-    /// What the motion with a momentum keeps.
+    /// The constants of the motion with a momentum.
     type Kept: Space<T<Self>>;
 
-    /// What the motion with this momentum keeps.
+    /// The constants of the motion with this momentum.
     fn kept(&self, c: &M::Constants, mu: &Mu<Self>) -> Self::Kept;
 
     /// The coordinates x of this motion, and M after it where the motion gives both at once.
@@ -208,7 +209,7 @@ pub trait SplitKicks<M: Method<Self> = Declared>: Parts<M> {
     fn kick_gradient(&self, c: &M::Constants, t: T<Self>, q: &Q<Self>, weight: T<Self>, gradient: T<Self>) -> Q<Self>;
 }
 
-/// Hamilton's equations of (q, p), N numbers of which the first half are those of q.
+/// Hamilton's equations of (q, p): N numbers, the first half for q.
 pub trait HamiltonEquations<const N: usize, M: Method<Self> = Declared>: Parts<M> {
     /// Sweeps end where they change q and p by less than this part of them; 0 where only rounding ends them.
     const TOLERANCE: f64 = 0.0;
@@ -250,7 +251,8 @@ pub trait GreatCircles<M: Method<Self> = Declared>: Substep<0, M> {
 
 /// A step that has been differentiated.
 pub trait Varied<const M: usize>: Parts {
-    /// The derivatives of F⁻ℓd and of F⁺ℓd with respect to what is fixed during a step; `()` where they are not asked for.
+    /// The derivatives of F⁻ℓd and of F⁺ℓd with respect to the quantities that are fixed during a step; `()` if they
+    /// are not asked for.
     type Slopes;
 }
 
@@ -265,6 +267,6 @@ pub trait VariedSubstep<const K: usize, const M: usize, B: Method<Self> = Declar
     /// F⁺ℓd with the derivatives of both momenta, along motions that leave F as it is and along those of q⁺ alone.
     fn carried(&self, c: &B::Constants, t: T<Self>, ends: Ends<'_, Self>) -> Carried<T<Self>, M>;
 
-    /// ∂F⁻ℓd and ∂F⁺ℓd with respect to what is fixed during a step.
+    /// ∂F⁻ℓd and ∂F⁺ℓd with respect to the quantities that are fixed during a step.
     fn slopes(&self, c: &B::Constants, t: T<Self>, ends: Ends<'_, Self>) -> Self::Slopes;
 }

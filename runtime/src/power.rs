@@ -3,8 +3,8 @@
 //! ```text
 //! Φ_F(q)_i = φ_{F_i}(q_i),    ℓd = Σ_i k(h, q_i, F_i) − h V(q),    V(q) = Σ of terms
 //! ```
-//! The momentum equation of a step uncouples, so that a step kicks all sites, moves one after the other, and kicks them again. A site is a
-//! system of its own; what is here is the same for every power and does not grow with N.
+//! The momentum equation of a step uncouples, so that a step kicks all sites, moves one after the other, and kicks them
+//! again. A site is a system of its own. The code here is the same for every power and does not grow with N.
 
 mod formulas;
 
@@ -21,14 +21,14 @@ pub type Point<P, const N: usize> = <<P as Power<N>>::Site as Clebsch>::Configur
 pub type Motion<P, const N: usize> = <<P as Power<N>>::Site as Clebsch>::Element;
 /// The momentum of a site.
 pub type SiteMomentum<P, const N: usize> = <<P as Power<N>>::Site as Clebsch>::Momentum;
-/// What no step of a power with these sites changes.
+/// The constants of a power with these sites.
 pub type Constants<P, const N: usize> = PowerConstants<T<P>, scheme::Constants<<P as Power<N>>::Site>>;
 /// How a site is stepped.
 pub(crate) type SiteScheme<P, const N: usize> = <<P as Power<N>>::Site as Clebsch>::Scheme;
 /// The representing matrix of the momentum of a site.
 type MomentumMatrix<P, const N: usize> = <<P as Power<N>>::Site as Clebsch>::MomentumMatrix;
 
-/// What no step of a power changes.
+/// The constants of all steps of a power.
 #[derive(Clone, Copy, Debug)]
 pub struct PowerConstants<T, C> {
     pub(crate) h: T,
@@ -55,14 +55,14 @@ fn remainder<const N: usize>(index: isize) -> usize {
     index.checked_rem_euclid(N as isize).unwrap_or(0) as usize
 }
 
-/// What no step of a site changes.
+/// The constants of all steps of a site.
 fn site_constants<S: Clebsch>(site: &S, h: S::Scalar) -> Result<scheme::Constants<S>, Error> {
     S::Scheme::constants(site, h)
 }
 
 /// N equal sites, as `#[derive(Clebsch)]` declares them by a const generic N.
 ///
-/// Only what ties the sites together is generated; everything else is made of [`site`](Self::site).
+/// Only the code that ties the sites together is generated; everything else comes from [`site`](Self::site).
 ///
 /// ```
 /// # use clebsch::{Clebsch, Power};
@@ -132,7 +132,7 @@ pub trait Power<const N: usize>:
         Ok(PowerConstants { h, site: site_constants(&self.site(0), h)? })
     }
 
-    /// What each site gives.
+    /// The result of `give` for each site.
     #[inline(always)]
     fn each<R>(&self, mut give: impl FnMut(&Self::Site, usize) -> R) -> [R; N] {
         from_fn(|i| give(&self.site(i), i))
@@ -191,7 +191,7 @@ pub trait Power<const N: usize>:
         sum
     }
 
-    /// What a site gives with its constants, which are made anew where sites differ.
+    /// The result of `give` for a site and its constants; where sites differ, the constants are computed for each.
     #[inline(always)]
     fn at_site<R>(
         &self,

@@ -5,7 +5,7 @@ use core::ops::{BitAnd, BitOr, BitXor, Neg, Not};
 use nalgebra::{ClosedAddAssign, ClosedDivAssign, ClosedMulAssign, ClosedSubAssign};
 use num_traits::{One, Zero};
 
-/// What declarations can be integrated in: `f32` and `f64`, several of them side by side as lanes, numbers that carry derivatives.
+/// The number types of declarations: `f32` and `f64`, several of them as lanes, and numbers that carry derivatives.
 ///
 /// Everything that declarations can write about a scalar is a method of this trait. Angles are in radians. Functions outside their domain give
 /// NaN, as for `f64`; the stepper turns that into [`Error::NotFinite`](crate::Error::NotFinite).
@@ -38,7 +38,7 @@ pub trait Scalar:
 {
     /// A single number: the type itself, or that of one lane.
     type Lane: Real;
-    /// What a comparison answers: `bool`, or one for each lane.
+    /// The answer of a comparison: `bool`, or one for each lane.
     type Mask: Mask;
     /// The number of lanes: 1 for a single number, at most 16.
     const LANES: usize;
@@ -62,7 +62,7 @@ pub trait Scalar:
 
     /// The number in a lane below [`LANES`](Self::LANES); NaN where lanes have none of that number.
     fn lane(self, lane: usize) -> Self::Lane;
-    /// What has `value(i)` in lane i.
+    /// The number with `value(i)` in lane i.
     fn from_lanes(value: impl FnMut(usize) -> Self::Lane) -> Self;
     /// Where x < `other`; nowhere where either is NaN.
     fn below(self, other: Self) -> Self::Mask;
@@ -145,7 +145,7 @@ pub trait Scalar:
 pub trait Mask:
     Copy + Debug + BitAnd<Output = Self> + BitOr<Output = Self> + BitXor<Output = Self> + Not<Output = Self>
 {
-    /// True in the lanes whose bit is set, of which lane 0 has the lowest.
+    /// True in the lanes whose bit is set; lane 0 has the lowest bit.
     fn from_bits(bits: u16) -> Self;
     /// One bit for each lane, that of lane 0 the lowest.
     fn bits(self) -> u16;
@@ -192,7 +192,7 @@ impl Mask for bool {
     }
 }
 
-/// A single number, with an order: what has no lanes.
+/// A single number, without lanes and with an order.
 ///
 /// Implemented for every [`Scalar`] that is one.
 ///
@@ -209,7 +209,8 @@ pub trait Real: Scalar<Lane = Self, Mask = bool> + PartialOrd {}
 
 impl<T: Scalar<Lane = T, Mask = bool> + PartialOrd> Real for T {}
 
-/// What an implementation of [`Scalar`](crate::Scalar) for a single number, which is its own only lane, says of lanes.
+/// The functions of lanes in an implementation of [`Scalar`](crate::Scalar) for a single number, which is its own only
+/// lane.
 #[doc(hidden)]
 #[macro_export]
 macro_rules! one_number {

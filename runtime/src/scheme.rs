@@ -69,7 +69,7 @@ use core::marker::PhantomData;
 pub use composed::{Sizes, Stages, compose};
 pub use split::{Kicks, split};
 
-/// What a declaration names to say how it is stepped.
+/// The types by which a declaration names its scheme.
 pub mod kinds {
     pub use super::adjoint_pair::AdjointPair;
     pub use super::collocated::Collocated;
@@ -83,28 +83,28 @@ pub mod kinds {
     pub use super::unstepped::Unstepped;
 }
 
-/// What a state of S holds of its momentum.
+/// The form in which a state of S stores its momentum.
 pub type Held<S, M = Declared> = <<M as Method<S>>::Scheme as Scheme<S, M>>::Held;
-/// What one step of S leaves to the next.
+/// The data that one step of S passes to the next.
 pub type Left<S, M = Declared> = <<M as Method<S>>::Scheme as Scheme<S, M>>::Left;
-/// What no step of S by M changes.
+/// The constants of the steps of S by M.
 pub type Constants<S, M = Declared> = <<M as Method<S>>::Scheme as Scheme<S, M>>::Constants;
-/// What a state consists of: q, what is held of N, and what the last step has left.
+/// The components of a state: q, the stored form of N, and the data that the last step passes on.
 pub type Parted<S, P, M = Declared> = (Q<S>, <P as Scheme<S, M>>::Held, <P as Scheme<S, M>>::Left);
 /// The state after steps, or why there is none.
 pub type Stepped<S, P, M = Declared> = Result<Parted<S, P, M>, Error>;
-/// What the state before a step consists of.
+/// The components of the state before a step.
 pub type Before<'a, S, P, M = Declared> = (&'a Q<S>, &'a <P as Scheme<S, M>>::Held, &'a <P as Scheme<S, M>>::Left);
 /// (q, p)
 pub type Pair<S> = (Q<S>, Q<S>);
 /// The place of a step by the scheme P.
 pub type AtOf<'a, S, P, M = Declared> = At<'a, S, M, <P as Scheme<S, M>>::Constants>;
 
-/// What all parts of a step take: the system, what no step changes, and the time at which the step starts.
+/// The arguments that all parts of a step share: the system, the constants, and the time at which the step starts.
 pub struct At<'a, S: Clebsch, M: Method<S> = Declared, C = <M as Method<S>>::Constants> {
     /// The system.
     pub system: &'a S,
-    /// What no step changes.
+    /// The constants, which no step changes.
     pub constants: &'a C,
     /// t
     pub t: S::Scalar,
@@ -123,35 +123,36 @@ copy!(At<'_, S, M, C> where [S: Clebsch, M: Method<S>, C]);
 
 /// How a system S is stepped by the method M.
 pub trait Scheme<S: Clebsch, M: Method<S> = Declared>: Sized {
-    /// What a state holds of its momentum: N itself, or, of a point on a large sphere, the covector w ⊥ q with N = J(q, w), n numbers for n(n − 1)/2.
+    /// The stored form of the momentum. It is N itself, except for a point on a large sphere. There it is the covector
+    /// w ⊥ q with N = J(q, w): n numbers for n(n − 1)/2.
     type Held: Space<S::Scalar>;
-    /// What one step leaves to the next: the kick that the end of one and the start of the other share, or what a free motion keeps, and what rounding
-    /// has taken off q and N where sums are compensated.
+    /// The data that one step passes to the next. It is the kick that the end of one step and the start of the next
+    /// share, or the constants of a free motion. With compensated sums the rounding errors of q and N come too.
     type Left: Space<S::Scalar>;
-    /// What no step changes.
+    /// The constants, which no step changes.
     type Constants: Clone + Debug;
 
-    /// Checks the parameters and computes what no step of the size h changes.
+    /// Checks the parameters and computes the constants of steps of the size h.
     fn constants(system: &S, h: S::Scalar) -> Result<Self::Constants, Error>;
 
     /// The constants of one step of the full size.
     fn whole(constants: &Self::Constants) -> &M::Constants;
 
-    /// What a state at q with the momentum μ holds of it.
+    /// The stored form of the momentum μ of a state at q.
     fn held(q: &Q<S>, mu: &Mu<S>) -> Self::Held;
 
     /// The momentum of a state at q that holds this of it; the inverse of [`held`](Self::held) on 𝔤_q^⊥.
     fn momentum(q: &Q<S>, held: &Self::Held) -> Mu<S>;
 
-    /// What the first step from q takes, at the time of q.
+    /// The data that the first step from q takes, at the time of q.
     fn left(at: AtOf<'_, S, Self, M>, q: &Q<S>, mu: &Mu<S>) -> Self::Left;
 
-    /// The same for steps that go on where others, of another size, have ended: what these have left that does not depend on their size stays.
+    /// The same for steps that continue others of another size: data that does not depend on the size stays.
     fn left_after(at: AtOf<'_, S, Self, M>, q: &Q<S>, mu: &Mu<S>, _left: &Self::Left) -> Self::Left {
         Self::left(at, q, mu)
     }
 
-    /// What a step has left, for a step that is `ratio` times as long.
+    /// The data that a step passes on, for a step that is `ratio` times as long.
     #[inline(always)]
     fn scaled(left: Self::Left, _ratio: S::Scalar) -> Self::Left {
         left
@@ -172,7 +173,8 @@ pub trait Scheme<S: Clebsch, M: Method<S> = Declared>: Sized {
         Ok(())
     }
 
-    /// `steps` steps of the size h, as [`step`](Self::step) makes them but for rounding: the end of one step and the start of the next may be one.
+    /// `steps` steps of the size h. They differ from calls of [`step`](Self::step) only by rounding: the end of one
+    /// step and the start of the next may be one.
     #[inline]
     fn steps(
         at: AtOf<'_, S, Self, M>,

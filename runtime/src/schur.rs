@@ -69,7 +69,8 @@ impl<T: Real, const N: usize> Schur<T, N> {
         start
     }
 
-    /// One sweep over rows `start` to `end`, with the two eigenvalues of its last two rows as shifts, or with others that lead out of cycles.
+    /// One sweep over rows `start` to `end`. The shifts are the two eigenvalues of its last two rows, or others that
+    /// lead out of cycles.
     fn sweep(&mut self, start: usize, end: usize, is_exceptional: bool) {
         let at = |i: usize, j: usize| entry(&self.t, i, j);
         let (last, before) = (end - 1, end - 2);
@@ -105,7 +106,8 @@ impl<T: Real, const N: usize> Schur<T, N> {
         rows.filter_map(|row| row.get_mut(column)).for_each(|entry| *entry = T::zero());
     }
 
-    /// T ← P T P and Q ← Q P for the reflection P of W rows from `at` on: in columns from `left` on, and in rows before `bottom`.
+    /// T ← P T P and Q ← Q P for the reflection P of W rows from `at` on. It acts on columns from `left` on, and on
+    /// rows before `bottom`.
     fn reflect<const W: usize>(&mut self, at: usize, reflection: Reflection<T, W>, left: usize, bottom: usize) {
         let Reflection { v, weight } = reflection;
         if let Some(rows) = self.t.get_mut(at..).and_then(<[_]>::first_chunk_mut::<W>) {

@@ -1,13 +1,14 @@
 //! Points on spheres in (q, w), where the momentum is M = wqᵀ − qwᵀ: a step in n numbers in place of n(n − 1)/2.
 //!
-//! w is the velocity times the inertia, perpendicular to q. Each kick takes off what rounding has left
-//! of it along q. Otherwise the errors of q·w and of |q| grow exponentially.
+//! w is the velocity times the inertia, perpendicular to q. Each kick removes the component of w along q, which comes
+//! from rounding. Otherwise the errors of q·w and of |q| grow exponentially.
 
 use crate::matrices::skew_times;
 use crate::{Error, Mask, Scalar};
 use nalgebra::SVector;
 
-/// w = Mq/|q|² of the momentum with the components μ, without what rounding leaves of it along q; |q|² is off one by rounding alone.
+/// w = Mq/|q|² of the momentum with the components μ, without its component along q, which is rounding. |q|² differs
+/// from one by rounding alone.
 #[inline]
 pub fn tangent<T: Scalar, const N: usize, const M: usize>(q: &SVector<T, N>, mu: &SVector<T, M>) -> SVector<T, N> {
     let missing = T::one() - q.dot(q);
@@ -16,14 +17,14 @@ pub fn tangent<T: Scalar, const N: usize, const M: usize>(q: &SVector<T, N>, mu:
     w * (T::one() + missing)
 }
 
-/// Adds `weight` g to w, and takes off what of it is along q.
+/// Adds `weight` g to w, and removes the component of w along q.
 #[inline]
 pub fn push<T: Scalar, const N: usize>(q: &SVector<T, N>, w: &mut SVector<T, N>, gradient: &SVector<T, N>, weight: T) {
     w.zip_apply(gradient, |w, g| *w += g * weight);
     straighten(q, w);
 }
 
-/// Takes off w what of it is along q.
+/// Removes the component of w along q.
 #[inline]
 fn straighten<T: Scalar, const N: usize>(q: &SVector<T, N>, w: &mut SVector<T, N>) {
     let along = q.dot(w);
@@ -42,8 +43,8 @@ fn mend<T: Scalar, const N: usize>(q: &mut SVector<T, N>, w: &mut SVector<T, N>)
     }
 }
 
-/// q⁺ = cq + aw and w⁺ = cw − a|w|²q with c = √(1 − a²|w|²), along a great circle by the angle with the sine a|w|; a is h/κ, κ the inertia.
-/// Lanes without a solution are NaN. Rounding is taken off the length of q⁺.
+/// q⁺ = cq + aw and w⁺ = cw − a|w|²q with c = √(1 − a²|w|²), along a great circle. The angle has the sine a|w|. Here a
+/// is h/κ, with the inertia κ. Lanes without a solution are NaN. Rounding is taken off the length of q⁺.
 ///
 /// # Errors
 /// Where it exists in no lane: [`Error::Unsolvable`] with 1/|sin θ|, the solvable fraction of the momentum; [`Error::NotFinite`]. Nothing has moved then.
@@ -73,8 +74,9 @@ fn cosine_of<T: Scalar>(sine_squared: T) -> Result<T, Error> {
     Ok((T::one() - sine_squared).sqrt())
 }
 
-/// The same of a point that nothing pushes, whose momentum M = vuᵀ − uvᵀ stays, with w = Mq: q stays in the plane of u and v, what rounding puts beside it
-/// shrinks by c in each step. A point that knows its q and w alone meets the same rounding on each round, and its plane turns away like the number of steps.
+/// The same for a point that nothing pushes, with w = Mq and the constant momentum M = vuᵀ − uvᵀ. q stays in the plane
+/// of u and v: each step multiplies its rounding error out of the plane by c. A point that knows only its q and w meets
+/// the same rounding on each round. Its plane then turns away in proportion to the number of steps.
 #[inline]
 pub fn turn_freely<T: Scalar, const N: usize>(
     a: T,
@@ -89,8 +91,9 @@ pub fn turn_freely<T: Scalar, const N: usize>(
     Ok(())
 }
 
-/// q and p, both turned by F with the momentum M = pqᵀ − qpᵀ, along a great circle of a sphere of any radius: the plane of q and p turns by the angle with the
-/// sine a|M|, a is h/κ, κ the inertia. What p has along q stays along q. Lanes without a solution are NaN.
+/// q and p, both turned by F with the momentum M = pqᵀ − qpᵀ, along a great circle of a sphere of any radius. The plane
+/// of q and p turns by the angle with the sine a|M|. Here a is h/κ, with the inertia κ. The component of p along q
+/// stays along q. Lanes without a solution are NaN.
 ///
 /// ```text
 /// p = βq + w, w ⊥ q:    q⁺ = cq + a|q|²w,    p⁺ = βq⁺ + cw − a|w|²q,    c² = 1 − a²|q|²|w|²

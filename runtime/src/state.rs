@@ -1,4 +1,4 @@
-//! What a step maps: (q, N), or (q, p) on the cotangent bundle.
+//! The states that a step maps: (q, N), or (q, p) on the cotangent bundle.
 
 use crate::fields::{copy, getters};
 use crate::parts::{Mu, Q, T};
@@ -8,10 +8,11 @@ use core::fmt::{self, Debug, DebugStruct, Formatter};
 
 /// A configuration q with its momentum N, checked by [`Stepper::state`](crate::Stepper::state).
 ///
-/// N is the momentum *before* the kick of the next step. It is the physical momentum at q, but with order 1 half a kick ahead: read that by
-/// [`Stepper::synchronized`](crate::Stepper::synchronized). The impulse at q, which two steps share, or what a free motion conserves, travels along
-/// unseen; a stepper of another step size makes its own. To go on with another *system*, make a new state of [`configuration`](Self::configuration)
-/// and [`momentum`](Self::momentum). Where the cost or the potential depends on the time, a state has its [`time`](Self::time).
+/// N is the momentum *before* the kick of the next step. It is the physical momentum at q, but with order 1 half a kick
+/// ahead: read that by [`Stepper::synchronized`](crate::Stepper::synchronized). A state also carries the impulse at q,
+/// which two steps share, or the constants of a free motion. A stepper of another step size computes its own. To go on
+/// with another *system*, make a new state of [`configuration`](Self::configuration) and [`momentum`](Self::momentum).
+/// Where the cost or the potential depends on the time, a state has its [`time`](Self::time).
 ///
 /// ```
 /// # use clebsch::Clebsch;
@@ -28,7 +29,7 @@ use core::fmt::{self, Debug, DebugStruct, Formatter};
 pub struct State<S: Clebsch, M: Method<S> = Declared> {
     pub(crate) time: S::Time,
     pub(crate) configuration: S::Configuration,
-    /// N, or what stands for it.
+    /// N, or its stored form.
     pub(crate) held: Held<S, M>,
     pub(crate) left: Left<S, M>,
     /// The step size that the impulse is for.

@@ -1,4 +1,4 @@
-//! What steered systems have in common, for generated code: checks, and the second derivatives of an implicit step.
+//! The common part of steered systems, for generated code: checks, and the second derivatives of an implicit step.
 
 use crate::linear::{eliminate, rows};
 use crate::matrices::{Blocks, embedded};
@@ -46,7 +46,7 @@ pub fn pair<T: Scalar, const M: usize, const D: usize>(a: &SVector<T, M>, b: &SV
     SVector::from_fn(|i, _| if i < M { a[i] } else { b[i - M] })
 }
 
-/// What separates a state from another: (Gᵀ(q* − q), N* − N) and (GᵀG, I).
+/// The difference of one state from another: (Gᵀ(q* − q), N* − N) and (GᵀG, I).
 #[inline]
 pub fn arrival_of_state<T: Scalar, const M: usize, const D: usize>(
     metric: &SMatrix<T, M, M>,
@@ -61,7 +61,7 @@ pub fn arrival_of_state<T: Scalar, const M: usize, const D: usize>(
     Arrival { residual: pair(approach, missing), slope }
 }
 
-/// The price of the end as a function of a place of which q is the first part.
+/// The price of the end as a function of a place; q is the first part of the place.
 pub fn endpoint<T: Scalar, const M: usize, const D: usize>(
     price: T,
     by_time: T,
@@ -76,7 +76,7 @@ pub fn no_endpoint<T: Scalar, const D: usize>() -> EndpointExpansion<T, D> {
     EndpointExpansion { price: T::zero(), by_time: T::zero(), slope: SVector::zeros(), curvature: SMatrix::zeros() }
 }
 
-/// Bounds as functions of a place of which q is the first part.
+/// Bounds as functions of a place; q is the first part of the place.
 pub fn bounds<T: Scalar, const M: usize, const D: usize, const U: usize, const C: usize>(
     values: SVector<T, C>,
     by_motion: &SMatrix<T, C, M>,
@@ -149,8 +149,9 @@ impl<T: Scalar, const M: usize, const U: usize> Link<T, M, U> {
         Some(Self { costate: beta, driving: alpha, multiplier, adjoint, tangent, motion_by_input, momentum_by_input })
     }
 
-    /// The step with its derivatives. `curvature` holds the second derivatives of β·F⁺ℓd + κ·F⁻ℓd along the motions η of q that leave F as
-    /// it is, the motions ζ of q⁺ alone, and the inputs, W = 2M + U of them; `bracket` is ± ½ α·[E_i, E_j].
+    /// The step with its derivatives. `curvature` contains the second derivatives of β·F⁺ℓd + κ·F⁻ℓd along W = 2M + U
+    /// directions. These are the motions η of q that leave F as it is, the motions ζ of q⁺ alone, and the inputs.
+    /// `bracket` is ± ½ α·[E_i, E_j].
     pub fn expansion<X, const W: usize, const D: usize>(
         &self,
         next: X,

@@ -2,11 +2,12 @@
 
 use crate::{Real, Scalar};
 
-/// c_k(s) = Σ_j (−s)ʲ/(k + 2j)! for k ≤ 7: c₀ = cos √s, c₁ = sin √s/√s, and cosh, sinh for negative s. The series is summed where |s| ≤ 1,
-/// for k ≥ 3 where |s| ≤ 16; beyond, the closed form is used, by c_{k+2} = (1/k! − c_k)/s, which loses no digits there. Measured on both
-/// sides, the error is below 3 ε |c_k| up to |s| = 16. Beyond it is below 4 ε (1 + √|s|)|c_k|, by the rounding of √|s|; where c₀, c₁ or c₂
-/// crosses 0, as much of the amplitude s^(−k/2) of its oscillation. The exponential of a skew 3×3 matrix is exp x^ = I + c₁(|x|²)x^ +
-/// c₂(|x|²)x^x^, and φ(x^) = I + c₂ x^ + c₃ x^x^.
+/// c_k(s) = Σ_j (−s)ʲ/(k + 2j)! for k ≤ 7: c₀ = cos √s, c₁ = sin √s/√s, and cosh, sinh for negative s. The series is
+/// summed where |s| ≤ 1, for k ≥ 3 where |s| ≤ 16; beyond, the closed form is used, by c_{k+2} = (1/k! − c_k)/s, which
+/// loses no digits there. Measured on both sides, the error is below 3 ε |c_k| up to |s| = 16. Beyond it is below 4 ε
+/// (1 + √|s|)|c_k|, by the rounding of √|s|. Where c₀, c₁ or c₂ crosses 0, the bound is this part of the amplitude
+/// s^(−k/2) of its oscillation. The exponential of a skew 3×3 matrix is exp x^ = I + c₁(|x|²)x^ + c₂(|x|²)x^x^, and
+/// φ(x^) = I + c₂ x^ + c₃ x^x^.
 ///
 /// Source: Stumpff, *Himmelsmechanik* I, 1959, section V.
 pub fn stumpff<T: Scalar>(k: u32, s: T) -> T {

@@ -1,8 +1,9 @@
-//! How a step adds to q and N: as numbers are added, or with compensated sums, which keep what rounding takes off.
+//! How a step adds to q and N: by plain addition, or with compensated sums, which store the rounding error.
 
 use crate::{Scalar, Space};
 
-/// a + b as the rounded sum and what rounding took from it, whichever is the larger: the source is that of [`Clock`](crate::Clock).
+/// a + b as the rounded sum and its rounding error, whichever of a and b is larger. The source is that of
+/// [`Clock`](crate::Clock).
 #[inline(always)]
 pub(crate) fn exact_sum<T: Scalar>(a: T, b: T) -> (T, T) {
     let sum = a + b;
@@ -11,14 +12,16 @@ pub(crate) fn exact_sum<T: Scalar>(a: T, b: T) -> (T, T) {
     (sum, (a - of_a) + (b - of_b))
 }
 
-/// (s⁺, r⁺) with s⁺ = s + y rounded, y = d + r the addition with what earlier sums have left, and r⁺ the rounding: s⁺ + r⁺ = s + y exactly.
+/// (s⁺, r⁺) with s⁺ = s + y rounded and r⁺ its rounding error: s⁺ + r⁺ = s + y exactly. Here y = d + r adds the
+/// rounding error r of earlier sums to d.
 ///
 /// Of n sums the errors of y alone add up, ε |d| each in place of ε |s|. For each scalar
 ///
 /// ```text
 /// y = d + r,    s⁺ = s + y,    z = s⁺ − s,    r⁺ = (s − (s⁺ − z)) + (y − z)
 /// ```
-/// seven additions, of which two stand between s and s⁺. Valid for any sizes of s and y, as long as s + y does not overflow.
+/// These are seven additions, and two of them stand between s and s⁺. Valid for any sizes of s and y, as long as s + y
+/// does not overflow.
 ///
 /// Source: Kahan, *Further remarks on reducing truncation errors*, Comm. ACM 8 (1965).
 #[inline(always)]
@@ -29,12 +32,12 @@ pub fn accumulate<T: Scalar, S: Space<T>>(sum: &S, rest: &S, increment: &S) -> (
 
 /// How a step adds to q and N.
 pub trait Sums {
-    /// Whether what rounding takes off is carried along, and added in the next step.
+    /// Whether the rounding error is stored, and added in the next step.
     const ARE_COMPENSATED: bool;
 
-    /// What rounding has taken off a sum; `()` where that is not carried along.
+    /// The rounding error of a sum; `()` if it is not stored.
     type Rest<T: Scalar, V: Space<T>>: Space<T>;
-    /// What one step leaves to the next: an impulse I and the rests of q and N.
+    /// The data that one step passes to the next: an impulse I and the rounding errors of q and N.
     type Left<T: Scalar, I: Space<T>, Q: Space<T>, N: Space<T>>: Space<T>;
 
     /// Both in one.
@@ -51,14 +54,14 @@ pub trait Sums {
     /// The sum and its new rest.
     fn sum<T: Scalar, V: Space<T>>(sum: &V, rest: &mut Self::Rest<T, V>, increment: &V) -> V;
 
-    /// What a kernel has made of a sum: it gives the new sum itself, or, where sums are compensated, what is added.
+    /// The sum from the result of a kernel. This is the new sum itself or, where sums are compensated, the addition.
     #[inline(always)]
     fn made<T: Scalar, V: Space<T>>(sum: &V, rest: &mut Self::Rest<T, V>, made: V) -> V {
         if Self::ARE_COMPENSATED { Self::sum(sum, rest, &made) } else { made }
     }
 }
 
-/// What rounding has taken off q and N.
+/// The rounding errors of q and N.
 pub type Rests<S, T, Q, N> = (<S as Sums>::Rest<T, Q>, <S as Sums>::Rest<T, N>);
 
 /// Sums as numbers are added.

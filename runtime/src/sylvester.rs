@@ -1,8 +1,9 @@
 //! The linear map Δ ↦ ΔB + BᵀΔ of skew matrices, inverted without the matrix of n(n − 1)/2 rows.
 //!
-//! It is Dρ of the momentum equation of a body on SO(n) in Cayley's chart. With B = QTQᵀ (Schur), Y = QᵀΔQ is skew too and solves
-//! TᵀY + YT = QᵀRQ for the right side R, block after block from the first. The eigenvalues of the map are the sums λ_i + λ_j, i < j, of
-//! two of B: flat bodies, which have an eigenvalue 0, are no exception. The sign of their product is that of the small systems' determinants.
+//! It is Dρ of the momentum equation of a body on SO(n) in Cayley's chart. With B = QTQᵀ (Schur), Y = QᵀΔQ is skew too
+//! and solves TᵀY + YT = QᵀRQ for the right side R, block after block from the first. The eigenvalues of the map are
+//! the sums λ_i + λ_j, i < j, of two eigenvalues of B. Flat bodies, which have an eigenvalue 0, are no exception. The
+//! sign of their product is that of the small systems' determinants.
 //!
 //! Source: Bartels and Stewart, *Solution of the matrix equation AX + XB = C*, Communications of the ACM 15 (1972) 820–826.
 
@@ -113,7 +114,8 @@ impl<T: Real, const N: usize> Schur<T, N> {
         Some((skew_components(&(q * y * q.transpose())) * T::from_ratio(1, 2), orientation))
     }
 
-    /// Y_pp, row by row: skew, so that it is 0 but for the number y with (t₁₁ + t₂₂) y = `rest` of a block of two rows.
+    /// Y_pp, row by row. It is skew, so only a block of two rows has a number that is not 0: y with (t₁₁ + t₂₂) y =
+    /// `rest`.
     fn alone(&self, p: Block, rest: impl Fn(usize, usize) -> T) -> Option<([T; 4], Orientation)> {
         let zero = T::zero();
         if p.size < 2 {

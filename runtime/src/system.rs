@@ -7,13 +7,15 @@ use num_traits::Zero;
 
 /// A mechanical or control system with everything that is derived from its declaration.
 ///
-/// Implemented by `#[derive(Clebsch)]`; each generated method documents its formula as derived. Notation: configuration q in Q, group element F
-/// in G, action Φ, momentum μ in the dual of the Lie algebra 𝔤, step size h, time t, discrete Lagrangian ℓd(t, h, q, F). Momenta are components
-/// m_i = ⟨M, E_i⟩ = tr(MᵀE_i) in the basis E_i of 𝔤 that [`group`](crate::group) documents, all factors of a product one after the other.
+/// Implemented by `#[derive(Clebsch)]`; each generated method documents its formula as derived. Notation: configuration
+/// q in Q, group element F in G, action Φ, momentum μ in the dual of the Lie algebra 𝔤. The step size is h, the time t,
+/// and the discrete Lagrangian ℓd(t, h, q, F). Momenta are components m_i = ⟨M, E_i⟩ = tr(MᵀE_i) in the basis E_i of 𝔤
+/// that [`group`](crate::group) documents, all factors of a product one after the other.
 ///
 /// The time of a step, in [`legendre`](Self::legendre) and wherever h matters, is that of its start; elsewhere that of the configuration.
 ///
-/// A [`Stepper`] holds h and the [`Constants`](Self::Constants). What depends on the dials is that of the declared ones; see [`Method`] for others.
+/// A [`Stepper`] holds h and the [`Constants`](Self::Constants). Items that depend on the dials are those of the
+/// declared dials; see [`Method`] for others.
 ///
 /// ```
 /// use clebsch::Clebsch;
@@ -53,27 +55,28 @@ pub trait Clebsch: Sized {
     type Momentum: Space<Self::Scalar>;
     /// The representing matrices M = Σ G^{ij} m_j E_i, nested as `Element`; G_ij = tr(E_iᵀE_j).
     type MomentumMatrix: Space<Self::Scalar>;
-    /// What forces take from outside during a step, `()` where they take nothing; the `u` of `force`.
+    /// The input of forces during a step, `()` if they take none; the `u` of `force`.
     type Input: Space<Self::Scalar>;
-    /// What no step of one size by the declared dials changes: computed once per stepper.
+    /// The constants of all steps of one size by the declared dials, computed once per stepper.
     type Constants: Clone + Debug;
     /// How it is stepped by the declared dials.
     #[doc(hidden)]
     type Scheme: Scheme<Self>;
-    /// What a state knows of the time: `()` for an autonomous system, else [`Clock`](crate::Clock).
+    /// The time of a state: `()` for an autonomous system, else [`Clock`](crate::Clock).
     type Time: Time<Self::Scalar>;
 
     /// The name of the struct.
     const NAME: &'static str;
-    /// Order of accuracy of a step. 4, 6 and 8 are composed of steps of second order, 16 collocates Hamilton's equations; then
-    /// [`legendre`](Self::legendre) and [`legendre_next`](Self::legendre_next) are the transforms of the declared step of second order.
+    /// Order of accuracy of a step. 4, 6 and 8 are composed of steps of second order; 16 collocates Hamilton's
+    /// equations. Then [`legendre`](Self::legendre) and [`legendre_next`](Self::legendre_next) are the transforms of
+    /// the declared step of second order.
     const ORDER: u32;
     /// Whether a step is the free motion itself, without an error in h: its longest step is then known without trying. `false` as provided.
     const IS_FREE_MOTION: bool = false;
     /// The derivation in words and formulas, with operation counts. With `emit = [latex]` there is a constant `DERIVATION_LATEX` too, for a paper.
     const DERIVATION: &'static str;
 
-    /// Checks the parameters and computes what no step changes.
+    /// Checks the parameters and computes the constants.
     ///
     /// # Errors
     /// [`Error::NotFinite`], [`Error::NotSymmetric`] or [`Error::SingularKineticEnergy`].
@@ -100,8 +103,8 @@ pub trait Clebsch: Sized {
         f: &Self::Element,
     ) -> Self::Momentum;
 
-    /// By how much the momentum N of a state is ahead of the momentum π that belongs to its configuration: N − π = ½ J(q, ∂(U₁ − U₀)), where
-    /// U₀(t, q) and U₁(t, q) are what ℓd adds at the start and at the end of a step.
+    /// By how much the momentum N of a state is ahead of the momentum π that belongs to its configuration: N − π = ½
+    /// J(q, ∂(U₁ − U₀)). Here U₀(t, q) and U₁(t, q) are the terms that ℓd adds at the start and at the end of a step.
     ///
     /// −h/2 J(q, ∂V) with `order = 1`, half of the kick; else 0, and N is π. See [`Stepper::synchronized`](crate::Stepper::synchronized).
     fn stagger(&self, h: Self::Scalar, t: Self::Scalar, q: &Self::Configuration) -> Self::Momentum {
@@ -114,7 +117,8 @@ pub trait Clebsch: Sized {
         Zero::zero()
     }
 
-    /// The Legendre–Fenchel transform of ℓ(q, ·), ℓ(q, ξ) = lim ℓd(t, h, q, exp hξ)/h less its value at 0: μ·ξ − ℓ(q, ξ) at the ξ with ∂ℓ/∂ξ = μ.
+    /// The Legendre–Fenchel transform of ℓ(q, ·): μ·ξ − ℓ(q, ξ) at the ξ with ∂ℓ/∂ξ = μ. Here ℓ(q, ξ) = lim ℓd(t, h, q,
+    /// exp hξ)/h less its value at 0.
     ///
     /// ½ μ·Σ⁻¹μ where ℓ is quadratic with the Hessian Σ; +∞ where no velocity has this momentum.
     fn kinetic_energy(
@@ -131,7 +135,7 @@ pub trait Clebsch: Sized {
     /// The components of a momentum given by its representing matrices; the inverse of [`momentum_matrix`](Self::momentum_matrix).
     fn momentum_components(m: &Self::MomentumMatrix) -> Self::Momentum;
 
-    /// By how much q violates what the declaration promises, as the largest entry of |RᵀR − I| or ||q|² − 1|.
+    /// By how much q violates the promise of the declaration, as the largest entry of |RᵀR − I| or ||q|² − 1|.
     ///
     /// 0 for plain vectors and matrices, +∞ on the wrong component of a group (det < 0).
     #[inline]

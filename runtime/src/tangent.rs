@@ -29,9 +29,10 @@ pub struct Variation<T, const M: usize> {
 
 /// The derivative of a map of states (q, N) ↦ (q⁺, N⁺), from variations (η, ν) at the one to variations (η′, ν′) at the other.
 ///
-/// In these coordinates the canonical symplectic form is Ω_N((η₁, ν₁), (η₂, ν₂)) = ν₂·η₁ − ν₁·η₂ ± N·[η₁, η₂], + for the body
-/// momenta of a right action and − for the spatial ones of a left action; tangent maps of unforced steps preserve it. Where motions
-/// fix the configuration, the directions η of 𝔤_q do nothing to q and the map is that of the body that has them as motions.
+/// In these coordinates the canonical symplectic form is Ω_N((η₁, ν₁), (η₂, ν₂)) = ν₂·η₁ − ν₁·η₂ ± N·[η₁, η₂]. The sign
+/// is + for the body momenta of a right action and − for the spatial ones of a left action. Tangent maps of unforced
+/// steps preserve the form. If motions fix the configuration, the directions η of 𝔤_q do nothing to q. The map is then
+/// that of the body that has them as motions.
 ///
 /// ```
 /// # use clebsch::Clebsch;
@@ -161,7 +162,8 @@ pub(crate) fn times<T: Scalar, const R: usize, const M: usize, const K: usize>(
     SMatrix::from_fn(|i, j| (0..M).fold(T::zero(), |sum, k| sum + a[(i, k)] * b[(k, j)]))
 }
 
-/// The tangent map of an edge, by the implicit function theorem on F⁻ℓd = N: η′ = Ad η + ζ, ζ = (∂F⁻ℓd/∂η′)⁻¹ (ν − ∂F⁻ℓd η), ∂/∂η at fixed F.
+/// The tangent map of an edge, by the implicit function theorem on F⁻ℓd = N. It is η′ = Ad η + ζ with ζ = (∂F⁻ℓd/∂η′)⁻¹
+/// (ν − ∂F⁻ℓd η), ∂/∂η at fixed F.
 #[inline]
 pub(crate) fn of_edge<T: Scalar, const M: usize>(edge: &Carried<T, M>) -> Option<Tangent<T, M>> {
     let inverse = divided(&edge.before_by_end, &SMatrix::identity())?;
@@ -184,7 +186,7 @@ fn finite_tangent<T: Scalar, const M: usize>(tangent: Tangent<T, M>) -> Result<T
     if [a, b, c, d].is_finite() { Ok(tangent) } else { Err(DERIVATIVE) }
 }
 
-/// One edge of a step: where it leads, and what it is there.
+/// One edge of a step: its increment, its end and its derivatives.
 struct Passed<S: Clebsch, const M: usize> {
     increment: S::Element,
     next: S::Configuration,
@@ -204,7 +206,7 @@ where
     /// The map is exact up to round-off, by the implicit function theorem on the solved step: one linear system of M unknowns, no iteration.
     ///
     /// # Errors
-    /// As [`step`](Stepper::step), and [`Error::SingularTangent`] at the very edge of what is solvable.
+    /// As [`step`](Stepper::step), and [`Error::SingularTangent`] at the very edge of solvability.
     pub fn step_tangent(&self, state: &State<S, B>) -> Result<(State<S, B>, Tangent<T, M>), Error>
     where
         S: Variational<M>,

@@ -4,7 +4,7 @@ use crate::sums::exact_sum;
 use crate::{Scalar, Space};
 use core::fmt::Debug;
 
-/// What a state knows of the time: [`Clock`] where the cost or the potential depends on it, else `()`, which costs nothing.
+/// The time of a state: [`Clock`] if the cost or the potential depends on it, else `()`, which costs nothing.
 ///
 /// ```
 /// use clebsch::{Clock, Time};
@@ -62,7 +62,7 @@ impl<T: Scalar> Time<T> for () {
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Clock<T> {
     now: T,
-    /// What rounding has taken from `now`.
+    /// The rounding error of `now`.
     carry: T,
 }
 

@@ -1,4 +1,5 @@
-//! What the calculus of variations needs of a discrete Lagrangian: its Legendre transforms with their derivatives.
+//! The part of a discrete Lagrangian that the calculus of variations needs: its Legendre transforms with their
+//! derivatives.
 
 use crate::parts::Varied;
 use crate::scheme::edges::{AtFixedElement, ByQuantities, Drift, Edges, FirstDerivatives, SecondDerivatives};
@@ -9,9 +10,10 @@ use nalgebra::{SMatrix, SVector};
 
 /// A system whose discrete Lagrangian has been differentiated twice, by `#[derive(Clebsch)]` with `emit = [tangent]` or `emit = [boundary]`.
 ///
-/// A *path* is a sequence of configurations q_{k+1} = Φ_{F_k}(q_k) with *edges* k, [`EDGES`](Self::EDGES) in a step. Its vertices are varied along
-/// the orbits, q_k ↦ Φ_{exp η_k}(q_k) with η_k in 𝔤, and F_k follows: F_k ↦ exp(η_{k+1}) F_k exp(−η_k) for a left action, exp(−η_k) F_k exp(η_{k+1})
-/// for a right one. An edge is given by the increment D = F − I (for translations F itself), which small steps do not cancel.
+/// A *path* is a sequence of configurations q_{k+1} = Φ_{F_k}(q_k) with *edges* k, [`EDGES`](Self::EDGES) in a step.
+/// Its vertices are varied along the orbits, q_k ↦ Φ_{exp η_k}(q_k) with η_k in 𝔤, and F_k follows. For a left action
+/// F_k ↦ exp(η_{k+1}) F_k exp(−η_k), for a right one F_k ↦ exp(−η_k) F_k exp(η_{k+1}). An edge is given by the
+/// increment D = F − I (for translations F itself), which small steps do not cancel.
 ///
 /// Components of η are those of 𝔤 in the basis that [`group`](crate::group) documents, M of them.
 ///
@@ -38,7 +40,8 @@ use nalgebra::{SMatrix, SVector};
 pub trait Variational<const M: usize>:
     Clebsch<Momentum = SVector<<Self as Clebsch>::Scalar, M>, Scheme: Edges<Self, M>>
 {
-    /// The number of edges in a step: 2 where a discrete Lagrangian is composed with its adjoint, else 1; of a composed step those of all its steps.
+    /// The number of edges in a step: 2 if a discrete Lagrangian is composed with its adjoint, else 1. A composed step
+    /// has the edges of all its steps.
     const EDGES: usize = <Self::Scheme as Edges<Self, M>>::EDGES;
 
     /// The increments of τ(η) and τ(−η), which share most terms: τ(0) = I, dτ = id there, and τ(−η) = τ(η)⁻¹ for Cayley's map and the exponential.
@@ -92,7 +95,8 @@ pub trait Variational<const M: usize>:
         Self::Scheme::visit(At::new(self, c, t), k, FirstDerivatives(ends))
     }
 
-    /// The derivatives of the same edge along motions of q that leave F as it is, and of q⁺ alone: nothing of the size of inertia/h cancels.
+    /// The derivatives of the same edge along motions of q that leave F as it is, and of q⁺ alone. Nothing of the size
+    /// of inertia/h cancels.
     #[inline]
     fn carried(
         &self,
@@ -303,8 +307,9 @@ type BothSlopes<T, const M: usize, const P: usize> = (SMatrix<T, M, P>, SMatrix<
 pub trait Sensitive<const M: usize, const P: usize>:
     Variational<M> + Varied<M, Slopes = BothSlopes<<Self as Clebsch>::Scalar, M, P>>
 {
-    /// The quantities as a declaration writes them, without `self.`: the entries of the fields that closures read, in their order and
-    /// row by row, then `h`, then `t` where the time matters, then those of the input. The two entries of a symmetric matrix are one quantity.
+    /// The quantities as a declaration writes them, without `self.`. The entries of the fields that closures read come
+    /// first, in their order and row by row. Then follow `h`, `t` if the time matters, and the entries of the input.
+    /// The two entries of a symmetric matrix are one quantity.
     const QUANTITIES: [&'static str; P];
     /// The column of h.
     #[doc(hidden)]

@@ -5,10 +5,11 @@ use crate::fields::getters;
 use crate::{Clebsch, Declared, Error, Method, Space, State, Stepper};
 use core::fmt::{self, Debug, Formatter};
 
-/// A [`Stepper`] with a state and room for the next one, for states so large that handing each on by value takes longer than the step itself.
+/// A [`Stepper`] with a state and room for the next one. It is for states so large that passing them by value takes
+/// longer than the step itself.
 ///
-/// It makes the steps of [`Stepper::step`], to the last bit; where one fails the state is what it was. A `Stepper` suits small states, which it
-/// hands on in registers.
+/// Its steps are those of [`Stepper::step`], to the last bit. If a step fails, the state is unchanged. A `Stepper`
+/// suits small states, which it hands on in registers.
 ///
 /// An integrator is where it is put: on the stack, in a struct of yours, or on the heap, by `Box::new(stepper.integrator(state))`, which allocates once.
 ///
@@ -78,7 +79,7 @@ impl<S: Clebsch, M: Method<S>> Integrator<S, M> {
     /// One step, as [`Stepper::step`] makes it.
     ///
     /// # Errors
-    /// Those of [`Stepper::step`]; the state is what it was.
+    /// Those of [`Stepper::step`]. After an error the state is unchanged.
     #[inline]
     pub fn step(&mut self) -> Result<(), Error> {
         self.step_with(&S::Input::origin())
@@ -87,7 +88,7 @@ impl<S: Clebsch, M: Method<S>> Integrator<S, M> {
     /// One step during which the input of the forces is `u`, as [`Stepper::step_with`] makes it.
     ///
     /// # Errors
-    /// Those of [`Stepper::step_with`]; the state is what it was.
+    /// Those of [`Stepper::step_with`]. After an error the state is unchanged.
     #[inline]
     pub fn step_with(&mut self, u: &S::Input) -> Result<(), Error> {
         let [first, second] = &mut self.states;

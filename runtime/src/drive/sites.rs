@@ -10,7 +10,7 @@ use core::iter::once;
 use core::mem::swap;
 use num_traits::Zero;
 
-/// Where [`Sites`] keep what they need: for each site a configuration q and a momentum N, and room for the next state.
+/// The memory of [`Sites`]: for each site a configuration q and a momentum N, and room for the next state.
 ///
 /// `Points` and `Momenta` are arrays, slices or vectors of one configuration or momentum for each site.
 ///
@@ -44,9 +44,11 @@ pub struct SiteStorage<Points, Momenta> {
     pub configuration: Points,
     /// The momenta to start from.
     pub momentum: Momenta,
-    /// Room for the next configurations and for the gradient of the potential, in this order; what is in it does not matter.
+    /// Room for the next configurations and for the gradient of the potential, in this order. The content does not
+    /// matter.
     pub more_points: [Points; 2],
-    /// Room for the next momenta and for the kicks of this state and the next, in this order; what is in it does not matter.
+    /// Room for the next momenta and for the kicks of this state and the next, in this order. The content does not
+    /// matter.
     pub more_momenta: [Momenta; 3],
 }
 
@@ -81,7 +83,7 @@ impl<Points: Clone, Momenta: Clone> SiteStorage<Points, Momenta> {
 pub struct SiteError {
     /// The site, where it is one.
     pub site: Option<usize>,
-    /// What is wrong there.
+    /// The error at this site.
     pub error: Error,
 }
 
@@ -104,7 +106,8 @@ impl From<SiteError> for Error {
 
 /// A power whose state is in storage of the user's choice: many sites that no stack would hold.
 ///
-/// A step costs and computes what [`Stepper::step`] does, to the last bit. It writes to the other state: where it fails, the state is what it was.
+/// A step has the cost and the result of [`Stepper::step`], to the last bit. It writes to the other state: if it fails,
+/// the state is unchanged.
 ///
 /// ```
 /// # use clebsch::{Clebsch, SiteStorage};
@@ -201,7 +204,7 @@ where
     /// One step.
     ///
     /// # Errors
-    /// Those of [`Stepper::step`], with the site; the state is what it was.
+    /// Those of [`Stepper::step`], with the site. After an error the state is unchanged.
     pub fn step(&mut self) -> Result<(), SiteError> {
         let At { system, constants, t, .. } = self.stepper.at(self.time.now());
         let h = self.stepper.step_size();
@@ -316,7 +319,7 @@ where
     }
 }
 
-/// The first site whose state is not finite, and what of it is not.
+/// The first site whose state is not finite, and the quantity of it that is not.
 #[cold]
 fn not_finite<T: Scalar, Q: Space<T>, M: Space<T>>(q: &[Q], mu: &[M], kick: &[M]) -> Option<SiteError> {
     q.iter().zip(mu).zip(kick).enumerate().find_map(|(i, ((q, mu), kick))| {

@@ -36,7 +36,7 @@ fn generic_matrices_of_any_size() {
     assert!(error(phi(&(generic() * -16.0)), exact[3]) < 4e-15);
 }
 
-/// Entries beside the diagonal a million times those on it, and an exponential far below one; 60 digits (mpmath).
+/// Off-diagonal entries are a million times the diagonal ones, and an exponential is far below one; 60 digits (mpmath).
 #[test]
 fn ill_scaled_matrices_keep_their_digits() {
     let lopsided = Matrix2::new(1.0, 1e6, 2.0_f64.powi(-20), -1.0);

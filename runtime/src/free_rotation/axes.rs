@@ -12,12 +12,12 @@ pub(crate) enum Axes<T, D, const N: usize> {
     Coordinates,
     /// The columns of this rotation, which are principal axes.
     Principal(SMatrix<T, N, N>),
-    /// Those of the coordinates, with what takes the place of moments: numbers with derivatives know no principal axes.
+    /// Those of the coordinates, with values that replace the moments: numbers with derivatives know no principal axes.
     Tensor(D),
 }
 
 impl<T: Real, D, const N: usize> Axes<T, D, N> {
-    /// The principal moments of a tensor, of which the lower triangle is read, and their axes.
+    /// The principal moments of a tensor, and their axes. Only the lower triangle of the tensor is read.
     pub fn principal(tensor: &SMatrix<T, N, N>) -> (SVector<T, N>, Self) {
         if (0..N).all(|i| (0..i).all(|j| tensor[(i, j)] == T::zero())) {
             return (tensor.diagonal(), Self::Coordinates);

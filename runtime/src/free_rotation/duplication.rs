@@ -16,10 +16,11 @@
 //! ```
 //! There is no division by differences of inertia.
 //!
-//! Derivation: d = |m| cot Ψ with exp 2iΨ(u) = e^{2cu} σ(w + u)/σ(w − u), where ℘(w) = v and ℘′(w) = 2i√α b. From
-//! σ(w + 2u) σ(w) = σ²(w + u) σ²(u) (℘(u) − ℘(w + u)) follows exp 2i(Ψ(2u) − 2Ψ(u)) = (℘(u) − ℘(w + u))/(℘(u) − ℘(w − u)), and the theorem
-//! of addition makes ℘(w ± u) rational in ℘ and ℘′. Powers of v beyond the first drop out by −αb² = v³ + Av + C; where v is large, as for a
-//! needle, they would cancel. The last formula is that of Ψ_i − Ψ_j with σσ_k/(σ_iσ_j) = −(℘ − e_k)/(½℘′).
+//! Derivation: d = |m| cot Ψ with exp 2iΨ(u) = e^{2cu} σ(w + u)/σ(w − u), where ℘(w) = v and ℘′(w) = 2i√α b. Start from
+//! σ(w + 2u) σ(w) = σ²(w + u) σ²(u) (℘(u) − ℘(w + u)). It follows that exp 2i(Ψ(2u) − 2Ψ(u)) = (℘(u) − ℘(w + u))/(℘(u)
+//! − ℘(w − u)). The theorem of addition makes ℘(w ± u) rational in ℘ and ℘′. Powers of v beyond the first drop out by
+//! −αb² = v³ + Av + C; where v is large, as for a needle, they would cancel. The last formula is that of Ψ_i − Ψ_j with
+//! σσ_k/(σ_iσ_j) = −(℘ − e_k)/(½℘′).
 
 use super::half;
 use super::series::{product, trace};
@@ -37,7 +38,7 @@ pub(super) enum Functions<T> {
     InPowers(Vector<T>),
 }
 
-/// What stays the same from one duplication to the next.
+/// The constants of all duplications.
 struct Curve<T> {
     functions: Functions<T>,
     alpha: T,
@@ -169,15 +170,15 @@ impl<T: Real> Curve<T> {
         }
     }
 
-    /// The point where ℘ is `p`, before half a period: there ℘′ is negative. Half a period is at least π/2 over the root of the largest
-    /// difference of the e_i, and that is at most √(2Σe_k²): here below 1.2.
+    /// The point where ℘ is `p`, before half a period: there ℘′ is negative. Half a period is at least π/2 over the
+    /// root of the largest difference of the e_i. That difference is at most √(2Σe_k²): here below 1.2.
     fn start(&self, p: T) -> Option<CurvePoint<T>> {
         let q = self.functions.plus(&-self.e, p);
         let y = -self.functions.determinant(&q).sqrt();
         (-self.linear < T::from_ratio(36, 100)).then_some(CurvePoint { q, y, z: T::one() })
     }
 
-    /// d of twice the time: what is above and below the bar.
+    /// d of twice the time, as numerator and denominator.
     fn twice(&self, d: &Vector<T>, point: &CurvePoint<T>) -> (Vector<T>, Vector<T>) {
         let f = self.functions;
         let CurvePoint { y, z, .. } = *point;
@@ -202,7 +203,8 @@ impl<T: Real> Curve<T> {
         CurvePoint { q: f.product(&n, &n), y: f.determinant(&n), z: (*y + *y) * *z }
     }
 
-    /// The same point with numbers of the size of 1. Q of which no digits cancel is taken from the mean X: else errors would grow fourfold each time.
+    /// The same point with numbers of the size of 1. An entry of Q that loses no digits by cancellation is computed
+    /// from the mean X. Otherwise its errors would grow fourfold each time.
     fn settled(&self, CurvePoint { q, y, z }: CurvePoint<T>) -> CurvePoint<T> {
         let size = (self.functions.trace(&q) + z * z).recip();
         let scale = size.sqrt();
@@ -243,7 +245,7 @@ impl<T: Real> Curve<T> {
     }
 }
 
-/// a/b; where b cannot be seen beside a it is what can just be seen.
+/// a/b; if |b| is below ε|a|, ε|a| takes its place.
 fn quotient<T: Real>(a: T, b: T) -> T {
     let least = T::EPSILON * a.abs();
     a / if b.abs() < least { least } else { b }

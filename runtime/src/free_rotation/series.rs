@@ -1,7 +1,8 @@
 //! The coefficients of x_i d_i and of τ²/4 ℘(τ/2), and how far each number of them reaches.
 //!
-//! d = f(X) is a function of X = J⁻¹. Sums and products of such functions are formed of their values on one principal axis, or of the
-//! coefficients of c₀ + c₁X + c₂X², as X³ = e₁X² − e₂X + e₃. The latter need no axes, which have no derivatives where two moments are equal.
+//! d = f(X) is a function of X = J⁻¹. Sums and products of such functions are formed from their values on one principal
+//! axis, or from the coefficients of c₀ + c₁X + c₂X². The coefficients use X³ = e₁X² − e₂X + e₃, and need no axes. Axes
+//! have no derivatives where two moments are equal.
 
 use crate::space::larger;
 use crate::{Real, Scalar};
@@ -14,13 +15,14 @@ pub(super) const MONOMIALS: usize = (DEGREE + 1) * (DEGREE + 2) / 2;
 /// The degrees of polynomials that are evaluated: as many terms as α asks for.
 const DEGREES: [usize; 9] = [2, 3, 4, 5, 6, 8, 10, 12, 14];
 
-/// The coefficients of α^i ε^j in the x_i d_i of three axes, or in c₀, c₁ and c₂ of X d, and in τ²/4 ℘(τ/2), at [`place`].
+/// The coefficients of α^i ε^j, at [`place`]: in the x_i d_i of three axes, or in c₀, c₁ and c₂ of X d. The last number
+/// is that of τ²/4 ℘(τ/2).
 pub(super) type Coefficients<T> = [[T; 4]; MONOMIALS];
 
 /// A function of X: its value on one axis, or its three coefficients.
 type Function<T, const N: usize> = SVector<T, N>;
 
-/// A homogeneous polynomial in α and ε, of which entry j belongs to ε^j.
+/// A homogeneous polynomial in α and ε: entry j belongs to ε^j.
 type Polynomial<T, const N: usize> = [Function<T, N>; DEGREE + 1];
 
 /// One of each degree.
@@ -67,7 +69,8 @@ pub(super) fn on_axes<T: Scalar>(x: &SVector<T, 3>) -> Coefficients<T> {
     all
 }
 
-/// The same for c₀, c₁ and c₂ of X d = c₀ + c₁X + c₂X², where e = (e₁, e₂, e₃) are the sum of the x_i, that of x_jx_k, and their product.
+/// The same for c₀, c₁ and c₂ of X d = c₀ + c₁X + c₂X². Here e = (e₁, e₂, e₃) are the sum of the x_i, that of x_jx_k,
+/// and their product.
 #[cold]
 pub(super) fn in_powers<T: Scalar>(e: &SVector<T, 3>) -> Coefficients<T> {
     let [[first, second, third]] = e.data.0;
@@ -112,7 +115,8 @@ fn each_coefficient<T: Scalar, const N: usize>(
     }
 }
 
-/// x d of a function X and 1/X, (x − x_j)(x − x_k) on each axis, the coefficients of α and ε in the roots, and those of τ²/4 ℘(τ/2).
+/// The series of x d. It takes the function X and 1/X, (x − x_j)(x − x_k) on each axis, the coefficients of α and ε in
+/// the roots, and those of τ²/4 ℘(τ/2).
 fn of_function<T: Scalar, const N: usize>(
     e: &SVector<T, 3>,
     x: Function<T, N>,

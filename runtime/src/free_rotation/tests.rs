@@ -123,7 +123,7 @@ const CASES: [Case; 10] = [
     },
 ];
 
-/// All of them, of which Miri, which interprets, takes the first: the series of each body take it long.
+/// All of them. Miri interprets, and the series of each body take it long: it takes the first alone.
 fn cases() -> impl Iterator<Item = &'static Case> {
     CASES.iter().take(if cfg!(miri) { 1 } else { CASES.len() })
 }
@@ -318,8 +318,8 @@ proptest! {
     }
 }
 
-/// Duplications of long motions against the same motion in 64 steps, for bodies of all shapes: within some roundings of the angle and of what
-/// rounds the momentum, which grows exponentially about middle axes.
+/// Duplications of long motions against the same motion in 64 steps, for bodies of all shapes. They agree within some
+/// roundings of the angle and of the momentum. The latter grow exponentially about middle axes.
 #[test]
 fn long_motions_are_those_of_their_parts() {
     let mut state = 1_u64;

@@ -46,9 +46,10 @@ fn solve_at_last<T: Scalar, const M: usize>(
     }
 }
 
-/// The iteration: ξ, the lanes in which it is the solution, and how many residuals were taken. Lanes that do not contract by four are given
-/// up. Corrections then add up to at most a third of the predictor, so that ξ stays where the Jacobian is near Σ and on the branch of ξ = 0.
-/// After a correction Δ with the ratio r to the one before, those to come add up to r|Δ|/(1 − r) ≤ 4r|Δ|/3.
+/// The iteration: ξ, the lanes in which it is the solution, and how many residuals were taken. Lanes that do not
+/// contract by four are given up. Corrections then add up to at most a third of the predictor. So ξ stays where the
+/// Jacobian is near Σ, and on the branch of ξ = 0. After a correction Δ with the ratio r to the one before, those to
+/// come add up to r|Δ|/(1 − r) ≤ 4r|Δ|/3.
 #[inline]
 fn contract<T: Scalar, E: Equation<T, M>, const M: usize>(
     equation: &E,

@@ -19,7 +19,7 @@ pub trait Jacobian<T: Scalar, const M: usize>: Copy {
     /// The same of single numbers.
     type Lane: Jacobian<T::Lane, M>;
 
-    /// What it is in one lane.
+    /// Its value in one lane.
     fn lane(&self, lane: usize) -> Self::Lane;
 
     /// Δ with Dρ Δ = `residual` and the sign of det Dρ; `None` where it is singular in all lanes.

@@ -1,4 +1,5 @@
-//! One lane of an equation as an equation for single numbers: what Newton's method has left undecided is solved lane by lane.
+//! One lane of an equation as an equation for single numbers: lanes that Newton's method leaves undecided are solved
+//! one by one.
 
 use super::path::Homotopy;
 use super::{Equation, Jacobian, QUICK, at_identity, not_converged, size, with_derivatives};

@@ -1,8 +1,9 @@
 //! From the identity to the solution along the path of ρ(ξ; sμ) = 0, s from 0 to 1.
 //!
-//! The path is followed in small steps, each a prediction along the tangent and Newton's method with one of the M + 1 unknowns
-//! (ξ, s) fixed: the one that changes fastest. So it does not stall where s reaches a maximum and the path turns back, the end of solvability.
-//! The sign of det Dρ tells the side of such a point. Reference: Rheinboldt, *Numerical Analysis of Parametrized Nonlinear Equations*, 1986.
+//! The path is followed in small steps. Each is a prediction along the tangent, followed by Newton's method with one of
+//! the M + 1 unknowns (ξ, s) fixed. This is the one that changes fastest. So it does not stall where s reaches a
+//! maximum and the path turns back, the end of solvability. The sign of det Dρ tells the side of such a point.
+//! Reference: Rheinboldt, *Numerical Analysis of Parametrized Nonlinear Equations*, 1986.
 
 mod bracket;
 mod point;

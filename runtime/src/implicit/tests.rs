@@ -10,7 +10,7 @@ use proptest::prelude::*;
 /// h π^ = F𝒥 − 𝒥Fᵀ in the Cayley chart; the target is a = hπ.
 struct Body<T: Scalar> {
     inertia: Matrix3<T>,
-    /// What multiplies the predictor (h/2)J⁻¹π; NaN forces the path to be followed.
+    /// The factor of the predictor (h/2)J⁻¹π; NaN forces the path to be followed.
     guess: T,
     linearizations: Cell<u32>,
 }
@@ -300,7 +300,8 @@ fn stiff_monotone_equations_are_solved() {
     }
 }
 
-/// 12 by Newton's method, those along the path with 4 for its last point, one for the error, and one for the sign at the identity in each of both.
+/// 12 by Newton's method, those along the path with 4 for its last point, and one for the error. Each of both also
+/// takes one for the sign at the identity.
 const MOST: u32 = 12 + LINEARIZATIONS + 4 + 1 + 2;
 
 /// tanh ξ = m has ξ going to infinity as m goes to 1.
@@ -396,7 +397,8 @@ impl Equation<f64, 1> for Pole {
     }
 }
 
-/// Newton's step from some starts ends in the last place beside the pole, where the next one is not seen: no solution all the same.
+/// From some starts, Newton's step ends in the last place next to the pole, where the next one is not seen. There is no
+/// solution all the same.
 #[test]
 fn a_pole_is_no_solution() {
     let target = Vector1::new(-3.0);

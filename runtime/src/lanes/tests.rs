@@ -21,8 +21,8 @@ fn in_all_lanes(sign: Orientation) -> Orientation {
     Orientation::new(everywhere, if sign == Orientation::NEGATIVE { everywhere } else { !everywhere })
 }
 
-/// NaN have no sign and no payload that matters. What is compared is a number in memory: of a square root that it sees, the optimiser
-/// (rustc 1.95) has been seen to take NaN for a number.
+/// NaN have no sign and no payload that matters. The comparison reads numbers from memory. Where the optimiser (rustc
+/// 1.95) sees a square root, it has been seen to take NaN for a number.
 fn bits(x: f64) -> u64 {
     let x = core::hint::black_box(x);
     if x.is_nan() { u64::MAX } else { x.to_bits() }

@@ -10,7 +10,8 @@ const TRIALS: usize = 60;
 /// Doublings of a first step size for which there is no solution.
 const DOUBLINGS: usize = 10;
 
-/// What one step size gives: an answer found by so many sweeps, with the slope dV/dh there, and the sum of the sizes of its terms.
+/// The result for one step size: an answer and the sweeps that it took, with the slope dV/dh there, and the sum of the
+/// sizes of its terms.
 pub(crate) struct Trial<T, A> {
     pub answer: A,
     pub sweeps: u32,
@@ -42,8 +43,9 @@ impl<T: Real> Bracket<T> {
         }
     }
 
-    /// The answer at the step size at which the slope vanishes or falls beyond a limit, to `accuracy`, from `first` on; with the sweeps of
-    /// all trials. Where `retreats`, a trial that failed is followed by one nearer to a step size that has a solution.
+    /// The answer at the step size at which the slope vanishes or falls beyond a limit, to `accuracy`. The search
+    /// begins with `first`, and counts the sweeps of all trials. Where `retreats`, a trial that failed is followed by
+    /// one nearer to a step size that has a solution.
     pub fn critical<A>(
         mut self,
         first: T,

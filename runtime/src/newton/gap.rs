@@ -1,4 +1,4 @@
-//! What separates an end from its target, and the shortest motion that closes it.
+//! The difference between an end and its target, and the shortest motion that closes it.
 
 use super::Spectrum;
 use crate::Real;
@@ -12,8 +12,9 @@ pub(crate) fn is_reached<T: Real>(distance: T, scale: T) -> bool {
     distance <= T::EPSILON.sqrt() * (scale + distance)
 }
 
-/// How many times longer the arc over a gap is than what is `along` the tangent of its chord, with so much `across`: θ/sin θ, as on a circle of any
-/// radius the chord makes the angle θ/2 with the tangent. `None` where it is no longer.
+/// How many times longer the arc over a gap is than the part `along` the tangent of its chord, with so much `across`.
+/// This is θ/sin θ: on a circle of any radius the chord makes the angle θ/2 with the tangent. `None` where it is no
+/// longer.
 #[inline]
 pub(crate) fn arc_per_chord<T: Real>(along: T, across: T) -> Option<T> {
     let angle = T::from_f64(2.0) * (across / along).atan();
@@ -52,7 +53,8 @@ pub fn regular<T: Real, const M: usize>(a: &SMatrix<T, M, M>, b: &SVector<T, M>)
 /// x, and the projector to the motions that change nothing.
 pub(crate) type Closing<T, const M: usize> = (SVector<T, M>, Option<SMatrix<T, M, M>>);
 
-/// The smallest x with A x = b, A symmetric with no negative eigenvalue, and the orthogonal projector to its kernel, of those below √ε of the largest.
+/// The smallest x with A x = b, for a symmetric A with no negative eigenvalue, and the orthogonal projector to its
+/// kernel. Eigenvalues below √ε of the largest belong to the kernel.
 #[inline]
 pub(crate) fn shortest<T: Real, const M: usize>(a: &SMatrix<T, M, M>, b: &SVector<T, M>) -> Closing<T, M> {
     regular(a, b).map_or_else(|| singular(a, b), |x| (x, None))

@@ -5,9 +5,9 @@
 use crate::Real;
 use core::array::from_fn;
 
-/// The factors of a symmetric matrix, of which only the lower triangle was read.
+/// The factors of a symmetric matrix; only its lower triangle was read.
 pub(crate) struct Ldl<T, const M: usize> {
-    /// L below its diagonal of ones. What is above counts for nothing.
+    /// L below its diagonal of ones. Entries above it are ignored.
     l: [[T; M]; M],
     /// Δ⁻¹
     reciprocals: [T; M],

@@ -13,14 +13,14 @@ pub(crate) struct Spectrum<T, const M: usize> {
     pub vectors: SMatrix<T, M, M>,
 }
 
-/// What a mirrored eigenvalue is at least, relative to the largest: steps along a direction without curvature end somewhere.
+/// The least mirrored eigenvalue, relative to the largest: it bounds steps along a direction without curvature.
 const MIRRORED: f64 = 1e-4;
 /// Sweeps over all pairs of rows. Convergence is quadratic: six do for M = 3, ten for M = 64.
 const SWEEPS: usize = 24;
 
 impl<T: Real, const M: usize> Spectrum<T, M> {
-    /// By Jacobi rotations, of which only the lower triangle of `a` is read. NaN stay NaN. Accuracy: ε‖A‖ for each eigenvalue. Cost: about
-    /// 3M³ multiplications a sweep.
+    /// By Jacobi rotations; only the lower triangle of `a` is read. NaN stay NaN. Accuracy: ε‖A‖ for each eigenvalue.
+    /// Cost: about 3M³ multiplications a sweep.
     ///
     /// Source: Golub and Van Loan, *Matrix Computations*, section 8.5.
     #[cold]
@@ -42,7 +42,8 @@ impl<T: Real, const M: usize> Spectrum<T, M> {
         Self { values: a.diagonal(), ..spectrum }
     }
 
-    /// The rotation of rows and columns p and q that makes a_pq vanish; `false` where it is nothing beside the diagonal.
+    /// The rotation of rows and columns p and q that makes a_pq vanish; `false` if a_pq is negligible relative to the
+    /// diagonal.
     fn annihilate(&mut self, a: &mut SMatrix<T, M, M>, p: usize, q: usize) -> bool {
         let off = a[(p, q)];
         let tiny = T::EPSILON * T::from_ratio(1, 4);
@@ -88,7 +89,7 @@ impl<T: Real, const M: usize> Spectrum<T, M> {
 /// S A S = V Λ Vᵀ with S = diag |A|^(−1/2): the choice of units of the rows changes neither V nor Λ.
 pub(crate) struct Equilibrated<T, const M: usize> {
     pub spectrum: Spectrum<T, M>,
-    /// The diagonal of S; rows that are nothing beside the others count as 0.
+    /// The diagonal of S; rows that are negligible relative to the others count as 0.
     pub scale: SVector<T, M>,
 }
 

@@ -9,7 +9,7 @@ fn nearest_rotation(a: Matrix3<f64>) -> Matrix3<f64> {
     (0..6).fold(a, |x, _| (x + x.try_inverse().expect("regular").transpose()) / 2.0)
 }
 
-/// To the square of the defect; what is off by rounding only keeps its bits, and NaN stay.
+/// To the square of the defect. A matrix that is off by rounding only keeps its bits, and NaN stays NaN.
 #[test]
 fn what_has_left_its_space_comes_back() {
     let rotation = Matrix3::new(0.36, 0.48, -0.8, -0.8, 0.6, 0.0, 0.48, 0.64, 0.6);
@@ -26,7 +26,8 @@ fn what_has_left_its_space_comes_back() {
     assert_eq!(of_length_one(Vector3::<f64>::y()), Vector3::y());
 }
 
-/// R + δ and q + δ come back as exactly as R and q do, though δ is counted apart; what is on its space keeps its rest.
+/// R + δ and q + δ come back as exactly as R and q do, though δ is counted apart. A value on its space keeps its
+/// rounding error.
 #[test]
 fn rests_are_brought_back_too() {
     let rotation = Matrix3::new(0.36, 0.48, -0.8, -0.8, 0.6, 0.0, 0.48, 0.64, 0.6);

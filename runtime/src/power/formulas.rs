@@ -1,4 +1,4 @@
-//! What the derive macro writes for every power.
+//! The code that the derive macro writes for every power.
 
 /// The formulas of a power: those of each site, one after the other.
 #[doc(hidden)]
@@ -43,7 +43,7 @@ macro_rules! __formulas_of_sites {
         fn momentum_components(m: &Self::MomentumMatrix) -> Self::Momentum {
             <Self as $crate::__private::Power<$sites>>::components_of(m)
         }
-        /// By how much q violates what the declaration promises, at the site where it does most.
+        /// By how much q violates the promise of the declaration, at the site where it does most.
         fn orbit_defect(&self, q: &Self::Configuration) -> $scalar {
             $crate::__private::Power::power_orbit_defect(self, q)
         }

@@ -18,7 +18,8 @@ pub struct Order<const N: usize>;
 impl<S: Substep<0, M> + HamiltonEquations<N, M>, M: Method<S>, const N: usize> Sequence<S, M> for Order<N> {
     type Carry = Apart;
 
-    /// N⁺ − N = J(q⁺, p⁺) − J(q, p) is made of the changes of q and p at the middle of the step: J is linear in p and affine in q.
+    /// N⁺ − N = J(q⁺, p⁺) − J(q, p) is computed from the changes of q and p at the middle of the step. This is exact,
+    /// since J is linear in p and affine in q.
     #[inline]
     fn step(at: At<'_, S, M>, (q, mu, left): From<'_, S, M, Apart>, _: &S::Input) -> To<S, M, Apart> {
         let (mut state, ()) = Moving::<S, M>::start::<Apart>(q, mu, left);

@@ -3,10 +3,12 @@
 //! ```text
 //! Ψ_h = Φ_{γ_1 h} ∘ Φ_{γ_2 h} ∘ … ∘ Φ_{γ_m h},    γ_i = γ_{m+1−i},    Σ γ_i = 1
 //! ```
-//! What every Φ conserves, Ψ does: group, momenta, symplectic form. Kicks that meet differ by the ratio of sizes: one gradient serves both.
+//! Ψ conserves every quantity that each Φ conserves: group, momenta, symplectic form. Kicks that meet differ by the
+//! ratio of sizes: one gradient serves both.
 //!
-//! Source: Hairer, Lubich and Wanner, *Geometric Numerical Integration*, section V.3.2: order 4 is Suzuki's (1990), orders 6 and 8 are those of
-//! Kahan and Li, *Composition constants for raising the orders of unconventional schemes for ordinary differential equations* (1997).
+//! Source: Hairer, Lubich and Wanner, *Geometric Numerical Integration*, section V.3.2. Order 4 is Suzuki's (1990).
+//! Orders 6 and 8 are those of Kahan and Li (1997), *Composition constants for raising the orders of unconventional
+//! schemes for ordinary differential equations*.
 
 use super::{At, AtOf, Before, Pair, Parted, Scheme, Stepped};
 use crate::parts::{Mu, Q};
@@ -30,7 +32,7 @@ pub struct OfOrderSix;
 pub struct OfOrderEight;
 
 impl Sizes<3> for OfOrderFour {
-    /// 1/(4 − ∛4), and what is left for the middle.
+    /// 1/(4 − ∛4), and the size that remains for the middle.
     const SIZES: [f64; 3] = [0.414_490_771_794_375_7, 0.414_490_771_794_375_7, -0.657_963_087_177_503];
 }
 
@@ -116,7 +118,8 @@ impl<S: Clebsch, M: Method<S>, I: Scheme<S, M>, Z: Sizes<K>, const K: usize> Sch
     }
 }
 
-/// The state after a composed step from the time `t`. `scaled` is what a state holds for a step that is so many times as long.
+/// The state after a composed step from the time `t`. `scaled` converts the data of a step for a step that is so many
+/// times as long.
 #[inline(always)]
 pub fn compose<T: Scalar, C: Clone, X, const K: usize>(
     stages: &Stages<T, C, K>,
@@ -188,7 +191,7 @@ impl<T: Scalar, C: Clone, const K: usize> Stages<T, C, K> {
 /// One of the steps of a composed step.
 #[derive(Clone, Copy, Debug)]
 pub struct SizedStep<'a, T, C> {
-    /// What no step of its size changes.
+    /// The constants of steps of its size.
     pub constants: &'a C,
     /// c_i h, the time from the start of the composed step to its own.
     pub start: T,
@@ -199,7 +202,8 @@ pub struct SizedStep<'a, T, C> {
 }
 
 impl<T: Scalar, C> SizedStep<'_, T, C> {
-    /// The slopes of its momenta along h and t, given those along its own size and time: γ_i ∂/∂h_i + c_i ∂/∂t_i for the column of h.
+    /// The slopes of its momenta along h and t, from those along its own size and time. The column of h is γ_i ∂/∂h_i +
+    /// c_i ∂/∂t_i.
     #[inline]
     pub fn slopes<const M: usize, const P: usize>(
         &self,

@@ -1,4 +1,4 @@
-//! The edges of a step, one for each substep: what the calculus of variations looks at.
+//! The edges of a step, one for each substep: the calculus of variations works on them.
 
 use super::composed::{Composed, Sizes};
 use super::great_circle::GreatCircle;
@@ -14,7 +14,7 @@ pub trait Edges<S: Clebsch, const M: usize, B: Method<S> = Declared>: Scheme<S, 
     /// How many.
     const EDGES: usize;
 
-    /// What is asked for at an edge of the step.
+    /// The answer to a question about an edge of the step.
     fn visit<V: Visit<S, M, B>>(at: AtOf<'_, S, Self, B>, edge: usize, visit: V) -> V::Output;
 
     /// The slopes of an edge along h and t of the composed step, in the columns that are told.
@@ -29,7 +29,7 @@ pub trait Edges<S: Clebsch, const M: usize, B: Method<S> = Declared>: Scheme<S, 
     }
 }
 
-/// What is asked for at an edge.
+/// A question about an edge.
 pub trait Visit<S: Clebsch, const M: usize, B: Method<S> = Declared> {
     /// The answer.
     type Output;
@@ -56,7 +56,7 @@ impl<S: Clebsch, B: Method<S>, const M: usize> Visit<S, M, B> for Drift<'_, S> {
     }
 }
 
-/// What a method of [`VariedSubstep`] gives, at the ends of an edge.
+/// The questions that a method of [`VariedSubstep`] answers at the ends of an edge.
 macro_rules! asked {
     ($($doc:literal $name:ident: $bound:ident $(<$m:ident>)?, $method:ident -> $output:ty;)*) => { $(
         #[doc = $doc]

@@ -6,13 +6,13 @@ use super::substep::Moving;
 use crate::parts::{FreeMotion, Mu, Q, Substep, T, U};
 use crate::{Error, Method};
 
-/// (q, N) ↦ (q⁺, N⁺) along a free motion. What the motion keeps is made once, and travels along with the state.
+/// (q, N) ↦ (q⁺, N⁺) along a free motion. The constants of the motion are computed once, and are a part of the state.
 pub type AlongFreeMotion = InSequence<Order>;
 
 /// The order of steps [`AlongFreeMotion`].
 pub struct Order;
 
-/// What the motion keeps.
+/// The data that steps share: the constants of the motion.
 pub struct Kept;
 
 impl<S: FreeMotion<M>, M: Method<S>> Carry<S, M> for Kept {

@@ -11,11 +11,13 @@ use core::marker::PhantomData;
 use nalgebra::SVector;
 use num_traits::One;
 
-/// (q, w) ↦ (q⁺, w⁺): w + ∂U₀, q⁺ = cq + aw and w⁺ = cw − a|w|²q with a = h/κ and c² = 1 − a²|w|², w + ∂U₁. What is not perpendicular to q is taken off w in
-/// each step, which rounding makes necessary. C says how the gradients of a step and the next are told.
+/// (q, w) ↦ (q⁺, w⁺): w + ∂U₀, q⁺ = cq + aw and w⁺ = cw − a|w|²q with a = h/κ and c² = 1 − a²|w|², w + ∂U₁. Each step
+/// removes the component of w along q, which comes from rounding. C says how the gradients of a step and the next are
+/// told.
 pub struct GreatCircle<C>(PhantomData<C>);
 
-/// q ↦ q⁺ of a point that nothing pushes, with N = vuᵀ − uvᵀ, which stays: q⁺ = cq + aw with w = Nq, a = h/κ and c² = 1 − a²|w|². A state holds u and v.
+/// q ↦ q⁺ of a point that nothing pushes, with constant N = vuᵀ − uvᵀ. The step is q⁺ = cq + aw with w = Nq, a = h/κ
+/// and c² = 1 − a²|w|². A state holds u and v.
 pub type FreeGreatCircle = GreatCircle<Unpushed>;
 
 /// There are no gradients.
@@ -24,7 +26,7 @@ pub struct Unpushed;
 /// A point in n dimensions.
 type Point<S, const N: usize> = SVector<<S as Clebsch>::Scalar, N>;
 
-/// What a state holds of the momentum M = wqᵀ − qwᵀ.
+/// The stored form of the momentum M = wqᵀ − qwᵀ.
 pub trait Plane<T: Scalar, const N: usize>: Space<T> {
     /// Of D components of M.
     fn of<const D: usize>(q: &SVector<T, N>, mu: &SVector<T, D>) -> Self;
@@ -61,9 +63,9 @@ impl<T: Scalar, const N: usize> Plane<T, N> for (SVector<T, N>, SVector<T, N>) {
 
 /// How points are pushed between their turns.
 pub trait Turns<S: GreatCircles<M>, M: Method<S>, const N: usize>: Sized {
-    /// What a state holds of its momentum.
+    /// The stored form of the momentum.
     type Plane: Plane<S::Scalar, N>;
-    /// What one step leaves to the next.
+    /// The data that one step passes to the next.
     type Gradient: Space<S::Scalar>;
 
     /// The gradient at q.
@@ -85,7 +87,7 @@ pub trait Turns<S: GreatCircles<M>, M: Method<S>, const N: usize>: Sized {
     ) -> Result<(), Error>;
 }
 
-/// Where a turn finds q, what is held of the momentum, and the gradient, and writes the next ones.
+/// The places of q, of the stored momentum and of the gradient. A turn reads them there and writes the next ones.
 type Places<'a, S, C, M, const N: usize> =
     (&'a mut Point<S, N>, &'a mut <C as Turns<S, M, N>>::Plane, &'a mut <C as Turns<S, M, N>>::Gradient);
 
@@ -231,7 +233,7 @@ where
         Ok((q, held, left))
     }
 
-    /// On T*Rⁿ, with what p has along q: both are turned in their plane.
+    /// On T*Rⁿ: p may have a component along q, and both are turned in their plane.
     fn step_symmetric(at: At<'_, S, M>, q: &Point<S, N>, p: &Point<S, N>) -> Result<Pair<S>, Error> {
         let p = plus(*p, at.system.start_gradient(at.constants, at.t, q));
         let (q, p) = turned_in_plane(S::turn(at.constants), q, &p)?;

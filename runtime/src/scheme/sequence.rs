@@ -1,4 +1,4 @@
-//! What all schemes have in common that are sequences of the parts of a step.
+//! The common part of all schemes that are sequences of the parts of a step.
 
 use super::substep::{RestsOf, inverse_legendre, symmetric};
 use super::{At, Before, Pair, Scheme, Stepped, one_by_one};
@@ -9,7 +9,7 @@ use core::marker::PhantomData;
 
 /// The order in which a step calls the parts of a system, with one set of constants, and with states that hold N itself.
 pub trait Sequence<S: Substep<0, M>, M: Method<S>>: Sized {
-    /// What one step leaves to the next, beside the rests of compensated sums.
+    /// The data that one step passes to the next, in addition to the rounding errors of compensated sums.
     type Carry: Carry<S, M>;
 
     /// As [`Scheme::step`].
@@ -96,17 +96,17 @@ fn called<S: Substep<0, M>, M: Method<S>, P: Sequence<S, M>>(
     P::step(at, state, u)
 }
 
-/// What one step leaves to the next: an impulse, and the rests of compensated sums.
+/// The data that one step passes to the next: an impulse, and the rounding errors of compensated sums.
 pub(super) type LeftBy<S, M, C> =
     <<S as Parts<M>>::Sums as Sums>::Left<<S as Clebsch>::Scalar, <C as Carry<S, M>>::Impulse, Q<S>, Mu<S>>;
 
-/// The state before a step: q, N, and what the last step has left.
+/// The state before a step: q, N, and the data that the last step passes on.
 pub(super) type From<'a, S, M, C> = (&'a Q<S>, &'a Mu<S>, &'a LeftBy<S, M, C>);
 
 /// The state after a step.
 pub(super) type To<S, M, C> = Result<(Q<S>, Mu<S>, LeftBy<S, M, C>), Error>;
 
-/// The impulse and the rests of what a step has left.
+/// The impulse and the rounding errors in the data of a step.
 #[inline(always)]
 pub(super) fn parted<S: Parts<M>, M: Method<S>, C: Carry<S, M>>(
     left: &LeftBy<S, M, C>,
@@ -114,9 +114,9 @@ pub(super) fn parted<S: Parts<M>, M: Method<S>, C: Carry<S, M>>(
     S::Sums::parted(left)
 }
 
-/// What the end of one step and the start of the next have in common.
+/// The data that the end of one step and the start of the next share.
 pub trait Carry<S: Parts<M>, M: Method<S>> {
-    /// What one step leaves to the next.
+    /// The data that one step passes to the next.
     type Impulse: Space<S::Scalar>;
 
     /// The impulse that the first step takes.

@@ -24,10 +24,10 @@ pub trait SiteKicks<S: Power<N>, const N: usize> {
     const START: f64;
     /// That of the kick at the end.
     const END: f64;
-    /// What one step leaves to the next: a kick, or nothing.
+    /// The data that one step passes to the next: a kick, or nothing.
     type Left: Space<S::Scalar>;
 
-    /// What is left of this kick.
+    /// The data of this kick.
     fn left(kick: impl FnOnce() -> Mu<S>) -> Self::Left;
     /// The kick, if it is left.
     fn kick(left: &Self::Left) -> Option<&Mu<S>>;
@@ -35,7 +35,7 @@ pub trait SiteKicks<S: Power<N>, const N: usize> {
     fn place<'a>(left: &'a mut Self::Left, room: &'a mut Mu<S>) -> &'a mut Mu<S>;
 }
 
-/// One type for each: both weights, what one step leaves to the next, and the three functions of that.
+/// One type for each line: both weights, the data that one step passes to the next, and its three functions.
 macro_rules! kicks {
     ($($doc:literal $name:ident: $start:literal, $end:literal, $left:ty,
        |$kick:pat_param| $made:expr, |$one:pat_param| $given:expr, |$next:pat_param, $room:pat_param| $place:expr;)*) => { $(

@@ -6,12 +6,15 @@
 //! D is the exact flow of the kinetic energy T = ½ μ·Σ⁻¹μ and K_i the flow of b_i h V − g_i h³ {V, {V, T}}. The force gradient {V, {V, T}} = G·Σ⁻¹G,
 //! G = J(q, ∂V), is a function of q too: each K_i is a kick. Every flow, and so the step, conserves group, symplectic form and momenta.
 //!
-//! Kinetic energy is quadratic: the exact drift of the time a h and the momentum μ is that of the time h and the momentum a μ.
+//! Kinetic energy is quadratic. So the exact drift of the time a h and the momentum μ is that of the time h and the
+//! momentum a μ.
 //!
-//! Source: kicks with force gradients are those of S. A. Chin, *Symplectic integrators from composite operator factorizations*, Phys. Lett. A
-//! 226 (1997). The nodes here are those of quadrature to high order in V, so that the error for a weak potential is small: order (8, 4) in (V, V²)
-//! with four kicks and order 4, the nodes of Gauss and Legendre, and (8, 6, 6) with five and order 6. Without gradients they are those of S. Blanes and
-//! P. C. Moan, *Practical symplectic partitioned Runge–Kutta and Runge–Kutta–Nyström methods*, J. Comput. Appl. Math. 142 (2002).
+//! Source: kicks with force gradients are those of S. A. Chin, *Symplectic integrators from composite operator
+//! factorizations*, Phys. Lett. A 226 (1997). The nodes here are those of quadrature to high order in V, so the error
+//! for a weak potential is small. With four kicks the order is 4, and (8, 4) in (V, V²): the nodes of Gauss and
+//! Legendre. With five kicks the order is 6, and (8, 6, 6). Without gradients they are those of S. Blanes and P. C.
+//! Moan, *Practical symplectic partitioned Runge–Kutta and Runge–Kutta–Nyström methods*, J. Comput. Appl. Math. 142
+//! (2002).
 
 use super::sequence::{Apart, From, InSequence, Sequence, To};
 use super::substep::{Moving, moved};
@@ -136,7 +139,8 @@ impl<S: Substep<0, M> + SplitKicks<M>, M: Method<S>, Z: Kicks<K>, const K: usize
     }
 }
 
-/// The coordinates of the drift of a part of the step: it is the drift of the step with this part of the momentum, at any time.
+/// The coordinates of the drift of a part of the step. It is the drift of the step with this part of the momentum, at
+/// any time.
 #[inline(always)]
 fn solve<S: Substep<0, M>, M: Method<S>>(at: At<'_, S, M>, part: T<S>, q: &Q<S>, mu: &Mu<S>) -> Solved<S::Coordinates> {
     let mu = mu.zip_map(mu, |mu, _| mu * part);

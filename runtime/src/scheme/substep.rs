@@ -6,10 +6,10 @@ use crate::parts::{Mu, Parts, Q, Substep};
 use crate::sums::{Rests, Sums};
 use crate::{Clebsch, Error, Method, Scalar, Space};
 
-/// What rounding has taken off q and N of a system.
+/// The rounding errors of q and N of a system so far.
 pub(super) type RestsOf<S, M> = Rests<<S as Parts<M>>::Sums, <S as Clebsch>::Scalar, Q<S>, Mu<S>>;
 
-/// (q, N) while it moves, with what rounding has taken off.
+/// (q, N) while it moves, with the rounding errors.
 pub(super) struct Moving<S: Parts<M>, M: Method<S>> {
     pub q: Q<S>,
     pub mu: Mu<S>,
@@ -61,7 +61,8 @@ impl<S: Parts<M>, M: Method<S>> Moving<S, M> {
     }
 }
 
-/// One substep, from its first kick to the one before its last. What does not change stays where it is, and is not copied.
+/// One substep, from its first kick to the one before its last. Values that do not change stay in place, without a
+/// copy.
 #[inline(always)]
 pub(super) fn substep<S: Substep<K, M>, M: Method<S>, const K: usize>(
     at: At<'_, S, M>,

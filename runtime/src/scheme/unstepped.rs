@@ -1,4 +1,4 @@
-//! What stands where a declaration has an error.
+//! The scheme of a declaration that has an error.
 
 use super::{At, Before, Pair, Scheme, Stepped};
 use crate::parts::{Mu, Q};

@@ -2,8 +2,8 @@ use super::accumulate;
 use nalgebra::{Matrix2, Quaternion, Vector3};
 use proptest::prelude::*;
 
-/// 10⁶ tenths: what is added is the number next to 1/10, a million times, and the nearest number to that is found; plain sums are off in
-/// the sixth digit from the last.
+/// 10⁶ tenths: the number next to 1/10 is added a million times, and the result is the nearest number to that product.
+/// Plain sums are off in the sixth digit from the last.
 #[test]
 fn a_million_sums_are_as_one_product() {
     let (mut sum, mut rest, mut plain) = (0.0_f64, 0.0, 0.0);

@@ -55,7 +55,7 @@ fn is_that_of_its_matrix<const N: usize, const M: usize>(factor: SMatrix<f64, N,
     assert!(Jacobian::<f64, M>::largest_entry(&map) >= matrix.amax() * (1.0 - 1e-15));
 }
 
-/// Random factors, of which many have pairs of complex eigenvalues and maps with negative determinants; of bodies near rest.
+/// Random factors of bodies near rest. Many have pairs of complex eigenvalues, and maps with negative determinants.
 #[test]
 fn maps_are_inverted() {
     let seed = &mut 7;

@@ -1,7 +1,7 @@
 use super::{Clock, Time};
 
-/// 0.1 has no exact binary form: plain sums are off by 99 units in the last place after 1000 steps in double precision, and
-/// by 9 % after 10⁷ in single.
+/// 0.1 has no exact binary form. Plain sums are off by 99 units in the last place after 1000 steps in double precision,
+/// and by 9 % after 10⁷ in single.
 #[test]
 fn clocks_do_not_drift() {
     let mut clock = Clock::at(0.0_f64);

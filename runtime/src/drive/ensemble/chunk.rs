@@ -5,7 +5,7 @@ use crate::{Body, Clebsch, Error, Failure, Mask, Method, Scalar, Space, State, S
 use alloc::vec::Vec;
 use num_traits::Zero;
 
-/// Chunks that take turns: what one waits for, another one has the time to do.
+/// Chunks that take turns: while one waits for a result, the processor works on another.
 pub const TOGETHER: usize = 4;
 
 /// As many bodies as there are lanes, or fewer: then the last one is in the lanes that are left too.

@@ -26,9 +26,9 @@ pub(crate) struct Homotopy<'a, T: Real, E: Equation<T, M, N>, const M: usize, co
     pub moving: E::Terms,
     /// The sign of det Dρ on the branch.
     pub branch: Option<Orientation>,
-    /// Largest entry of dξ/ds at the identity: what a change of ξ is measured by.
+    /// Largest entry of dξ/ds at the identity: the unit for a change of ξ.
     pub scale: T,
-    /// Size of ρ(0; μ): what a residual is measured by.
+    /// Size of ρ(0; μ): the unit for a residual.
     pub weight: T,
     /// The linearisations on the path.
     pub count: u32,
@@ -86,7 +86,8 @@ impl<'a, T: Real, E: Equation<T, M, N>, const M: usize, const N: usize> Homotopy
         size(residual) <= T::from_f64(8.0) * T::EPSILON * terms && self.is_small(residual, s)
     }
 
-    /// Whether a residual is small beside s μ, as it is not beside a pole of ρ, where corrections are as small as the distance to it.
+    /// Whether a residual is small relative to s μ. It is not near a pole of ρ, where corrections are as small as the
+    /// distance to it.
     pub fn is_small(&self, residual: &SVector<T, M>, s: T) -> bool {
         size(residual) <= self.weight * s.abs() * T::from_ratio(1, 16)
     }

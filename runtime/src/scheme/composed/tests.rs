@@ -28,7 +28,8 @@ fn sum_of_powers(sizes: &[f64], power: i32) -> f64 {
     sizes.iter().map(|size| size.powi(power)).sum()
 }
 
-/// Σ γ = 1 and Σ γ³ = 0 for order 4, Σ γ⁵ = 0 too for 6, Σ γ⁷ = 0 too for 8; the conditions that mix them show in the measured orders.
+/// Σ γ = 1 and Σ γ³ = 0 for order 4, also Σ γ⁵ = 0 for 6 and Σ γ⁷ = 0 for 8. The conditions that mix them show in the
+/// measured orders.
 #[test]
 fn the_odd_powers_of_the_sizes_cancel() {
     let [four, six, eight] = [all(&OfOrderFour::SIZES), all(&OfOrderSix::SIZES), all(&OfOrderEight::SIZES)];
@@ -44,7 +45,8 @@ fn the_odd_powers_of_the_sizes_cancel() {
 proptest! {
     #![proptest_config(ProptestConfig { cases: 32, failure_persistence: None, ..ProptestConfig::default() })]
 
-    /// By the chain rule: f = a s + b τ of the size s and the time τ of a stage, which start where h and t are.
+    /// By the chain rule: f = a s + b τ of the size s and the time τ of a stage. At the start of the step these are h
+    /// and t.
     #[test]
     fn slopes_are_those_along_the_whole_step(a in -1.0_f64..1.0, b in -1.0_f64..1.0, h in 0.1_f64..1.0, number in 0_usize..9) {
         let at = |h: f64, t: f64| {

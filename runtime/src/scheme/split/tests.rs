@@ -22,7 +22,8 @@ fn check(kicks: &[Kick], quadrature: i32) {
     }
 }
 
-/// To first order in V a step is a quadrature of the kicks along the drift: of degree 8 here, and of the order without gradients.
+/// To first order in V a step is a quadrature of the kicks along the drift. Its degree is 8 here, and the order without
+/// gradients.
 #[test]
 fn kicks_are_a_quadrature() {
     check(&GradientFour::KICKS, 8);
