@@ -97,20 +97,22 @@ impl<'a, S: Variational<M, Scalar: Real>, B: Differentiated<S, M>, const M: usiz
         self.stepper
     }
 
-    /// The edge that stays at `q`, as storage: a path of N steps has N of them; 2N where a cost is composed with its adjoint (order 2).
+    /// The edge that stays at `q`, as storage. A path of N steps has N of them, or 2N if a cost is composed with its
+    /// adjoint (order 2).
     pub fn rest(&self, q: &S::Configuration) -> Node<S, M> {
         Node::rest(&self.stepper.system, q)
     }
 
     /// The path from `start` to `target` on which the action Σ ℓd is critical, as near to the guess as Newton's method finds it.
     ///
-    /// The number of steps is that of `path` divided by the edges in a step; its nodes are overwritten. F⁺ℓd of each edge is F⁻ℓd of the
-    /// next and q_N is the target, both up to round-off; where motions fix the target, the last momentum vanishes on them.
+    /// The number of steps is that of `path` divided by the edges in a step; its nodes are overwritten. F⁺ℓd of each
+    /// edge is F⁻ℓd of the next, and q_N is the target, both up to round-off. Where motions fix the target, the last
+    /// momentum vanishes on them.
     ///
     /// Work: three to six linearisations from a good guess, each linear in the number of nodes; at most 200. [`Guess::Geodesic`] begins with eight edges.
     ///
     /// # Errors
-    /// * [`Error::PathLength`], [`Error::NotFinite`], [`Error::OffOrbit`] for what was given;
+    /// * [`Error::PathLength`], [`Error::NotFinite`], [`Error::OffOrbit`] for the arguments;
     /// * [`Error::UndeterminedDirection`] and [`Error::Unreachable`] where the target is opposite to the start or on another orbit;
     /// * [`Error::NoExtremal`] where the work was not enough.
     ///
@@ -177,8 +179,9 @@ impl<'a, S: Variational<M, Scalar: Real>, B: Differentiated<S, M>, const M: usiz
         })
     }
 
-    /// The step size in `steps`, and so the final time, at which Σ ℓd + φ(t_N, q_N) of the extremal to `target`, or to anywhere, is critical:
-    /// the energy is ∂φ/∂t there. The search starts at the step size of the stepper and goes where the sum falls, at most to a limit.
+    /// The step size in `steps`, and so the final time, at which Σ ℓd + φ(t_N, q_N) of the extremal is critical. The
+    /// extremal leads to `target`, or to anywhere. The energy is ∂φ/∂t there. The search starts at the step size of the
+    /// stepper and goes where the sum falls, at most to a limit.
     ///
     /// The nodes hold the extremal then: a stepper of that step size and [`Guess::Path`] give it with all its numbers. By the envelope
     /// theorem the derivative by h is that at a fixed path. It is a central difference: h has ten digits of an `f64`, the action all.

@@ -4,17 +4,18 @@
 //! Y_i = y + h Σ_j a_ij K_j,    K_i = f(t + c_i h, Y_i),    y⁺ = y + h Σ_i b_i K_i,    y = (q, p)
 //! ```
 //! The method is symplectic on T*Q, and the same forwards and backwards. It conserves every invariant that is quadratic
-//! in (q, p). With a linear action these are the momentum map of each symmetry and, where q lies on an orbit of
-//! rotations, the equations of that orbit.
+//! in (q, p). With a linear action these are the momentum maps of all symmetries. Where q lies on an orbit of
+//! rotations, the equations of that orbit are invariants too.
 //!
-//! The nodes lie the same about the middle of the step, and so a_ij − b_j/2 changes its sign where both stages are mirrored. Of sums and differences
-//! of the slopes K at mirrored nodes, two matrices of half the size make all stages:
+//! The nodes lie the same about the middle of the step, and so a_ij − b_j/2 changes its sign where both stages are
+//! mirrored. So two matrices of half the size make all stages, from sums and differences of the slopes K at mirrored
+//! nodes. A tilde stands for the mirrored stage.
 //! ```text
 //! Y, Ỹ = y + h/2 Σ b_j (K̃_j + K_j) + h Σ even_ij (K̃_j − K_j) ± h Σ odd_ij (K̃_j + K_j),
 //! even_ij = (a_ij̃ − a_ij)/2,    odd_ij = (a_ij + a_ij̃ − b_j)/2
 //! ```
-//! with a tilde for the mirrored stage. Slopes are found by iteration: each sweep over all stages leaves a part of the error that is proportional to h.
-//! All stages of a sweep are independent, so that they fill the lanes of vector registers.
+//! Slopes are found by iteration: each sweep over all stages leaves a part of the error that is proportional to h. All
+//! stages of a sweep are independent, so that they fill the lanes of vector registers.
 //!
 //! Source: Hairer, Lubich and Wanner, *Geometric Numerical Integration*, sections II.1.3, IV.2.1 and VIII.6.
 

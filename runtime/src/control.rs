@@ -134,12 +134,14 @@ impl<S: Controlled<D, U, C, Scalar: Real>, const D: usize, const U: usize, const
     /// The number of steps is that of `plan`. The inputs, costates and multipliers that its stages hold are the guess: none of
     /// [`stage`](Self::stage), an earlier solution, or inputs from elsewhere. They need neither lead to the target nor keep the bounds.
     ///
-    /// Work: two or three linearisations where the system is linear and its price quadratic, four to eight from a good guess. With bounds, or
-    /// from standing still, ten to forty; at most 400 in each of up to six attempts. Each is linear in the number of stages. Where the guess
-    /// does not lead to the target, the gap is priced and inputs are varied. What is found then is a local minimum, and need not be the best one.
+    /// Work: two or three linearisations where the system is linear and its price quadratic, four to eight from a good
+    /// guess. With bounds, or from standing still, ten to forty; at most 400 in each of up to six attempts. Each is
+    /// linear in the number of stages. Where the guess does not lead to the target, the gap is priced and inputs are
+    /// varied. The result is then a local minimum, and need not be the best one.
     ///
     /// # Errors
-    /// * [`Error::PathLength`], [`Error::NotFinite`], [`Error::OffOrbit`], [`Error::OutsideMomentumSpace`] for what was given;
+    /// * [`Error::PathLength`], [`Error::NotFinite`], [`Error::OffOrbit`], [`Error::OutsideMomentumSpace`] for the
+    ///   arguments;
     /// * [`Error::Uncontrollable`] where inputs do not move the end towards the target;
     /// * [`Error::Infeasible`] and [`Error::TargetMissed`] where bounds cannot be satisfied, or leave no way to the target;
     /// * [`Error::NoExtremal`] where the work was not enough;
@@ -163,12 +165,13 @@ impl<S: Controlled<D, U, C, Scalar: Real>, const D: usize, const U: usize, const
     /// As [`solve`](Self::solve), with the step size in `steps` at which the least price is least, found from that of this control on:
     /// [`Optimum::step_size`]. At a limit the price may fall beyond it.
     ///
-    /// By the envelope theorem the least price V of N steps changes with the step size as the Lagrangian does at the solution,
+    /// By the envelope theorem the least price V of N steps changes with the step size as the Lagrangian does. The slope
+    /// is that at the solution, with fixed multipliers.
     /// ```text
     /// dV/dh = Σ d/dh (ℓ + p·f + z·a) + N ∂φ/∂t
     /// ```
-    /// at fixed multipliers. Its zero is bracketed and found by the secant method, with halvings where that does not contract (Brent,
-    /// *Algorithms for Minimization without Derivatives*, 1973, chapter 4); each plan is the guess of the next.
+    /// Its zero is bracketed and found by the secant method, with halvings if that does not contract. The source is
+    /// Brent, *Algorithms for Minimization without Derivatives*, 1973, chapter 4. Each plan is the guess of the next.
     ///
     /// # Errors
     /// [`Error::StepSize`] for limits that are not positive numbers in order, [`Error::NoExtremal`], and those of [`solve`](Self::solve).

@@ -1,19 +1,22 @@
-//! What `#[derive(Clebsch)]` implements for systems whose inputs are chosen: one step, its price, its bounds, and their derivatives.
+//! The trait of systems whose inputs are chosen, which `#[derive(Clebsch)]` implements: one step, its price, its
+//! bounds, and their derivatives.
 
 use crate::{Control, Error, Real, Scalar, Space};
 use core::fmt::Debug;
 use nalgebra::{SMatrix, SVector};
 use num_traits::Zero;
 
-/// A system whose inputs are chosen: x⁺ = f(t, h, x, u) at the price ℓ(t, h, x, u), with bounds a(t, x, u) ≤ 0 and the price φ(t, x) of the end.
+/// A system whose inputs are chosen. The step is x⁺ = f(t, h, x, u) at the price ℓ(t, h, x, u). The bounds are a(t, x,
+/// u) ≤ 0, and the end has the price φ(t, x).
 ///
-/// D is the dimension of places x, U that of inputs u, C the number of bounds. Implemented by `#[derive(Clebsch)]` for a struct with
-/// `controls` or `dynamics`, where x is the configuration, and for one with `effort`, where x is a state (q, N) and f the forced step.
+/// D is the dimension of places x, U that of inputs u, C the number of bounds. `#[derive(Clebsch)]` implements it for a
+/// struct with `controls` or `dynamics`, where x is the configuration. With `effort`, x is a state (q, N) and f the
+/// forced step.
 ///
 /// # Coordinates
-/// Small changes of a place are written as δ of D components: for a configuration, the motion η of the group that moves q to Φ_{exp η}(q),
-/// which is q exp η or (exp η) q for a group that acts on itself; for a state, (η, ν) with N + ν. Second derivatives are those along
-/// s ↦ Φ_{exp sη}(q).
+/// Small changes of a place are written as δ of D components. For a configuration, δ is the motion η of the group that
+/// moves q to Φ_{exp η}(q). For a group that acts on itself this is q exp η or (exp η) q. For a state it is (η, ν),
+/// with N + ν. Second derivatives are those along s ↦ Φ_{exp sη}(q).
 ///
 /// ```
 /// # use clebsch::{Clebsch, Controlled};
@@ -40,9 +43,9 @@ use num_traits::Zero;
 pub trait Controlled<const D: usize, const U: usize, const C: usize>: Sized {
     /// The scalar.
     type Scalar: Scalar;
-    /// What is steered.
+    /// The place that inputs steer.
     type Place: Space<Self::Scalar>;
-    /// What no step changes.
+    /// The constants, which no step changes.
     type Constants: Clone + Debug;
 
     /// The name of the struct.
@@ -52,7 +55,7 @@ pub trait Controlled<const D: usize, const U: usize, const C: usize>: Sized {
     /// The number of components, the first ones, that move the configuration; the others, if any, change the momentum.
     const MOTIONS: usize;
 
-    /// Checks the parameters and computes what no step changes.
+    /// Checks the parameters and computes the constants.
     ///
     /// # Errors
     /// As [`Clebsch::constants`](crate::Clebsch::constants).
@@ -133,7 +136,7 @@ pub trait Controlled<const D: usize, const U: usize, const C: usize>: Sized {
         costate: &SVector<Self::Scalar, D>,
     ) -> Result<Self::Scalar, Error>;
 
-    /// a(t, x, u), none of which is positive where the bounds hold.
+    /// a(t, x, u). No entry is positive if the bounds are satisfied.
     fn bounds(&self, t: Self::Scalar, x: &Self::Place, u: &SVector<Self::Scalar, U>) -> SVector<Self::Scalar, C>;
 
     /// a with its derivatives, and the second derivatives of z·a.
@@ -151,8 +154,8 @@ pub trait Controlled<const D: usize, const U: usize, const C: usize>: Sized {
     /// φ with its derivatives.
     fn endpoint_expanded(&self, t: Self::Scalar, x: &Self::Place) -> EndpointExpansion<Self::Scalar, D>;
 
-    /// What separates x from a target: with the motions G: η ↦ η_Q(q), residual Gᵀ(q* − q) and slope GᵀG; for momenta N* − N and I.
-    /// A small change δ with slope·δ = residual goes there.
+    /// The difference between x and a target. With the motions G: η ↦ η_Q(q) it has the residual Gᵀ(q* − q) and the
+    /// slope GᵀG; for momenta these are N* − N and I. A small change δ with slope·δ = residual goes there.
     fn arrival(&self, x: &Self::Place, target: &Self::Place) -> Arrival<Self::Scalar, D>;
 
     /// The small change δ that moves x to y, to first order; the shortest where several do.
@@ -263,7 +266,7 @@ pub struct EndpointExpansion<T, const D: usize> {
     pub curvature: SMatrix<T, D, D>,
 }
 
-/// What separates a place from a target.
+/// The difference between a place and a target.
 ///
 /// ```
 /// # use clebsch::{Clebsch, Controlled};

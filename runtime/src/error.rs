@@ -26,7 +26,7 @@ macro_rules! errors {
     };
 }
 
-/// What a function writes, as part of a message.
+/// The text that a function writes, as part of a message.
 struct Said<F>(F);
 
 impl<F: Fn(&mut Formatter<'_>) -> fmt::Result> Display for Said<F> {
@@ -62,14 +62,14 @@ errors! {
         } => "the step size is {value}: it must be a finite number other than zero (negative runs back in time)";
         /// An input or a result is NaN or infinite.
         NotFinite {
-            /// What is not finite: a field of the declared struct, or a part of the state.
+            /// The quantity that is not finite: a field of the declared struct, or a part of the state.
             name: &'static str,
         } => "{name} is not finite: look for NaN, infinity, division by zero or overflow in what it comes from";
-        /// The error that a step size was asked for is not above what rounding alone makes.
+        /// The error that a step size was asked for is not above that of rounding alone.
         BelowRounding {
             /// The error that was wished.
             error: f64,
-            /// What rounding makes over the duration, about.
+            /// The approximate error of rounding over the duration.
             rounding: f64,
         } =>
             "an error of {error:.1e} was asked for, but rounding alone makes about {rounding:.1e} over this duration: \
@@ -143,16 +143,19 @@ errors! {
             "the momentum has a component of {violation:.3e} along motions that leave the configuration unchanged, \
              where {tolerance:.1e} is accepted: project it by `Stepper::project` or compute it by `momentum_map`; \
              where such motions are motions of the body, declare `isotropy = free`";
-        /// The equation of the step has no solution that is connected to the identity: the step is too long. For exact drifts: the motion is longer
-        /// than formulas of duplication (on SO(3); h|M|/J up to some 10⁷ in `f64` and a thousand in `f32`) or parts (on SO(4), some thousand radians) reach.
+        /// The equation of the step has no solution that is connected to the identity: the step is too long. For exact
+        /// drifts the motion is longer than formulas can reach. On SO(3) duplication reaches h|M|/J up to some 10⁷ in
+        /// `f64` and a thousand in `f32`. On SO(4) parts reach some thousand radians.
         Unsolvable {
             /// The largest s ≤ 1 for which the equation with s times the momentum has such a solution.
             solvable_fraction: f64,
             /// The step size, where the error comes from a [`Stepper`](crate::Stepper).
             step_size: Option<f64>,
-            /// The longest step from the same state that has a solution, where the error comes from a [`Stepper`](crate::Stepper) and one was found:
-            /// one that is 2 % longer has none. What a potential or a force adds to the momentum depends on the step size too, so that it is
-            /// found by trying: some ten steps, at most 32; none is tried where a stepper keeps more than two kilobytes of constants, as for exact drifts.
+            /// The longest step from the same state that has a solution, if the error comes from a
+            /// [`Stepper`](crate::Stepper) and one was found. A step that is 2 % longer has no solution. Potentials and
+            /// forces add a momentum that depends on the step size too, so the longest step is found by trying. Some
+            /// ten steps are tried, at most 32. None is tried if a stepper has more than two kilobytes of constants, as
+            /// for exact drifts.
             solvable_step: Option<f64>,
         } =>
             "the step {}is too long for this momentum: its equation has a solution up to {solvable_fraction:.3} times it; {}",
@@ -166,9 +169,9 @@ errors! {
         WrongGradient {
             /// The entry of the configuration, counted through all its leaves, matrices column by column.
             entry: usize,
-            /// What the gradient method gives for it.
+            /// Its value by the gradient method.
             gradient: f64,
-            /// What differences of the value method give.
+            /// Its value by differences of the value method.
             difference: f64,
         } =>
             "entry {entry} of the gradient is {gradient:.9e}, but differences of the value give {difference:.9e}: \
@@ -196,7 +199,7 @@ errors! {
              the orbit of the start, such as a vector of the same length, or give a velocity as the guess";
         /// The work allowed for one path with fixed endpoints was used up without a decision.
         NoExtremal {
-            /// Size of the correction that would come next, relative to the path: the root of the ratio of what it takes from the action.
+            /// Size of the next correction, relative to the path: the root of the ratio of its decrease of the action.
             correction: f64,
             /// Number of linearisations that were made.
             iterations: u32,
@@ -260,7 +263,7 @@ errors! {
         NoCovector =>
             "a system with forces, or of momenta alone, has no step in (q, p), as there are no covectors of the \
              configuration to step: step in (q, N), by `Stepper::step`";
-        /// The step has no derivative: it is at the very edge of what is solvable.
+        /// The step has no derivative: it is at the very edge of solvability.
         SingularTangent {
             /// The step size.
             step_size: f64,

@@ -1,4 +1,5 @@
-//! The free motion of a rigid body in four dimensions, exactly: M′ = MΩ − ΩM, R′ = RΩ with M = DΩ + ΩD, for as long as it is the same motion.
+//! The free motion of a rigid body in four dimensions, exactly: M′ = MΩ − ΩM, R′ = RΩ with M = DΩ + ΩD. The constants
+//! serve as long as it is the same motion.
 //!
 //! A motion conserves |M|², the Pfaffian of M, its energy, and one more quadratic integral. The map of Moser and Veselov commutes with it, so that
 //! four constants of the motion make that map exact:
@@ -6,8 +7,9 @@
 //! ```text
 //! m = h̃M = F̃J̃ − J̃F̃ᵀ,    J̃² = D² + β,    F = exp(h(δM + κ⋆M)) F̃,    ⋆M the dual of M
 //! ```
-//! They are found once, from the Taylor series of one step. A step then solves no equation by iteration: A = F̃J̃ obeys A² = mA + J̃², its
-//! characteristic polynomial λ⁴ − e₁λ³ + e₂λ² − e₃λ + e₄ is a constant of the motion, and F̃ is the solution of
+//! They are found once, from the Taylor series of one step. A step then solves no equation by iteration, because A =
+//! F̃J̃ obeys A² = mA + J̃². The characteristic polynomial λ⁴ − e₁λ³ + e₂λ² − e₃λ + e₄ of A is a constant of the
+//! motion. F̃ is the solution of
 //!
 //! ```text
 //! N F̃ = G,    N = m³ + J̃²m + mJ̃² + e₂m − e₁(m² + J̃²) − e₃,    G = −(m² + J̃² − e₁m + e₂ + e₄J̃⁻²)J̃
@@ -36,10 +38,10 @@ mod turn;
 /// The most parts that a motion is made of.
 const PARTS: u32 = 1024;
 
-/// What a motion keeps: its constants, one after the other.
+/// The constants of a motion, one after the other.
 pub type KeptRotation4<T> = setup::Numbers<T>;
 
-/// What no free motion of a body over a given time changes.
+/// The constants of all free motions of a body over a given time.
 #[derive(Clone, Copy, Debug)]
 pub struct FreeRotation4<T> {
     /// d_i/s, with the largest s of them.
@@ -53,7 +55,8 @@ pub struct FreeRotation4<T> {
 type Tensor<T> = SMatrix<T, 6, 6>;
 
 impl<T: Scalar> FreeRotation4<T> {
-    /// The free motions over the time `h` of a body with the quadratic form `inertia` of velocities, of which the lower triangle is read.
+    /// The free motions over the time `h` of a body with the quadratic form `inertia` of velocities; only its lower
+    /// triangle is read.
     ///
     /// # Errors
     /// [`Error::SingularKineticEnergy`] where Σ is singular, [`Error::NotFinite`].
@@ -186,7 +189,8 @@ impl<T: Real> FreeRotation4<T> {
         Ok(Constants { parts, by_series: T::one(), step: parts.recip(), ..Constants::read(&Space::<T>::origin()) })
     }
 
-    /// F − I and the momentum after a part of a motion, by one series, or by some of half the time, of a quarter, …: each as long as it may be.
+    /// F − I and the momentum after a part of a motion. It takes one series, or some series of half the time, of a
+    /// quarter, …: each as long as possible.
     fn series(&self, m: &Vector<T>) -> Result<Moved<T>, Error> {
         let (mut whole, mut m) = ([[T::zero(); 4]; 4], *m);
         // of the time, in units of 1/PARTS
@@ -233,7 +237,8 @@ impl<T: Real> FreeRotation4<T> {
     }
 }
 
-/// The momentum of the free motion over the time `h` from I to `f`, the one that Newton's method finds from M = (FD − DFᵀ)/h; NaN where it finds none.
+/// The momentum of the free motion over the time `h` from I to `f`, which Newton's method finds from M = (FD − DFᵀ)/h.
+/// NaN if it finds none.
 #[cold]
 pub fn free_momentum_4d<T: Scalar>(inertia: &SMatrix<T, 6, 6>, h: T, f: &SMatrix<T, 4, 4>) -> SVector<T, 6> {
     Space::<T>::side_by_side(|lane| {

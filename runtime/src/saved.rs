@@ -8,7 +8,8 @@ use crate::{Clebsch, Declared, Error, Method, State, Stepper, Time};
 use core::fmt::{self, Debug, Formatter};
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
-/// What is written of a state: time, q, what it holds of N, what its next step takes from the last, and the step size that this is for.
+/// The saved data of a state: time, q, and the stored form of N. The next step takes data from the last one; these and
+/// their step size are saved too.
 #[derive(Serialize, Deserialize)]
 #[serde(rename = "State")]
 struct Record<Time, Configuration, Momentum, Impulse, Scalar> {
@@ -75,9 +76,10 @@ impl<S: Clebsch, M: Method<S>> Debug for SavedState<S, M> {
 impl<S: Clebsch, M: Method<S>> Stepper<S, M> {
     /// The state that was written, after the checks of [`state`](Self::state): the next steps have the bits that they would have had.
     ///
-    /// All that a step takes from the last one is written and read back: the impulse at q, what a free motion conserves, what compensated sums have
-    /// left. It is taken as it is: make states of *other* systems or versions anew, by [`state`](Self::state). Formats have to give back every bit of a
-    /// number: `serde_json` does with its feature `float_roundtrip`, and binary ones do.
+    /// All data that a step takes from the last one are written and read back. These are the impulse at q, the
+    /// constants of a free motion, and the rounding errors of compensated sums. It is taken as it is: make states of
+    /// *other* systems or versions anew, by [`state`](Self::state). Formats have to give back every bit of a number:
+    /// `serde_json` does with its feature `float_roundtrip`, and binary ones do.
     ///
     /// ```
     /// # use clebsch::{Clebsch, SavedState};
@@ -99,7 +101,7 @@ impl<S: Clebsch, M: Method<S>> Stepper<S, M> {
     /// ```
     ///
     /// # Errors
-    /// As [`state`](Self::state); [`Error::NotFinite`] for what is left of the last step, and for the time.
+    /// As [`state`](Self::state); [`Error::NotFinite`] for the data of the last step, and for the time.
     pub fn resume(&self, saved: SavedState<S, M>) -> Result<State<S, M>, Error> {
         let SavedState(state) = saved;
         check_state(&self.system, &state.configuration, &state.momentum())?;

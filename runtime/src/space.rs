@@ -4,7 +4,8 @@ use crate::{Error, Mask, Scalar};
 use core::fmt::Debug;
 use nalgebra::{Quaternion, SMatrix};
 
-/// A value made of scalars `T`: a scalar, vector, matrix or quaternion, a tuple of up to eight spaces, an array of a space, or `()`.
+/// A value made of scalars `T`. It is a scalar, vector, matrix or quaternion, a tuple of up to eight spaces, an array of
+/// a space, or `()`.
 ///
 /// Implementations only have to say how their scalars are visited.
 ///
@@ -18,7 +19,7 @@ use nalgebra::{Quaternion, SMatrix};
 /// assert_eq!(place.distance_squared(&Space::<f64>::origin()), 18.0);
 /// ```
 pub trait Space<T: Scalar>: Copy + Debug + PartialEq {
-    /// What one lane of it is; the space itself where scalars are single numbers.
+    /// One lane of it; the space itself if scalars are single numbers.
     type Lane: Space<T::Lane>;
 
     /// Joins `visit(x)` of all scalars x, `unit` where there are none: from left to right, those of each component before components are joined.
@@ -66,7 +67,7 @@ pub trait Space<T: Scalar>: Copy + Debug + PartialEq {
         self.reduce(T::zero(), |x| x, |a, b| a + b)
     }
 
-    /// What has `value(i)` in lane i.
+    /// The value with `value(i)` in lane i.
     #[inline]
     fn side_by_side(mut value: impl FnMut(usize) -> Self::Lane) -> Self {
         let mut all = Self::origin();
@@ -257,7 +258,8 @@ tuple!(A.0, B.1, C.2, D.3, E.4, F.5, G.6, H.7);
 /// Lanes, at most.
 pub(crate) const MOST_LANES: usize = 16;
 
-/// What a function of the lane gives in each; `nothing` where it fails. If all fail, the error is that of the first that is not merely NaN.
+/// The result of a function in each lane; `nothing` if it fails there. If all fail, the error is that of the first that
+/// is not merely NaN.
 #[inline]
 pub(crate) fn each_lane<T: Scalar, V: Copy>(
     nothing: V,

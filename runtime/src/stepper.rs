@@ -1,4 +1,4 @@
-//! A system with a step size: what a person integrates with.
+//! A system with a step size, for integration.
 
 // first, as a page shows methods in the order of their files
 mod stepping;
@@ -16,7 +16,7 @@ use crate::{Clebsch, Clock, Conserves, CotangentState, Declared, Error, Mask, Me
 use core::fmt::Debug;
 use num_traits::Zero;
 
-/// A system, a step size and what no step changes, computed once.
+/// A system, a step size and the constants of its steps, computed once.
 ///
 /// Made by [`Clebsch::stepper`], or by [`Clebsch::stepper_by`] for a [`Method`] with a name. Nothing in it changes from step to step: one stepper can serve any number of states.
 ///
@@ -83,7 +83,8 @@ impl<S: Clebsch, M: Method<S>> Stepper<S, M> {
         self.kinetic_energy(state) + self.system.potential(state.time.now(), &state.configuration)
     }
 
-    /// Kinetic energy N·ξ − ℓ(q, ξ) at the velocity with N = ∂ℓ/∂ξ: ½ N·Σ⁻¹N for a quadratic ℓ with the Hessian Σ; +∞ where no velocity has it.
+    /// Kinetic energy N·ξ − ℓ(q, ξ) at the velocity with N = ∂ℓ/∂ξ. It is ½ N·Σ⁻¹N for a quadratic ℓ with the Hessian
+    /// Σ, and +∞ if no velocity has this momentum.
     #[inline]
     pub fn kinetic_energy(&self, state: &State<S, M>) -> S::Scalar {
         let constants = M::Scheme::whole(&self.constants);
@@ -117,7 +118,7 @@ impl<S: Clebsch, M: Method<S>> Stepper<S, M> {
 
 // a bound of the method, not of the block: its error then says what is missing
 impl<S: Clebsch, M: Method<S>> Stepper<S, M> {
-    /// The momenta that no step changes, with their names: what the symmetry of cost and potential leaves.
+    /// The momenta that no step changes, with their names: those that the symmetry of cost and potential conserves.
     ///
     /// It exists where conserved momenta were found, and gives a [`Conserved`](crate::Conserved).
     #[inline]
@@ -181,7 +182,8 @@ pub fn check_on_orbit<T: Scalar, Q: Space<T>>(q: &Q, defect: T) -> Result<(), Er
     })
 }
 
-/// Whether (q, N) is a state: q is on its orbit, and N is finite and, up to √ε of its largest component, a momentum that motions of q can have.
+/// Whether (q, N) is a state: q is on its orbit, and N is finite. Up to √ε of its largest component, N is a momentum
+/// that motions of q can have.
 pub fn check_state<S: Clebsch>(system: &S, q: &S::Configuration, mu: &S::Momentum) -> Result<(), Error> {
     check_on_orbit(q, system.orbit_defect(q))?;
     check_finite("the momentum", mu)?;
@@ -199,7 +201,7 @@ pub fn check_state<S: Clebsch>(system: &S, q: &S::Configuration, mu: &S::Momentu
     })
 }
 
-/// What is not finite where a kick is not.
+/// The name of a kick that is not finite.
 const GRADIENT: &str = "the gradient of the potential at the configuration";
 
 /// The first lane that is not in a mask; 0 where all are.

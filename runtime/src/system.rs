@@ -103,8 +103,8 @@ pub trait Clebsch: Sized {
         f: &Self::Element,
     ) -> Self::Momentum;
 
-    /// By how much the momentum N of a state is ahead of the momentum π that belongs to its configuration: N − π = ½
-    /// J(q, ∂(U₁ − U₀)). Here U₀(t, q) and U₁(t, q) are the terms that ℓd adds at the start and at the end of a step.
+    /// By how much the momentum N of a state is ahead of the momentum π at its configuration: N − π = ½ J(q, ∂(U₁ −
+    /// U₀)). Here U₀(t, q) and U₁(t, q) are the terms that ℓd adds at the start and at the end of a step.
     ///
     /// −h/2 J(q, ∂V) with `order = 1`, half of the kick; else 0, and N is π. See [`Stepper::synchronized`](crate::Stepper::synchronized).
     fn stagger(&self, h: Self::Scalar, t: Self::Scalar, q: &Self::Configuration) -> Self::Momentum {

@@ -1,4 +1,4 @@
-//! The last vertex: what separates it from the target and which of its motions are free.
+//! The last vertex: its difference from the target, and its motions that are free.
 
 use super::sweep::Endpoints;
 use crate::newton::{arc_per_chord, is_reached, shortest};
@@ -6,7 +6,7 @@ use crate::space::larger;
 use crate::{Differentiated, Error, Real, Space, Variational};
 use nalgebra::{SMatrix, SVector};
 
-/// What is known where a path ends.
+/// The data at the end of a path.
 #[derive(Clone, Copy)]
 pub(super) struct PathEnd<T, const M: usize> {
     /// The smallest η that solves GᵀG η = Gᵀ(target − q_N); 0 where that is round-off.

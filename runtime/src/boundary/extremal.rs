@@ -1,4 +1,4 @@
-//! What a problem with fixed endpoints is answered with, and what the caller stores for it.
+//! The answer to a problem with fixed endpoints, and the storage that the caller provides.
 
 use super::pivot::Feedback;
 use super::sweep::time_after;
@@ -119,8 +119,9 @@ impl<'a, S: Variational<M, Scalar: Real>, B: Differentiated<S, M>, const M: usiz
         copy residual: S::Scalar;
         /// The distance |target − q_N| that round-off has left, as the root of the sum of squares of all entries.
         copy gap: S::Scalar;
-        /// The Morse index, the number of independent variations that make the action smaller: 0 on a strict local minimum, where no
-        /// vertex is conjugate to the target. Counted in the last linearisation, within √ε of the path. For a negative step size, those that make it larger.
+        /// The Morse index, the number of independent variations that make the action smaller. It is 0 on a strict
+        /// local minimum, where no vertex is conjugate to the target. Counted in the last linearisation, within √ε of
+        /// the path. For a negative step size, those that make it larger.
         copy negative: usize;
         /// The momentum N_N at the target, before the kick of a step from there.
         ref final_momentum: SVector<S::Scalar, M>;

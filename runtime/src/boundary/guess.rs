@@ -129,9 +129,10 @@ impl<T: Real, S: Variational<M, Scalar = T>, B: Differentiated<S, M>, const M: u
         self.path.iter_mut().for_each(|node| node.increment = increment);
     }
 
-    /// How the vertices of a coarse path move from where all its edges are alike to near where its action is least. The path has as many
-    /// steps as it takes in the same time, and its first nodes are made use of. `None` for a path of few edges, and where corrections are no
-    /// small motions towards a minimum: steps may be too long then for what happens in them.
+    /// How the vertices of a coarse path move from where all its edges are alike to near where its action is least. The
+    /// path has as many steps as it takes in the same time, and its first nodes are made use of. `None` for a path of
+    /// few edges, and where corrections are not small motions towards a minimum. Steps may then be too long for the
+    /// motion.
     fn coarse(&mut self, eta: &SVector<T, M>) -> Option<Motions<T, M>> {
         let ratio = T::from_f64(self.path.len() as f64) / T::from_f64(COARSE as f64);
         let path = self.path.get_mut(..COARSE).filter(|_| ratio >= T::from_f64((MANY / COARSE) as f64))?;
@@ -161,7 +162,8 @@ impl<T: Real, S: Variational<M, Scalar = T>, B: Differentiated<S, M>, const M: u
         None
     }
 
-    /// Moves vertex k by k/N of what the end lacks, until the gap is below `enough` of the configuration or no pass makes it smaller.
+    /// Moves vertex k by k/N of the gap at the end. It ends when the gap is below `enough` of the configuration, or
+    /// when no pass makes it smaller.
     #[cold]
     pub fn close(&mut self, enough: T) {
         let edges = T::from_f64(self.path.len() as f64);

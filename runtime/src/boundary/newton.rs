@@ -1,4 +1,4 @@
-//! Newton's method on a path, and what is done where it does not contract.
+//! Newton's method on a path, and the fallback if it does not contract.
 
 use super::guess::Guess;
 use super::sweep::Search;
@@ -6,7 +6,7 @@ use super::vertex::PathSummary;
 use crate::newton::{Curvature, adapted};
 use crate::{Differentiated, Error, Real, Variational};
 
-/// Backward sweeps of which one solution may make use.
+/// The most backward sweeps of one solution.
 const SWEEPS: u32 = 200;
 /// Halvings of a step that makes the action larger.
 const HALVINGS: usize = 6;
@@ -40,7 +40,8 @@ impl<T: Real, const M: usize> PathSummary<T, M> {
                 }
     }
 
-    /// Whether the next correction is expected to be round-off: below √ε, corrections of which each is as the square of the one before.
+    /// Whether the next correction is expected to be round-off. This is so below √ε, if each correction is as the
+    /// square of the one before.
     #[inline]
     fn is_last(&self, before: Option<&Self>) -> bool {
         let contraction = |before: &Self| self.size / before.size;
@@ -65,7 +66,8 @@ impl<T: Real, const M: usize> PathSummary<T, M> {
         }
     }
 
-    /// Armijo's rule for the action after a step of this fraction: it took at least a hundredth of what the slope promises.
+    /// Armijo's rule for the action after a step of this fraction: it fell by at least a hundredth of the amount that
+    /// the slope promises.
     fn is_lower(&self, action: T, fraction: T) -> bool {
         let promised = self.decrement * fraction * T::from_ratio(1, 100);
         (action - self.action) * self.sign <= -(promised * self.sign)
@@ -73,11 +75,12 @@ impl<T: Real, const M: usize> PathSummary<T, M> {
 }
 
 impl<T: Real, S: Variational<M, Scalar = T>, B: Differentiated<S, M>, const M: usize> Search<'_, S, M, B> {
-    /// The critical point of the action near the guess, and the number of sweeps. Full Newton steps are made as long as each at least halves
-    /// the correction or makes the action smaller. Otherwise the last one is taken back and the gap is closed. Near an extremal such steps
-    /// go on from there with a steadied Hessian: where extremals are a family, as between opposite points of a sphere, the Hessian is
-    /// singular along the family. Elsewhere, or where that fails too, the action is made smaller: with a definite Hessian, steps halved
-    /// (Armijo's rule) and, where that happens often, the Hessian damped. Corrections are measured in the norm of the Hessian relative to
+    /// The critical point of the action near the guess, and the number of sweeps. Full Newton steps are made as long as
+    /// each at least halves the correction or makes the action smaller. Otherwise the last one is taken back and the
+    /// gap is closed. Near an extremal such steps go on from there with a steadied Hessian. Where extremals are a
+    /// family, as between opposite points of a sphere, the Hessian is singular along the family. Elsewhere, or where
+    /// that fails too, the action is made smaller. The Hessian is then definite, and steps are halved (Armijo's rule).
+    /// If that happens often, the Hessian is damped. Corrections are measured in the norm of the Hessian relative to
     /// the action, which no choice of units changes.
     #[inline]
     pub fn newton(&mut self, guess: &Guess<T, M>) -> Result<(PathSummary<T, M>, u32), Error> {

@@ -1,4 +1,4 @@
-//! The symmetric M×M pivot of a vertex, and what is made of it: gain and shift.
+//! The symmetric M×M pivot of a vertex, and its results: gain and shift.
 
 use crate::Real;
 use crate::linear::{matrix, rows};
@@ -25,10 +25,10 @@ pub(super) struct Feedback<T, const M: usize> {
     pub shift: SVector<T, M>,
 }
 
-/// What the next vertex needs of D, and what is known of D.
+/// The data of D that the next vertex needs, and its inertia.
 #[derive(Clone, Copy)]
 pub(super) struct Solution<T, const M: usize> {
-    /// CᵀD⁻¹C: the lower triangle by rows. What is above counts for nothing.
+    /// CᵀD⁻¹C: the lower triangle by rows. Entries above are ignored.
     pub hessian: [[T; M]; M],
     /// CᵀD⁻¹g
     pub gradient: SVector<T, M>,
@@ -54,9 +54,9 @@ impl<T: Real, const M: usize> Pivot<T, M> {
         })
     }
 
-    /// [`solve`](Self::solve) of three dimensions where D is definite, from D⁻¹ = adj D / det D: one division where an elimination has
-    /// three, each of which waits for the one before. `None` too where det D is too large or small to be known in full. Errors of D⁻¹C
-    /// relative to it are those of elimination, ε times the condition number of D.
+    /// [`solve`](Self::solve) of three dimensions for a definite D, from D⁻¹ = adj D / det D. It takes one division;
+    /// elimination takes three, and each waits for the one before. `None` too where det D is too large or small to be
+    /// known in full. Errors of D⁻¹C relative to it are those of elimination, ε times the condition number of D.
     #[inline(always)]
     fn by_cofactors(&self, feedback: &mut Feedback<T, M>) -> Option<Solution<T, M>> {
         let Self { d, c, g, sign } = self;
@@ -104,7 +104,8 @@ impl<T: Real, const M: usize> Pivot<T, M> {
         Some(Solution { hessian, gradient, decrement, negative: 0 })
     }
 
-    /// [`solve`](Self::solve) from eigenvalues. Those that are nothing beside the largest are treated as that round-off, not as zero.
+    /// [`solve`](Self::solve) from eigenvalues. Eigenvalues that are negligible relative to the largest are treated as
+    /// round-off of it, not as zero.
     #[cold]
     fn by_eigenvalues(&self, curvature: Curvature<T>, feedback: &mut Feedback<T, M>) -> Solution<T, M> {
         let sign = self.sign;

@@ -37,11 +37,12 @@ pub struct Way<T, const M: usize> {
     pub momentum: SVector<T, M>,
     /// The Morse index, 0 for a local minimum.
     pub negative: usize,
-    /// What it was found from: [`Boundary::solve`] with this guess finds it again.
+    /// The guess that led to it: [`Boundary::solve`] with this guess finds it again.
     pub guess: Guess<T, M>,
 }
 
-/// The angles, in quarters of a turn, that guessed velocities go through: there and back from any point of a closed orbit, and one turn more.
+/// The angles of guessed velocities, in quarters of a turn. They go there and back from any point of a closed orbit,
+/// and one turn more.
 const QUARTERS: [f64; 4] = [1.0, 3.0, 5.0, 7.0];
 /// The signs of the two directions that a velocity is along; the first two where they are one.
 const SIGNS: [[f64; 2]; 4] = [[1.0, 1.0], [-1.0, -1.0], [1.0, -1.0], [-1.0, 1.0]];
@@ -49,8 +50,9 @@ const SIGNS: [[f64; 2]; 4] = [[1.0, 1.0], [-1.0, -1.0], [1.0, -1.0], [-1.0, 1.0]
 const APART: f64 = 1e-6;
 
 impl<S: Variational<M, Scalar: Real>, B: Differentiated<S, M>, const M: usize> Boundary<'_, S, M, B> {
-    /// Extremals from `start` to `target` in order of their action, at most K: the shortest way, and what is found from velocities
-    /// along each direction of the algebra and between each two, both ways, through one to seven quarters of a turn in the time of the path.
+    /// At most K extremals from `start` to `target`, in order of their action. The first guess is the shortest way.
+    /// Other guesses are velocities along each direction of the algebra and between each two, both ways. They turn by
+    /// one to seven quarters in the time of the path.
     ///
     /// It is a search: K that are found are extremals, but others may exist. Between conjugate points, such as opposite points of a
     /// sphere, where extremals come in families, some of each family are given. The nodes of `path` are storage.
@@ -58,7 +60,8 @@ impl<S: Variational<M, Scalar: Real>, B: Differentiated<S, M>, const M: usize> B
     /// Work: 1 + 8M² calls of [`solve`](Self::solve) at most.
     ///
     /// # Errors
-    /// Those of [`solve`](Self::solve) for what was given; where no guess led to an extremal, [`Error::Unreachable`] with the least distance.
+    /// Those of [`solve`](Self::solve) for the arguments; if no guess led to an extremal, [`Error::Unreachable`] with
+    /// the least distance.
     pub fn several<const K: usize>(
         &self,
         start: &S::Configuration,
@@ -104,7 +107,7 @@ impl<S: Variational<M, Scalar: Real>, B: Differentiated<S, M>, const M: usize> B
     }
 }
 
-/// Puts a way in its place, if it is none of those that are known; of more than K the one with the largest action is dropped.
+/// Puts a way in its place, unless it is already known. Of more than K ways the one with the largest action is dropped.
 fn insert<T: Real, const M: usize>(ways: &mut [Option<Way<T, M>>], way: Way<T, M>) {
     let is_known = |known: &Way<T, M>| {
         let apart = known.momentum - way.momentum;

@@ -1,15 +1,17 @@
 //! The two sweeps of Newton's method on a path: backward to linearise and eliminate, forward to move the vertices.
 //!
-//! With the motions η_k of the vertices, η_0 = 0, the action has the gradient E_k = F⁺ℓd(edge k−1) − F⁻ℓd(edge k) and a symmetric block
-//! tridiagonal Hessian: H_kk of ∂F⁺ℓd/∂η′ of the edge before less ∂F⁻ℓd/∂η of the edge after, H_{k+1,k} = −(∂F⁻ℓd/∂η′)ᵀ. Diagonal blocks are
-//! made symmetric: their antisymmetric part, ½ ad*E, vanishes on an extremal. Elimination from the end,
+//! The motions of the vertices are η_k, with η_0 = 0. The action has the gradient E_k = F⁺ℓd(edge k−1) − F⁻ℓd(edge k)
+//! and a symmetric block tridiagonal Hessian. H_kk is ∂F⁺ℓd/∂η′ of the edge before less ∂F⁻ℓd/∂η of the edge after, and
+//! H_{k+1,k} = −(∂F⁻ℓd/∂η′)ᵀ. Diagonal blocks are made symmetric: their antisymmetric part, ½ ad*E, vanishes on an
+//! extremal. Elimination from the end,
 //! ```text
 //! D_k = H_kk − H_{k,k+1} D_{k+1}⁻¹ H_{k+1,k},    K_k = D_k⁻¹ H_{k,k−1},    s_k = D_k⁻¹ (E_k − H_{k,k+1} s_{k+1}),    η_k = −s_k − K_k η_{k−1}
 //! ```
 //! is Riccati's recursion. The numbers of negative eigenvalues of all D_k add up to the Morse index (Sylvester's law of inertia).
 //!
-//! Source: Rao, Wright and Rawlings, *Application of interior-point methods to model predictive control* (1998), for the elimination; Marsden,
-//! Pekarsky and Shkoller, *Discrete Euler–Poincaré and Lie–Poisson equations* (1999), for actions on groups.
+//! Sources: Rao, Wright and Rawlings, *Application of interior-point methods to model predictive control* (1998), for
+//! the elimination. Marsden, Pekarsky and Shkoller, *Discrete Euler–Poincaré and Lie–Poisson equations* (1999), for
+//! actions on groups.
 
 use super::Node;
 use super::end::PathEnd;
@@ -88,7 +90,7 @@ impl<T: Real, S: Variational<M, Scalar = T>, B: Differentiated<S, M>, const M: u
 }
 
 impl<T: Real, S: Variational<M, Scalar = T>, B: Differentiated<S, M>, const M: usize> Search<'_, S, M, B> {
-    /// What is known where the path ends.
+    /// The data at the end of the path.
     #[inline]
     pub fn end(&self) -> PathEnd<T, M> {
         self.problem.end(&self.last, self.path.len())

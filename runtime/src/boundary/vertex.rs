@@ -9,12 +9,12 @@ use crate::{Edge, Real};
 use core::array::from_fn;
 use nalgebra::{SMatrix, SVector};
 
-/// What a backward sweep tells of the path.
+/// The results of a backward sweep for the path.
 #[derive(Clone, Copy)]
 pub(super) struct PathSummary<T, const M: usize> {
     /// Σ ℓd
     pub action: T,
-    /// Twice what Newton's correction would take from the action.
+    /// Twice the decrease of the action by Newton's correction.
     pub decrement: T,
     /// The size of Newton's correction relative to the path, in the norm of the Hessian.
     pub size: T,
@@ -48,7 +48,7 @@ impl<T: Real, const M: usize> PathSummary<T, M> {
         T::from_f64(4.0) * T::EPSILON * self.edges.sqrt()
     }
 
-    /// Adds up what scales the correction.
+    /// Adds to the sums that scale the correction.
     #[inline]
     pub fn count(&mut self, edge: &Edge<T, M>) {
         self.action += edge.lagrangian;
@@ -57,7 +57,8 @@ impl<T: Real, const M: usize> PathSummary<T, M> {
         self.stiffness += edge.after_by_end.trace().abs();
     }
 
-    /// The interior vertex where `edge` ends, after the elimination of the next one, in front of which the momentum is `later`.
+    /// The interior vertex where `edge` ends, after the elimination of the next one. The momentum before the next one
+    /// is `later`.
     #[inline(always)]
     pub fn eliminate(
         &mut self,
@@ -77,7 +78,7 @@ impl<T: Real, const M: usize> PathSummary<T, M> {
         self.solve(pivot, edge, &(edge.after - later), curvature, feedback).before(edge)
     }
 
-    /// The last vertex, of which only motions in the kernel of the orbit's metric are free; the gap is closed by the others. With the
+    /// The last vertex. Only motions in the kernel of the orbit's metric are free; the others close the gap. With the
     /// projector Π to the kernel, the pivot is Π H Π + c(I − Π), so that one elimination serves all dimensions.
     #[inline(never)]
     pub fn eliminate_end(
@@ -133,7 +134,8 @@ impl<T: Real, const M: usize> PathSummary<T, M> {
 }
 
 impl<T: Real, const M: usize> Solution<T, M> {
-    /// With the part of `edge`, at the end of which the vertex was eliminated, in Hessian and gradient of the vertex where it starts.
+    /// Adds the part of `edge` to Hessian and gradient of the vertex where it starts. The vertex at its end was
+    /// eliminated.
     #[inline]
     fn before(mut self, edge: &Edge<T, M>) -> Self {
         for (row, own) in self.hessian.iter_mut().zip(lower_half(&edge.before_by_start)) {
@@ -144,8 +146,8 @@ impl<T: Real, const M: usize> Solution<T, M> {
     }
 }
 
-/// Adds a multiple of the stiffness of the slowest variation of a path of N edges, π²/N² of the mean of the diagonal of ∂F⁺ℓd/∂η′, to
-/// the diagonal of a pivot: a finer path of the same motion is damped as much.
+/// Adds a multiple of a stiffness to the diagonal of a pivot. The stiffness is that of the slowest variation of a path
+/// of N edges: π²/N² of the mean of the diagonal of ∂F⁺ℓd/∂η′. So a finer path of the same motion is damped as much.
 #[cold]
 fn damp<T: Real, const M: usize>(pivot: &mut [[T; M]; M], edge: &Edge<T, M>, edges: T, damping: T) {
     let slowest = T::from_f64(10.0) / (edges * edges);

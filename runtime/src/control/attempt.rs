@@ -1,11 +1,12 @@
 //! One attempt after another, from the guess to plans that only a search finds.
 //!
-//! Corrections that close all of the gap to the target at once are the fastest; where they drive the slacks of bounds to nothing they get
-//! stuck there. Then the gap g is priced instead, by ν·g + ½ g·Rg beside the barriers of the bounds, and ν and R are raised between critical
-//! plans until little of it is left. Where that ends at a plan from which no small change leads nearer, inputs are varied before.
+//! Corrections that close all of the gap to the target at once are the fastest. If they drive the slacks of bounds to
+//! zero, they get stuck. The gap g then has the price ν·g + ½ g·Rg, in addition to the barriers of the bounds. ν and R
+//! are raised between critical plans until little of the gap is left. Where that ends at a plan from which no small
+//! change leads nearer, inputs are varied before.
 //!
-//! Sources: Wächter and Biegler, *Failure of global convergence for a class of interior point methods for nonlinear programming* (2000);
-//! Bertsekas, *Constrained Optimization and Lagrange Multiplier Methods* (1982), chapter 2.
+//! Sources: Wächter and Biegler, *Failure of global convergence for a class of interior point methods for nonlinear
+//! programming* (2000). Bertsekas, *Constrained Optimization and Lagrange Multiplier Methods* (1982), chapter 2.
 
 use super::iterate::Iterate;
 use super::sweep::{Plan, PlanSummary};
@@ -94,7 +95,8 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: usize
     }
 }
 
-/// The inputs in the middle of a step, that turn so often in the plan: one way and, half as far and twice as fast, the other.
+/// The inputs in the middle of a step, which turn so often in the plan. They turn one way and, half as far and twice as
+/// fast, the other.
 fn pattern<T: Real, const U: usize>(amplitudes: &SVector<T, U>, turns: T, index: usize, steps: usize) -> SVector<T, U> {
     let half = T::from_ratio(1, 2);
     let part = (T::from_f64(index as f64) + half) / T::from_f64(steps as f64);
@@ -114,7 +116,7 @@ fn may_be_found(error: &Error) -> bool {
     )
 }
 
-/// What is told of two attempts that failed.
+/// The error that is reported after two failed attempts.
 fn nearer(first: Error, second: Error) -> Error {
     match (first, second) {
         (Error::TargetMissed { distance, .. }, Error::TargetMissed { distance: other, iterations }) => {

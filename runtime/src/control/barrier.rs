@@ -1,10 +1,11 @@
 //! Bounds by a primal-dual interior point method: a + s = excess with slacks s > 0 that cost −μ ln s each.
 //!
-//! Where a guess violates bounds they are relaxed by the excess, which shrinks by 1 − α with each step of fraction α, exactly: slacks are
-//! what is left, s = excess − a, for bounds of any form. Steps keep a two-hundredth of each slack.
+//! If a guess violates bounds, they are relaxed by the excess. A step of fraction α shrinks the excess exactly by 1 −
+//! α. So slacks are s = excess − a, for bounds of any form. Steps keep a two-hundredth of each slack.
 //!
-//! Source: Wächter and Biegler, *On the implementation of an interior-point filter line-search algorithm* (2006), for multipliers and the
-//! sequence of μ; Pavlov, Shames and Manzie, *Interior point differential dynamic programming* (2021), for slacks in roll-outs.
+//! Sources: Wächter and Biegler, *On the implementation of an interior-point filter line-search algorithm* (2006), for
+//! multipliers and the sequence of μ. Pavlov, Shames and Manzie, *Interior point differential dynamic programming*
+//! (2021), for slacks in roll-outs.
 
 use super::Stage;
 use super::quadratic::Slopes;
@@ -15,10 +16,11 @@ use nalgebra::{SMatrix, SVector};
 
 /// The part of a slack that one step may take.
 pub(super) const TO_BOUNDARY: f64 = 0.995;
-/// What μ is first, all bounds together, relative to the price: the larger of what the plan costs and of what it costs to keep the bounds that
-/// it violates. A guess that costs nothing would have no barrier by its own price, and nothing would push it back.
+/// The first μ, for all bounds together, relative to the price. The price is that of the plan, or the price of
+/// satisfying the bounds that it violates if that is larger. A guess that costs nothing would have no barrier by its
+/// own price, and nothing would push it back.
 pub(super) const FIRST: f64 = 0.1;
-/// What μ is last: this power of ε.
+/// The last μ: this power of ε.
 const LAST: (i64, i64) = (3, 4);
 
 /// The last μ, for so many bounds and a price of this size.
@@ -130,7 +132,8 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: usize
         self.last = last;
     }
 
-    /// Multipliers of the bounds from the correction that would come next: slacks of active bounds, of which μ/s is made, have few digits.
+    /// Multipliers of the bounds from the next correction. The slacks of active bounds have few digits, so μ/s has few
+    /// too.
     pub fn settle(&mut self, change: &SVector<T, D>, barrier: T) -> Result<(), Error> {
         let Problem { system, constants, .. } = self.problem;
         let mut displacement = SVector::<T, D>::from_element(T::zero());
@@ -152,7 +155,8 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: usize
         self.stages.iter().any(|stage| stage.excess.iter().any(|excess| *excess > T::zero()))
     }
 
-    /// Whether a bound is violated by more than round-off of its slack and of the first excess, of which this part still relaxes all bounds.
+    /// Whether a bound is violated by more than round-off of its slack and of the first excess. This part of the excess
+    /// still relaxes all bounds.
     pub fn is_violated(&self, relaxation: T) -> bool {
         let round_off = T::from_f64(16.0) * T::EPSILON;
         let mut bounds = self.stages.iter().flat_map(|stage| stage.slack.iter().zip(stage.excess.iter()));

@@ -1,4 +1,5 @@
-//! The end of a plan: what separates it from the target, which of its changes the target fixes, and how far the inputs move it.
+//! The end of a plan: its difference from the target, the changes that the target fixes, and the effect of the inputs
+//! on it.
 
 use super::Target;
 use super::sweep::Problem;
@@ -13,7 +14,7 @@ const STIFFNESS: f64 = 4.0;
 /// Eigenvalues below so many units in the last place of the largest are those of directions that no input reaches.
 const UNITS: f64 = 256.0;
 
-/// What is known where a plan ends. A change δ arrives where E δ = e.
+/// The data at the end of a plan. A change δ arrives where E δ = e.
 #[derive(Clone, Copy)]
 pub(super) struct PlanEnd<T, const D: usize> {
     /// e, as lengths
@@ -25,7 +26,7 @@ pub(super) struct PlanEnd<T, const D: usize> {
     pub metric: SMatrix<T, D, D>,
     /// The squared distance of configurations, and of momenta.
     pub squares: [T; 2],
-    /// The distance to what is asked of the end.
+    /// The distance from the end to the target.
     pub distance: T,
     /// The numbers that the distance is compared with: the largest entry of end and target.
     pub scale: T,
@@ -39,8 +40,8 @@ impl<S: Controlled<D, U, C, Scalar: Real>, const D: usize, const U: usize, const
         slope.diagonal().map(|x| if x.abs().sqrt() > S::Scalar::zero() { x.abs().sqrt() } else { S::Scalar::one() })
     }
 
-    /// The end of a plan at `x`. A small motion closes the tangential part of a chord, which is lengthened to its arc: exact in flat spaces
-    /// and for rotations about one axis.
+    /// The end of a plan at `x`. A small motion closes the tangential part of a chord, lengthened to its arc. This is
+    /// exact in flat spaces and for rotations about one axis.
     pub fn end(&self, x: &S::Place) -> PlanEnd<S::Scalar, D> {
         let Self { target, lengths, .. } = self;
         let (zero, one) = (S::Scalar::zero(), S::Scalar::one());

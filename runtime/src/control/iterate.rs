@@ -1,4 +1,4 @@
-//! What is known between two sweeps, and what is decided by it.
+//! The data between two sweeps, and the decisions that it allows.
 
 use super::barrier;
 use super::end::PlanEnd;
@@ -23,7 +23,7 @@ const LEAST_DAMPING: f64 = 1e-3;
 /// Corrections of this size are near enough a critical plan to raise the price of the gap.
 const CRITICAL: (i64, i64) = (1, 20);
 
-/// A plan with its multipliers and with what the sweeps before have told.
+/// A plan with its multipliers and with the results of earlier sweeps.
 pub(super) struct Iterate<T, const D: usize> {
     pub settings: Settings<T, D>,
     /// Whether the first barrier is still to be chosen.
@@ -54,7 +54,7 @@ pub(super) struct Iterate<T, const D: usize> {
     pub relaxation: T,
 }
 
-/// What is done after a sweep.
+/// The decision after a sweep.
 #[derive(Clone, Copy, PartialEq)]
 pub(super) enum Verdict {
     /// Its correction leads downhill.
@@ -103,8 +103,8 @@ impl<T: Real, const D: usize> Iterate<T, D> {
         }
     }
 
-    /// What the sweep is good for: whether it found enough positive curvature to go downhill. First the critical point of the exact model is
-    /// tried. Else the curvature of the steps is counted less and less, down to that of the price.
+    /// The quality of the sweep: whether it found enough positive curvature to go downhill. First the critical point of
+    /// the exact model is tried. Else the curvature of the steps is counted less and less, down to that of the price.
     pub fn judge<const U: usize>(&mut self, summary: &PlanSummary<T, D, U>, gramian: &Equilibrated<T, D>) -> Verdict {
         self.stiffer = gramian.weight(&summary.gramian, &self.settings.weight);
         if self.settings.curvature.is_mirrored {
@@ -221,7 +221,7 @@ impl<T: Real, const D: usize> Iterate<T, D> {
         self.damping == T::zero() && self.settings.bend >= T::one()
     }
 
-    /// What is done after a sweep with a correction of this size, of which `unit` is round-off.
+    /// The decision after a sweep with a correction of this size; `unit` of it is round-off.
     pub fn verdict(&mut self, end: &PlanEnd<T, D>, size: T, unit: T, last_barrier: T) -> Verdict {
         let seen = T::EPSILON.sqrt();
         let stagnates = self.before.is_some_and(|before| before <= seen && size > before * T::from_ratio(1, 8));
@@ -255,7 +255,8 @@ impl<T: Real, const D: usize> Iterate<T, D> {
         }
     }
 
-    /// Goes on from a correction of which a fraction was made after some refusals, or none, after a sweep with so many pivots that are not positive.
+    /// Goes on after a sweep with so many pivots that are not positive. A fraction of its correction was made after
+    /// some refusals, or none of it.
     pub fn advance(&mut self, made: Option<(T, usize)>, size: T, negative: usize, distance: T) {
         let is_far = size > T::from_ratio(NEAR.0, NEAR.1);
         let (fraction, refused) = made.unwrap_or((T::zero(), usize::MAX));

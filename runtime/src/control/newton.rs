@@ -1,4 +1,4 @@
-//! Newton's method on a plan, and what is done where it does not contract.
+//! Newton's method on a plan, and the fallback if it does not contract.
 
 use super::end::PlanEnd;
 use super::iterate::{Iterate, ROUNDS, Verdict};
@@ -11,7 +11,7 @@ use crate::space::larger;
 use crate::{Controlled, Error, Real, Space};
 use nalgebra::{SMatrix, SVector};
 
-/// Backward sweeps of which one attempt may make use.
+/// The most backward sweeps of one attempt.
 const SWEEPS: u32 = 400;
 /// Damping beyond which no step goes downhill but for round-off.
 const DAMPING_LIMIT: f64 = 1e9;
@@ -141,7 +141,7 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: usize
         }
     }
 
-    /// The multipliers ν of the target, for an end where E is given, with Eᵀν nearest to what this costate has beside the price of the end.
+    /// The multipliers ν of the target, for an end with E. Eᵀν is nearest to this costate less the price of the end.
     fn multipliers(&self, end: &PlanEnd<T, D>, costate: &SVector<T, D>) -> SVector<T, D> {
         let Problem { system, lengths, .. } = &self.problem;
         let slope = system.endpoint_expanded(self.problem.time_after(self.stages.len()), &self.last).slope;

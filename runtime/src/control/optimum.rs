@@ -1,4 +1,4 @@
-//! What a problem of optimal control is answered with, and what the caller stores for it.
+//! The answer to a problem of optimal control, and the storage that the caller provides.
 
 use crate::fields::{copied, debug, getters};
 use crate::{Controlled, Real, Space};
@@ -37,7 +37,7 @@ pub struct Stage<S: Controlled<D, U, C, Scalar: Real>, const D: usize, const U: 
     /// k and G: the change of the input is k + G δν + K δ.
     pub(super) shift: SVector<S::Scalar, U>,
     pub(super) by_multiplier: SMatrix<S::Scalar, U, D>,
-    /// What a roll-out proposes.
+    /// The proposal of a roll-out.
     pub(super) next_place: S::Place,
     pub(super) next_input: SVector<S::Scalar, U>,
     pub(super) next_slack: SVector<S::Scalar, C>,
@@ -85,14 +85,15 @@ impl<S: Controlled<D, U, C, Scalar: Real>, const D: usize, const U: usize, const
         ref input: SVector<S::Scalar, U>;
         /// The costate p_k = ∂V/∂x at x_k, V the least price from there on: a covector of the small changes of x_k.
         ref costate: SVector<S::Scalar, D>;
-        /// The matrix K of optimal feedback, of shape U×D: where x_k is found changed by δ, the optimal plan from there to the same target
-        /// begins with u_k + Kδ + O(δ²). Near the end, where not all of the target can be reached any more, what can be is.
+        /// The matrix K of optimal feedback, of shape U×D. If x_k is changed by δ, the optimal plan from there to the
+        /// same target begins with u_k + Kδ + O(δ²). Near the end, inputs may no longer reach all of the target. The
+        /// plan then reaches the part that it can.
         ref gain: SMatrix<S::Scalar, U, D>;
         /// The multipliers z ≥ 0 of the bounds a ≤ 0: by how much the least price falls where a bound is relaxed by one unit.
         ref multipliers: SVector<S::Scalar, C>;
     }
 
-    /// Which bounds hold the inputs back: those whose multiplier is larger than what separates them from being reached.
+    /// The bounds that limit the inputs: their multiplier is larger than the distance to them.
     #[inline]
     pub fn active(&self) -> [bool; C] {
         core::array::from_fn(|i| self.multipliers[i] > self.slack[i])
@@ -147,7 +148,8 @@ impl<'p, S: Controlled<D, U, C, Scalar: Real>, const D: usize, const U: usize, c
         copy iterations: u32;
         /// The largest entry of ∂ℓ/∂u + Bᵀp + ∂a/∂uᵀz that round-off has left.
         copy residual: S::Scalar;
-        /// The distance to what was asked of the end, as the root of the sum of squares of all entries; 0 for [`Target::Free`](crate::Target).
+        /// The distance from the end to the target, as the root of the sum of squares of all entries; 0 for
+        /// [`Target::Free`](crate::Target).
         copy gap: S::Scalar;
         /// The Morse index: the number of independent changes of the inputs that keep target and active bounds and lower the price. 0 on a local minimum.
         copy negative: usize;

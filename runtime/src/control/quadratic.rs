@@ -19,7 +19,7 @@ pub(super) struct Value<T, const D: usize> {
     pub hessian: SMatrix<T, D, D>,
     /// Ψ = ∂²V/∂x∂ν
     pub by_multiplier: SMatrix<T, D, D>,
-    /// The slope of what violates bounds from the place on.
+    /// The slope of the violation of bounds, along the place.
     violation: SVector<T, D>,
 }
 
@@ -35,7 +35,7 @@ pub(super) struct Policy<T, const D: usize, const U: usize> {
     /// The number of negative eigenvalues of Q_uu.
     pub negative: usize,
     pub fall: Option<Fall<T, U>>,
-    /// g·Q_uu⁻¹g with the slope g of what violates bounds.
+    /// g·Q_uu⁻¹g with the slope g of the violation of bounds.
     pub yielding: T,
 }
 
@@ -59,8 +59,9 @@ impl<T: Real, const D: usize> Value<T, D> {
 }
 
 impl<T: Real, const D: usize, const U: usize> Policy<T, D, U> {
-    /// For a step with its bounds, and the value of what follows at A δ + B δu; with the value that is left. Where there are bounds, `bounded` has
-    /// the curvature of the price of the step along each input, and the slopes of what violates bounds.
+    /// For a step with its bounds and the value at A δ + B δu of all later steps; with the value before the step. If
+    /// there are bounds, `bounded` has the curvature of the price of the step along each input, and the slopes of the
+    /// violation of bounds.
     #[inline]
     pub fn of<X>(
         step: &Expansion<X, T, D, U>,
@@ -119,7 +120,8 @@ pub(super) struct Fall<T, const U: usize> {
     pub direction: SVector<T, U>,
     /// δuᵀ Q_uu δu < 0
     pub curvature: T,
-    /// How deep it is, relative to the curvature of all steps alone. Along a symmetry it is no deeper than what a correction changes.
+    /// How deep it is, relative to the curvature of all steps alone. Along a symmetry it is no deeper than the change
+    /// by a correction.
     pub depth: T,
 }
 
@@ -131,7 +133,7 @@ enum Pivot<T, const U: usize> {
 }
 
 impl<T: Real, const U: usize> Pivot<T, U> {
-    /// Of a symmetric matrix, of which only the lower triangle is read, where the price itself curves by `natural` along each input.
+    /// Of a symmetric matrix; only its lower triangle is read. The price itself curves by `natural` along each input.
     #[inline]
     fn of(h: &SMatrix<T, U, U>, natural: &SVector<T, U>, curvature: Curvature<T>) -> Self {
         let mut h = *h;

@@ -4,8 +4,9 @@
 //! The correction makes J − μ Σ ln s + ν⁺·g + ½ g·Rg + z⁺·(a + s) smallest in its quadratic model, g = −e the gap. The multipliers ν⁺ and
 //! z⁺ are those that come next, the Hessian that of the backward sweep. So its slope is known, and near a solution full steps pass.
 //!
-//! A negative eigenvalue of one Q_uu, counted with all curvature as it is, is one of the Hessian L Δ Lᵀ of the augmented Lagrangian: the input
-//! of that stage changed along its eigenvector, and those that follow by their gains, is the column of L⁻ᵀ.
+//! Let a Q_uu, counted with all curvature as it is, have a negative eigenvalue. The Hessian L Δ Lᵀ of the augmented
+//! Lagrangian then has it too. Its column of L⁻ᵀ changes the input of that stage along the eigenvector, and the later
+//! ones by their gains.
 //!
 //! Source: Moré and Sorensen, *On the use of directions of negative curvature in a modified Newton method* (1979), for saddles.
 
@@ -44,7 +45,8 @@ struct Rolled<X, T> {
 }
 
 impl<T: Real, const D: usize, const U: usize> Descent<'_, T, D, U> {
-    /// δν of the correction that closes a part of the gap, Γ δν = V_ν + (1 − part) e, and twice what it takes from the model.
+    /// δν of the correction that closes a part of the gap, and twice the decrease of the model by it. It solves
+    /// Γ δν = V_ν + (1 − part) e.
     pub fn correction(&self, part: T) -> (SVector<T, D>, T) {
         let PlanSummary { lack, descent, .. } = self.summary;
         if self.settings.gap_price.is_some() {
@@ -69,9 +71,10 @@ impl<T: Real, const D: usize, const U: usize> Descent<'_, T, D, U> {
 }
 
 impl<T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: usize, const C: usize> Plan<'_, S, D, U, C> {
-    /// Makes a part of the correction. Returns its fraction and how many roll-outs were refused, other than by slacks; `None` where no part
-    /// that is large enough helps. Prices have the size `magnitude`, of which round-off is a part ε. A full step that is trusted needs no
-    /// proof. Where slacks allow only a part, as much of the gap is left to later corrections, before the correction is made shorter.
+    /// Makes a part of the correction. Returns its fraction and how many roll-outs were refused, other than by slacks;
+    /// `None` where no part that is large enough helps. Prices have the size `magnitude`, and a part ε of it is
+    /// round-off. A full step that is trusted needs no proof. Where slacks allow only a part, as much of the gap is
+    /// left to later corrections, before the correction is made shorter.
     pub fn descend(
         &mut self,
         now: &mut Iterate<T, D>,

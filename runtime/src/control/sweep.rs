@@ -1,11 +1,11 @@
 //! The backward sweep: the exact second derivatives of the price of a plan, eliminated from the end.
 //!
-//! With the least price V(δ, δν) of what follows, ν the multipliers of the target, a step has the model
+//! Let V(δ, δν) be the least price of all later steps, with the multipliers ν of the target. A step then has this model.
 //! ```text
 //! Q(δ, δu) = ℓ + z·a + V(Aδ + Bδu) + ½ (δ, δu)·∂²(ℓ + z·a + p·f)(δ, δu),    δu = k + Kδ + Gδν = −Q_uu⁻¹ (Q_u + Q_ux δ + Q_uν δν)
 //! P = Q_xx + Q_xu K,    p = Q_x + Q_xu k,    Ψ = Q_xν + Kᵀ Q_uν,    Γ = Σ Q_uνᵀ Q_uu⁻¹ Q_uν
 //! ```
-//! and δν is what closes the gap: Γ δν = V_ν. The inertia of the problem is that of all Q_uu less that of Γ.
+//! The equation Γ δν = V_ν closes the gap. The inertia of the problem is that of all Q_uu less that of Γ.
 //!
 //! Sources:
 //! * Jacobson and Mayne, *Differential Dynamic Programming* (1970);
@@ -43,7 +43,7 @@ pub(super) struct Plan<'a, S: Controlled<D, U, C, Scalar: Real>, const D: usize,
     pub sweeps: u32,
 }
 
-/// What a backward sweep is made with.
+/// The settings of a backward sweep.
 #[derive(Clone, Copy)]
 pub(super) struct Settings<T, const D: usize> {
     /// ν and R of the target.
@@ -60,7 +60,7 @@ pub(super) struct Settings<T, const D: usize> {
     pub is_last: bool,
 }
 
-/// What a backward sweep tells of a plan.
+/// The results of a backward sweep for a plan.
 pub(super) struct PlanSummary<T, const D: usize, const U: usize> {
     /// Σℓ + φ
     pub price: T,
@@ -70,7 +70,7 @@ pub(super) struct PlanSummary<T, const D: usize, const U: usize> {
     pub descent: T,
     /// The largest entry of Q_u.
     pub residual: T,
-    /// V_ν, what inputs have still to close.
+    /// V_ν, the gap that inputs have still to close.
     pub lack: SVector<T, D>,
     /// Γ
     pub gramian: SMatrix<T, D, D>,
@@ -88,8 +88,9 @@ pub(super) struct PlanSummary<T, const D: usize, const U: usize> {
 }
 
 impl<T: Real, const D: usize, const U: usize> PlanSummary<T, D, U> {
-    /// What it costs at least to keep the bounds that are violated: ½ V²/(g·H⁻¹g) is the least price of taking V away in the quadratic model.
-    /// It does not vanish with the price of the plan, and units of bounds cancel. That the target makes it dearer is left aside.
+    /// The least cost of satisfying the bounds that are violated: in the quadratic model, removing V costs at least ½
+    /// V²/(g·H⁻¹g). It does not vanish with the price of the plan, and units of bounds cancel. That the target makes it
+    /// dearer is left aside.
     pub fn repair(&self) -> T {
         let price = self.violation / self.yielding * self.violation * T::from_ratio(1, 2);
         if price > T::zero() && price.is_finite() { price } else { T::zero() }

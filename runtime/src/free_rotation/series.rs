@@ -115,8 +115,8 @@ fn each_coefficient<T: Scalar, const N: usize>(
     }
 }
 
-/// The series of x d. It takes the function X and 1/X, (x − x_j)(x − x_k) on each axis, the coefficients of α and ε in
-/// the roots, and those of τ²/4 ℘(τ/2).
+/// The series of x d. Its arguments are the function X and 1/X, and (x − x_j)(x − x_k) on each axis. The last two are
+/// the coefficients of α and ε in the roots, and those of τ²/4 ℘(τ/2).
 fn of_function<T: Scalar, const N: usize>(
     e: &SVector<T, 3>,
     x: Function<T, N>,

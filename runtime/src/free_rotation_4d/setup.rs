@@ -8,7 +8,7 @@ use nalgebra::SVector;
 /// The fields of [`Constants`], in their order.
 pub type Numbers<T> = (T, T, T, [T; 4], [T; 3], [[T; 3]; 3], [T; 2], [T; 4]);
 
-/// What a motion with m = h̃M keeps.
+/// The constants of a motion with m = h̃M.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Constants<T> {
     /// The number of equal parts of the time; 0 for a motion that has none of these constants.
@@ -40,7 +40,8 @@ impl<T: Scalar> Constants<T> {
     }
 }
 
-/// Σm², Pf² − Σ m_ij²(k_p + k_q) and Σ m_ij² k_p k_q, with p and q those that are not i and j: what det(λ² − λm − K) depends on.
+/// Σm², Pf² − Σ m_ij²(k_p + k_q) and Σ m_ij² k_p k_q, where p and q are the indices other than i and j. det(λ² − λm −
+/// K) depends on these.
 #[inline]
 pub(super) fn integrals<T: Scalar>(k: &[T; 4], squares: &Vector<T>, pfaffian: T) -> [T; 3] {
     let [a, b, c, d] = *k;
@@ -50,7 +51,8 @@ pub(super) fn integrals<T: Scalar>(k: &[T; 4], squares: &Vector<T>, pfaffian: T)
     [whole, pfaffian * pfaffian - dot(squares, &sums), dot(squares, &products)]
 }
 
-/// The constants of the free motion with the momentum `momentum` over the time 1 of a body with ΣΩ = DΩ + ΩD; `None` where they are not found.
+/// The constants of the free motion with the momentum `momentum` over the time 1 of a body with ΣΩ = DΩ + ΩD. `None` if
+/// they are not found.
 #[cold]
 pub(super) fn set_up<T: Real>(d: &[T; 4], momentum: &Vector<T>) -> Option<Constants<T>> {
     let (increment, _) = flow(|m| velocity(d, m), momentum)?;
@@ -153,7 +155,7 @@ struct Fit<'a, T> {
     motion: &'a Matrix<T>,
 }
 
-/// β, h̃, δ, κ, and what they make.
+/// β, h̃, δ, κ, and their results.
 struct Fitted<T> {
     unknowns: [T; 4],
     /// J̃
@@ -165,7 +167,8 @@ struct Fitted<T> {
 }
 
 impl<T: Real> Fit<'_, T> {
-    /// By the method of Gauss and Newton, from no correction at all: from a small one where a moment vanishes, as J̃ has no slope there.
+    /// By the method of Gauss and Newton, from no correction at all. If a moment vanishes, it starts from a small one,
+    /// since J̃ has no slope at zero.
     fn fit(&self) -> Option<Fitted<T>> {
         let small = T::from_ratio(1, 1000) * dot(self.momentum, self.momentum);
         let beta = if self.d.iter().any(|d| *d * *d <= small) { small } else { T::zero() };

@@ -26,7 +26,7 @@ pub(super) fn turn<T: Scalar>(constants: &Constants<T>, m: &Vector<T>) -> Moved<
     (orthogonal(&composed(&turn, &motion)), next)
 }
 
-/// m², and what else is quadratic in m.
+/// m², and the other quadratic terms in m.
 struct Powers<T> {
     squares: Vector<T>,
     /// |m|²
@@ -115,7 +115,7 @@ fn adjugate<T: Scalar>(a: &Matrix<T>) -> Matrix<T> {
     ]
 }
 
-/// The momentum with |m|² and Pf m of the motion, by what those before the step have lost: off the path of the step.
+/// The momentum with |m|² and Pf m of the motion, from their errors before the step: off the critical path of the step.
 #[inline]
 fn on_level<T: Scalar>(constants: &Constants<T>, next: &Vector<T>, square: T, pf: T) -> Vector<T> {
     let (quarter, twice) = (T::from_ratio(1, 4), pf + pf);
@@ -156,7 +156,7 @@ pub(super) fn composed<T: Scalar>(a: &Matrix<T>, b: &Matrix<T>) -> Matrix<T> {
     core::array::from_fn(|i| core::array::from_fn(|j| entry(&both, i, j) + (entry(a, i, j) + entry(b, i, j))))
 }
 
-/// D − ½(I + D)S with S = D + Dᵀ + DᵀD: what rounding has left of the orthogonality of I + D.
+/// D − ½(I + D)S with S = D + Dᵀ + DᵀD: the correction of I + D to an orthogonal matrix, after rounding.
 #[inline]
 fn orthogonal<T: Scalar>(d: &Matrix<T>) -> Matrix<T> {
     let half = T::from_ratio(1, 2);

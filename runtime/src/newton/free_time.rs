@@ -10,8 +10,8 @@ const TRIALS: usize = 60;
 /// Doublings of a first step size for which there is no solution.
 const DOUBLINGS: usize = 10;
 
-/// The result for one step size: an answer and the sweeps that it took, with the slope dV/dh there, and the sum of the
-/// sizes of its terms.
+/// The result for one step size: an answer and the sweeps that it took. With it come the slope dV/dh there, and the sum
+/// of the sizes of its terms.
 pub(crate) struct Trial<T, A> {
     pub answer: A,
     pub sweeps: u32,

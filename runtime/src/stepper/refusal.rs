@@ -1,4 +1,5 @@
-//! Steps that fail: of one body beside others that go on, what it is that is not finite, and how long a step would do.
+//! Steps that fail: the failure of one body while others go on, the quantity that is not finite, and the longest step
+//! that succeeds.
 
 use super::{Stepper, first_without, whole_or_lane};
 use crate::scheme::{At, AtOf, Constants, Held, Left, Scheme};
@@ -9,9 +10,10 @@ use num_traits::Zero;
 const TRIALS: usize = 32;
 /// The ratio of the shortest step that was found to have no solution to the longest that has one.
 const WIDTH: f64 = 1.02;
-/// Bytes of constants of a body up to which steps are tried, each with its own: making larger ones takes much stack, 45 KB for series of exact drifts.
+/// Bytes of constants of a body up to which steps are tried, each with its own constants. Larger constants take much
+/// stack: 45 KB for series of exact drifts.
 const CONSTANTS: usize = 2048;
-/// What solvers call the momentum that they are given.
+/// The name of the momentum in the errors of solvers.
 const MOMENTUM: Error = Error::NotFinite { name: "the momentum" };
 
 impl<S: Clebsch, M: Method<S>> Stepper<S, M> {
@@ -26,8 +28,8 @@ impl<S: Clebsch, M: Method<S>> Stepper<S, M> {
         if stepped.all() { (next, stepped) } else { (Self::merged(&next, state, stepped), stepped) }
     }
 
-    /// Why the step of a lane fails; `None` where it does not. The step is made once more, with the momenta of all other lanes NaN: what is
-    /// left to fail is this lane.
+    /// Why the step of a lane fails; `None` where it does not. The step is made once more, with the momenta of all
+    /// other lanes NaN, so only this lane can fail.
     #[cold]
     pub fn failure(&self, state: &State<S, M>, lane: usize) -> Option<Error> {
         let mut alone = *state;
@@ -56,7 +58,8 @@ impl<S: Clebsch, M: Method<S>> Stepper<S, M> {
         })
     }
 
-    /// What is computed at the time t. Where it fails, the error is that of the step; where it is not finite in a lane, it has this name.
+    /// The result of a computation at the time t. Where it fails, the error is that of the step; where it is not finite
+    /// in a lane, it has this name.
     #[inline]
     pub(super) fn computed<V: Space<S::Scalar>>(
         &self,

@@ -10,19 +10,21 @@ use num_traits::Zero;
 
 /// With `order = 1` a step drifts, then kicks, and the momentum N of a state is ahead of its configuration by half of the kick there.
 impl<S: Clebsch, M: Method<S>> Stepper<S, M> {
-    /// The momentum that belongs to the configuration of a state, π: with `order = 1` N before the second half of its kick,
+    /// The momentum π at the configuration of a state. With `order = 1` it is N before the second half of its kick:
     /// ```text
     /// π = N − ½ J(q, ∂(U₁ − U₀)) = N + h/2 J(q, ∂V(t, q))
     /// ```
-    /// and with every other order N itself, so that a program may read π whatever the order is.
+    /// With every other order it is N itself. So a program may read π whatever the order is.
     ///
-    /// Where the kinetic cost is time-symmetric, (q, π) moves by half kick, drift, half kick, of *second* order: steps of both orders make the same
-    /// configurations, if those of first order start by [`staggered_state`](Self::staggered_state) from the same q and π. So the step of first order has
-    /// the accuracy of second order, for a gradient at each reading. From a state that [`state`](Self::state) has made of N = π the
-    /// motion that is read is another one of second order, whose start is off by half a kick.
+    /// If the kinetic cost is time-symmetric, (q, π) moves by half kick, drift, half kick, of *second* order. Steps of
+    /// both orders make the same configurations, if those of first order start by
+    /// [`staggered_state`](Self::staggered_state) from the same q and π. So the step of first order has the accuracy of
+    /// second order, for a gradient at each reading. A state that [`state`](Self::state) has made of N = π is read as
+    /// another motion of second order, whose start is off by half a kick.
     ///
-    /// Of first order still: what a cost makes that is not time-symmetric, and motions under a `force`, which takes the velocity and the input of
-    /// the drift before it; the kick is that of the potential alone. `DERIVATION` says so where it is.
+    /// Some errors stay of first order: those of a cost that is not time-symmetric, and those of motions under a
+    /// `force`. The force takes the velocity and the input of the drift before it, and the kick is that of the
+    /// potential alone. `DERIVATION` says so where it is.
     ///
     /// The components and the basis are those of N. NaN where the gradient is.
     ///
@@ -58,16 +60,17 @@ impl<S: Clebsch, M: Method<S>> Stepper<S, M> {
     /// # Ok::<(), clebsch::Error>(())
     /// ```
     ///
-    /// Source: Hairer, Lubich and Wanner, *Geometric Numerical Integration*, §I.1.4 (the staggered form of the Störmer–Verlet method)
-    /// and §V.3.3 (processing: methods that are conjugate to one of higher order).
+    /// Source: Hairer, Lubich and Wanner, *Geometric Numerical Integration*. §I.1.4 is the staggered form of the
+    /// Störmer–Verlet method. §V.3.3 is processing: methods that are conjugate to one of higher order.
     #[inline]
     pub fn synchronized(&self, state: &State<S, M>) -> S::Momentum {
         let ahead = M::stagger(&self.system, self.h, state.time.now(), &state.configuration);
         minus(&state.momentum(), &ahead)
     }
 
-    /// Kinetic energy plus potential, with the momentum that [`synchronized`](Self::synchronized) reads: with `order = 1` its error is of the order
-    /// of π, where that of [`energy`](Self::energy) is of h; with every other order both are the same.
+    /// Kinetic energy plus potential, with the momentum that [`synchronized`](Self::synchronized) reads. With
+    /// `order = 1` its error has the order of the error of π, while that of [`energy`](Self::energy) is of order h.
+    /// With every other order both are the same.
     #[inline]
     pub fn synchronized_energy(&self, state: &State<S, M>) -> S::Scalar {
         let (t, q) = (state.time.now(), &state.configuration);

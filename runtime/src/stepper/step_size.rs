@@ -20,19 +20,21 @@ const ROUNDINGS: i64 = 64;
 impl<S: Clebsch<Scalar: Real> + Clone, M: Method<S>> Stepper<S, M> {
     /// A step size with which the motion from `start` is wrong by about `error` after `duration`.
     ///
-    /// A probing run over t = 64 h, with h this stepper's own step size, is made with steps of h and of h/2. Their difference d gives the
-    /// error with h, by the declared order p, and as errors grow like the time
+    /// A probing run over t = 64 h, with h this stepper's own step size, is made with steps of h and of h/2. Their
+    /// difference d gives the error with h, by the declared order p. Errors grow like the time, so that
     /// ```text
-    /// E(t) = d / (1 − 2⁻ᵖ)        E(T) = E(t) T/t        h* = h (error / E(T))^(1/p)
+    /// E(t) = d / (1 − 2⁻ᵖ)        E(T) = E(t) T/t        h* = h (error / E(T))^(1/p).
     /// ```
-    /// Where h* is not near h, another power of h may count: the run is repeated with h*, unless it would take more than a million steps.
+    /// Another power of h may count if h* is not near h. The run is then repeated with h*, unless it would take more
+    /// than a million steps.
     ///
     /// * The error is the larger of |Δq|, the root of the sum of squares of all entries, in the unit of the configuration, and |Δμ|/|μ|.
     /// * **Linear growth is assumed.** It holds for symmetric or symplectic steps of motions that are integrable or nearly so, also on
     ///   average over their periods. Errors of chaotic motions grow like exponentials: over their Lyapunov time and longer the answer is
     ///   too long a step. A friction that damps errors makes it too short.
     /// * At order 1 a part of the error, of h, does not grow: the answer errs to the short side.
-    /// * Choose this stepper's h so that 64 steps go over a period or more: what has not happened in the run is not known to it.
+    /// * Choose this stepper's h so that 64 steps go over a period or more: the estimate knows only the motion of its
+    ///   run.
     /// * Forces have no input during the run, and an explicit time starts as in `start`.
     /// * The answer has the sign of this stepper's h and is not above t/4. The steps of the run were solvable with it or with a step near it.
     /// * Rounding is not in E: over n steps it is about ε √n.
@@ -57,12 +59,13 @@ impl<S: Clebsch<Scalar: Real> + Clone, M: Method<S>> Stepper<S, M> {
     /// # Ok::<(), clebsch::Error>(())
     /// ```
     ///
-    /// Source: Hairer, Nørsett and Wanner, *Solving Ordinary Differential Equations I*, §II.4 (step size by Richardson's extrapolation);
-    /// Hairer, Lubich and Wanner, *Geometric Numerical Integration*, theorem X.3.1 (linear growth).
+    /// Source: Hairer, Nørsett and Wanner, *Solving Ordinary Differential Equations I*, §II.4 (step size by
+    /// Richardson's extrapolation). Hairer, Lubich and Wanner, *Geometric Numerical Integration*, theorem X.3.1 (linear
+    /// growth).
     ///
     /// # Errors
-    /// [`Error::BelowRounding`] where the error is not above what rounding makes over the duration, [`Error::NotFinite`] for the
-    /// duration, and those of the steps where no step size served.
+    /// [`Error::BelowRounding`] if the error is not above that of rounding over the duration, [`Error::NotFinite`] for
+    /// the duration. If no step size served, the error is that of its steps.
     pub fn suggest_step_size(
         &self,
         start: &State<S, M>,

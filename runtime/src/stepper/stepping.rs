@@ -9,8 +9,9 @@ use num_traits::Zero;
 impl<S: Clebsch, M: Method<S>> Stepper<S, M> {
     /// The state (q, N), after checks: finite, q on its orbit, N in 𝔤_q^⊥, the momenta that motions of q can have.
     ///
-    /// What is accepted as round-off of the input is √ε: 1.5e-8 for `f64`, 3.5e-4 for `f32`; for N relative to its largest
-    /// component. [`project`](Self::project) gives the nearest N that is accepted. Where the time matters it starts at 0.
+    /// The tolerance for round-off of the input is √ε: 1.5e-8 for `f64`, 3.5e-4 for `f32`; for N relative to its
+    /// largest component. [`project`](Self::project) gives the nearest N that is accepted. Where the time matters it
+    /// starts at 0.
     ///
     /// # Errors
     /// [`Error::NotFinite`], [`Error::OffOrbit`] or [`Error::OutsideMomentumSpace`].
@@ -34,8 +35,9 @@ impl<S: Clebsch, M: Method<S>> Stepper<S, M> {
     /// The same as stepping so often but for rounding, and faster: no state between is made, and splittings drift from one step into the next.
     ///
     /// # Errors
-    /// As [`step`](Self::step), at whichever step; `state` is untouched. Where the scalar has lanes, [`Error::InLane`] names one of those that fail:
-    /// take the lanes one by one, or step after step, to know the others and how far each came.
+    /// As [`step`](Self::step), at whichever step; `state` is untouched. If the scalar has lanes, [`Error::InLane`]
+    /// names one of those that fail. Take the lanes one by one, or step after step, to know the others and how far each
+    /// came.
     #[inline]
     pub fn advance(&self, state: &State<S, M>, steps: usize) -> Result<State<S, M>, Error> {
         let State { time, configuration, held, .. } = state;
@@ -106,7 +108,7 @@ impl<S: Clebsch, M: Method<S>> Stepper<S, M> {
         self.made_state(t, q, mu)
     }
 
-    /// The state (q, N) with what its first step takes.
+    /// The state (q, N) with the data that its first step takes.
     pub(super) fn made_state(&self, t: T<S>, q: Q<S>, mu: Mu<S>) -> Result<State<S, M>, Error> {
         let left = M::Scheme::left(self.at(t), &q, &mu);
         if !left.is_finite() {
@@ -143,7 +145,7 @@ impl<S: Clebsch, M: Method<S>> Stepper<S, M> {
         }
     }
 
-    /// Whether what a state has left is for steps of this size.
+    /// Whether the data in a state is for steps of this size.
     #[inline(always)]
     fn has_left(&self, state: &State<S, M>) -> bool {
         size_of::<Left<S, M>>() == 0 || state.h == self.h
