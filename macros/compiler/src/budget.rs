@@ -1,4 +1,5 @@
-//! The end of every expansion: within a budget of work, or with an error that says so; and what a panic of ours becomes.
+//! The end of every expansion: within a budget of work, or with an error that says so. A panic of ours becomes an error
+//! too.
 
 use std::cell::Cell;
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -63,7 +64,8 @@ fn too_large(declaration: &Declaration, stage: CompilerStage) -> Diagnostic {
         .note("formulas are written out at compile time, where products of sums have a term for each pair of terms")
 }
 
-/// What the declaration is small without, and what to write instead: the first closure that can be left out, without which a quarter of the budget is enough.
+/// The closure that makes the declaration large, and its replacement. It is the first optional closure without which a
+/// quarter of the budget is enough.
 fn culprit(declaration: &Declaration) -> Option<(Location, String, &'static str)> {
     type Without = fn(&mut Declaration);
     let potential = declaration.potential.as_ref().and_then(Potential::closure);
@@ -89,7 +91,7 @@ fn culprit(declaration: &Declaration) -> Option<(Location, String, &'static str)
 
 const SHORTER_FORCE: &str = "write a shorter force, or put the part of it that is long into the input";
 
-/// What makes the formulas of a declaration long and can be left out.
+/// The optional parts of a declaration that make its formulas long.
 fn smaller(declaration: &Declaration) -> Vec<&'static str> {
     let dials = &declaration.dials;
     let chart = dials.chart.as_ref().map(|chart| chart.value);
@@ -111,7 +113,7 @@ fn smaller(declaration: &Declaration) -> Vec<&'static str> {
     rows.into_iter().filter_map(|(applies, text)| applies.then_some(text)).into_list()
 }
 
-/// What is made, or the error that a panic of ours becomes: it is our fault, and the user's item is where it shows.
+/// The result, or the error that a panic of ours becomes. It is our fault, but shows at the user's item.
 ///
 /// # Errors
 /// Where it panics.

@@ -1,4 +1,5 @@
-//! Errors that help: what is wrong, what to type instead, and why; collected, so that a stage reports all of its errors.
+//! Errors that help: the mistake, the text to type instead, and the reason. They are collected, so that a stage reports
+//! all of its errors.
 
 use clebsch_symbolic::IntoList;
 use std::cell::RefCell;
@@ -41,7 +42,7 @@ impl Location {
 /// Why something of the language is refused.
 pub(crate) const LATER: &str = "it belongs to the language and comes with a later version of clebsch";
 
-/// An error at a place: its message, then help and notes, each a text with what it formats.
+/// An error at a place: its message, then help and notes. Each is a text with the values that it formats.
 macro_rules! error {
     ($place:expr, $message:literal $(, $given:expr)* $(; $line:ident $text:literal $(, $also:expr)*)*) => {
         $crate::diagnostic::Diagnostic::new($place, format_args!($message $(, $given)*))
@@ -54,12 +55,12 @@ macro_rules! bail {
     ($($error:tt)*) => { return Err($crate::diagnostic::error!($($error)*).into()) };
 }
 
-/// Reports an error to what collects them, and returns no value.
+/// Reports an error to the collector, and returns no value.
 macro_rules! refuse {
     ($collector:expr, $($error:tt)*) => { return $collector.refuse($crate::diagnostic::error!($($error)*)) };
 }
 
-/// Reports an error to what collects them.
+/// Reports an error to the collector.
 macro_rules! report {
     ($collector:expr, $($error:tt)*) => { $collector.push($crate::diagnostic::error!($($error)*)) };
 }
@@ -75,7 +76,7 @@ pub struct Diagnostic {
 }
 
 impl Diagnostic {
-    /// What is wrong: lower case, no full stop, the user's names in backticks.
+    /// An error with its message: lower case, no full stop, the user's names in backticks.
     pub fn new(place: impl Into<Location>, message: impl fmt::Display) -> Diagnostic {
         Diagnostic { place: place.into(), message: message.to_string(), lines: Vec::new() }
     }
@@ -97,7 +98,7 @@ impl Diagnostic {
         if let Some(text) = text { self.help(text) } else { self }
     }
 
-    /// Says that something is part of the language, but not of this version, and what to write instead.
+    /// Says that something is part of the language, but not of this version, and gives its replacement.
     pub fn later(place: impl Into<Location>, what: impl fmt::Display, help: Option<&str>) -> Diagnostic {
         let error = Diagnostic::new(place, format!("{what} is not supported yet")).maybe_help(help);
         error.note(LATER)

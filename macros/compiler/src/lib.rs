@@ -33,8 +33,8 @@ pub use crate::reference::{keys_for_editors, reference};
 
 /// The integrator of the item that carries `#[derive(Clebsch)]`, or the errors of its declaration.
 ///
-/// Beside errors stands an implementation with the declared types, as far as they can be read, so that nothing else is reported. There
-/// are no panics: one of ours is an error that asks for a report.
+/// With the errors comes an implementation with the declared types, as far as they can be read, so that nothing else is
+/// reported. There are no panics: one of ours is an error that asks for a report.
 pub fn expand(item: TokenStream) -> TokenStream {
     let integrator = budget::without_panic(&item, || integrator(item.clone())).flatten().unwrap_or_else(|errors| {
         let errors = errors.to_compile_errors();
@@ -55,7 +55,7 @@ fn integrator(item: TokenStream) -> Result<TokenStream, Diagnostics> {
     })
 }
 
-/// What stands beside errors; `None` where the types cannot be read.
+/// The implementation that accompanies errors; `None` if the types cannot be read.
 fn stub(item: TokenStream) -> Option<TokenStream> {
     let (graph, declaration) = (Graph::new(), parse::parse_with_errors(item)?);
     let outline = work::within(WORK, || model::outline(&graph, &declaration));

@@ -10,7 +10,7 @@ use crate::lower::{MechanicsProgram, Program};
 pub struct MethodProgram<'g> {
     /// The unit struct of the user that stands for it.
     pub name: Ident,
-    /// Its program, of which the system is that of the declared dials.
+    /// Its program; its system is that of the declared dials.
     pub program: MechanicsProgram<'g>,
 }
 
@@ -30,7 +30,7 @@ impl<'g> MechanicsProgram<'g> {
 }
 
 impl<'g> MethodProgram<'g> {
-    /// The method of a program beside the one that the declared dials have.
+    /// The method of a program, next to that of the declared dials.
     ///
     /// # Errors
     /// Where it conserves less: `Conserves` is of the system and speaks for all of its methods.

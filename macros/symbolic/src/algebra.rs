@@ -23,7 +23,7 @@ pub struct Algebra {
     pub is_identification: bool,
 }
 
-/// What a graph keeps of a basis.
+/// The data that a graph stores for a basis.
 #[derive(PartialEq, Eq, Hash, Debug)]
 pub struct Basis {
     /// The shape of the matrices.
@@ -140,7 +140,7 @@ impl<'g> Expr<'g> {
         })
     }
 
-    /// v E_1 of a one-dimensional algebra, kept as one letter so that its products are known as those of v^.
+    /// v E_1 of a one-dimensional algebra, stored as one letter so that its products are known as those of v^.
     fn wedge_of_scalar(self, algebra: Algebra) -> Expr<'g> {
         let graph = self.graph;
         let shape = algebra.shape;

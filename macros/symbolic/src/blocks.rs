@@ -1,8 +1,8 @@
 //! Blocks of matrices, and matrices made of blocks.
 //!
-//! Products can be freed of the zeros of their letters: F·embed(X, 0, 0) becomes embed(F[0..4, 0..3]·X, 0, 0), and blocks of products
-//! become products of blocks. Expressions are not kept in this form: (F − I)(F + I)⁻¹ has to stay whole until F is put in, for then it
-//! simplifies as a whole.
+//! Products can drop the zeros of their letters: F·embed(X, 0, 0) becomes embed(F[0..4, 0..3]·X, 0, 0). Blocks of
+//! products become products of blocks. Graphs do not store expressions in this form. (F − I)(F + I)⁻¹ has to stay one
+//! product until F is substituted: only then it simplifies.
 
 use std::ops::Range;
 
@@ -123,7 +123,7 @@ struct Window<'g> {
     part: Expr<'g>,
     row: usize,
     column: usize,
-    /// The shape of the whole.
+    /// The shape of the block matrix.
     shape: Shape,
 }
 
@@ -164,7 +164,7 @@ impl<'g> Expr<'g> {
         })
     }
 
-    /// The part of a letter outside of which it is zero.
+    /// The part of a letter that may be nonzero.
     fn window(self) -> Window<'g> {
         let shape = self.shape();
         match &*self.node() {
@@ -192,7 +192,7 @@ fn product<'g>(letters: impl Iterator<Item = Expr<'g>>) -> Option<Expr<'g>> {
 }
 
 impl<'g> Window<'g> {
-    /// The product of what meets.
+    /// The product, in which only rows and columns that meet count.
     fn times(self, other: Window<'g>) -> Window<'g> {
         let part = self.part.graph.overlap((self.part, self.column), (other.part, other.row), Expr::cut);
         let shape = Shape::new(self.shape.rows, other.shape.columns);

@@ -46,12 +46,12 @@ impl<'g> Expr<'g> {
         }
     }
 
-    /// What a symbol stands for; `None` for other expressions.
+    /// The role of a symbol; `None` for other expressions.
     pub fn role(self) -> Option<Role> {
         self.as_symbol().map(|symbol| symbol.role)
     }
 
-    /// What is promised about a symbol; nothing about other expressions.
+    /// The promise about the values of a symbol; none about other expressions.
     pub fn property(self) -> Property {
         match &*self.node() {
             ExprNode::Symbol(symbol) => symbol.property,

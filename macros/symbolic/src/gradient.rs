@@ -178,7 +178,7 @@ impl<'g> Expr<'g> {
     }
 }
 
-/// A longer vector is looked at as a whole before the derivatives are taken along each of its directions.
+/// For a longer vector all directions are looked at together first, before the derivatives are taken along each.
 const LONG: usize = 16;
 
 impl<'g> Expr<'g> {

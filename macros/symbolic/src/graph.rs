@@ -30,7 +30,8 @@ impl Graph {
         Graph::default()
     }
 
-    /// A graph that lives as long and is empty when it is first asked for: what is made there does not depend on what is made here.
+    /// A graph that lives as long, and is empty when it is first asked for. Expressions made there do not depend on
+    /// those made here.
     pub fn another(&self) -> &Graph {
         self.another.get_or_init(Box::default)
     }
@@ -73,8 +74,8 @@ impl Graph {
         self.intern(ExprNode::Symbol(Rc::new(symbol)), shape)
     }
 
-    /// What a method of the user's gives for some arguments: its value for `output` 0, its gradient with respect to argument i for
-    /// `output` i + 1.
+    /// The result of a method of the user for some arguments. `output` 0 is its value, and `output` i + 1 its gradient
+    /// with respect to argument i.
     pub fn opaque<'g>(&'g self, name: &str, output: usize, arguments: &[Expr<'g>], shape: Shape) -> Expr<'g> {
         self.intern(ExprNode::Opaque(name.into(), output, arguments.each(|argument| argument.id)), shape)
     }
@@ -153,7 +154,7 @@ impl Graph {
         self.total(shape, placed)
     }
 
-    /// Matrices with as many rows each, one beside the other.
+    /// Matrices with as many rows each, side by side.
     pub fn beside<'g>(&'g self, parts: &[Expr<'g>]) -> Expr<'g> {
         let rows = parts.first().map_or(1, |part| part.shape().rows);
         let shape = Shape::new(rows, parts.iter().map(|part| part.shape().columns).sum());

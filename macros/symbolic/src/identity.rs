@@ -1,9 +1,10 @@
 //! Deciding identities: evaluation at a random point of a prime field.
 //!
-//! Two rational expressions that agree at a random point of a field with 2⁶¹ − 1 elements are equal. The probability of an error is
-//! below degree/2⁶¹ (Schwartz and Zippel), 10⁻¹⁵ for a degree of a thousand: one point decides. Rotations are sampled by the Cayley map and unit vectors by stereographic projection, so
-//! the relations of the group are part of the test. Functions that are not rational are opaque: equal arguments give equal
-//! values, and no other law of theirs is used, so an identity may be missed and is never claimed wrongly.
+//! Two rational expressions that agree at a random point of a field with 2⁶¹ − 1 elements are equal. The probability of
+//! an error is below degree/2⁶¹ (Schwartz and Zippel), 10⁻¹⁵ for a degree of a thousand: one point decides. Rotations
+//! are sampled by the Cayley map and unit vectors by stereographic projection, so the relations of the group are part
+//! of the test. Functions that are not rational are opaque: equal arguments give equal values, and no other law of
+//! theirs is used. So an identity may be missed, but is never claimed wrongly.
 
 use std::cell::RefCell;
 
@@ -118,7 +119,7 @@ pub struct Point<'g> {
     seed: u64,
     /// The symbols whose values have been set.
     fixed: Table<Expr<'g>, Matrix<Residue>>,
-    /// What has been evaluated with them.
+    /// The values of expressions that have been evaluated with them.
     known: Values<Residue>,
 }
 
@@ -179,7 +180,8 @@ impl<'g> Point<'g> {
         }
     }
 
-    /// A random element of a group; any matrix where no way to make elements is known, for what holds for all matrices holds for them.
+    /// A random element of a group. If no way to make elements is known, it is any matrix: laws of all matrices hold
+    /// for elements too.
     fn sample_element(&self, symbol: Expr<'g>, group: Group) -> Matrix<Residue> {
         let mut count = 0;
         let mut random = || {
@@ -239,8 +241,8 @@ pub fn rank_where<'g>(expr: Expr<'g>, prepare: &dyn Fn(&mut Point<'g>)) -> usize
     point.evaluate(expr).reduce(expr.shape().columns).0.len()
 }
 
-/// A basis of the constant vectors w with A·w = 0 for all values of the symbols in A that the properties allow, in reduced echelon
-/// form.
+/// A basis of the constant vectors w with A·w = 0, in reduced echelon form. A·w vanishes for all values of the symbols
+/// in A that the properties allow.
 ///
 /// Entries that are no small rationals are not recognised; vectors with such entries are left out, so that nothing is claimed
 /// wrongly.

@@ -1,4 +1,4 @@
-//! What maps of expressions give, remembered: the same parts stand in many expressions.
+//! Results of maps of expressions, remembered: the same parts stand in many expressions.
 //!
 //! A map that is asked again makes nothing new, so that remembering changes neither expressions nor their order.
 
@@ -45,7 +45,7 @@ impl Images {
         known[id.0 as usize] = image.0 + 1;
     }
 
-    /// The image of a part of what is being mapped.
+    /// The image of a part of the expression that is being mapped.
     pub(crate) fn of<'g>(&self, graph: &'g Graph, part: &Id) -> Expr<'g> {
         // by construction: parts come before what they are part of
         graph.expr(self.get(*part).expect("the image of a part"))

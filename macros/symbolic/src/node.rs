@@ -86,7 +86,7 @@ pub enum Operation {
     Components(Algebra),
 }
 
-/// The outermost operation of an expression over its children, without its shape, which the graph keeps beside it.
+/// The outermost operation of an expression over its children. The graph stores the shape separately.
 #[derive(Clone, PartialEq, Eq, Hash, Debug)]
 pub enum NodeOf<C> {
     /// A symbol.
@@ -103,7 +103,8 @@ pub enum NodeOf<C> {
     Word(Vec<C>),
     /// The trace of a product of letters.
     Trace(Vec<C>),
-    /// What a method of the user's gives for some arguments: 0 for its value, i + 1 for the gradient with respect to argument i.
+    /// The result of a method of the user for some arguments: 0 for its value, i + 1 for the gradient with respect to
+    /// argument i.
     Opaque(Rc<str>, usize, Vec<C>),
     /// The product entry by entry.
     Hadamard(C, C),
@@ -113,7 +114,7 @@ pub enum NodeOf<C> {
 
 pub(crate) type ExprNode = NodeOf<Id>;
 
-/// A node as it is seen from outside of this crate: what the lowering to scalars walks over.
+/// A node as other crates see it: the lowering to scalars walks over it.
 pub type View<'g> = NodeOf<Expr<'g>>;
 
 impl<C: Copy> NodeOf<C> {

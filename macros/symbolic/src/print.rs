@@ -15,7 +15,7 @@ pub enum Notation {
 }
 
 impl Notation {
-    /// What is written in this notation.
+    /// The text in this notation.
     pub fn either<T>(self, unicode: T, latex: T) -> T {
         if self == Notation::Latex { latex } else { unicode }
     }

@@ -52,7 +52,7 @@ impl Fraction {
         self == Fraction::ONE
     }
 
-    /// Whether it is whole.
+    /// Whether it is an integer.
     pub fn is_integer(self) -> bool {
         self.denominator == 1
     }
@@ -121,7 +121,7 @@ impl fmt::Display for Fraction {
 #[derive(Clone, PartialEq, Eq, Hash, Debug)]
 pub struct Rational(Size);
 
-/// What fits is short, so that equal numbers are equal values.
+/// A number that fits into machine words is stored short, so that equal numbers are equal values.
 #[derive(Clone, PartialEq, Eq, Hash, Debug)]
 enum Size {
     Short(Fraction),
@@ -254,7 +254,7 @@ impl Rational {
         numerator.bits() + denominator.bits()
     }
 
-    /// The machine words that it takes beside one for each part.
+    /// The machine words that it takes in addition to one for each part.
     pub(crate) fn digits(&self) -> usize {
         if matches!(self.0, Size::Short(_)) { 0 } else { self.bits() / 64 }
     }
@@ -279,7 +279,7 @@ impl Rational {
         self.as_fraction().is_some_and(Fraction::is_one)
     }
 
-    /// Whether it is whole.
+    /// Whether it is an integer.
     pub fn is_integer(&self) -> bool {
         match &self.0 {
             Size::Short(fraction) => fraction.is_integer(),

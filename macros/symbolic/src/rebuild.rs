@@ -61,7 +61,8 @@ impl<'g> Expr<'g> {
         self.has(|node| matches!(node, ExprNode::Of(Operation::Inverse, _)))
     }
 
-    /// Whether it divides by what depends on one of these symbols, or takes the inverse of a matrix that does: where that vanishes it has a pole.
+    /// Whether it divides by an expression in one of these symbols, or takes the inverse of a matrix in them. If the
+    /// divisor vanishes, it has a pole.
     pub fn has_poles_in(self, symbols: &[Expr<'g>]) -> bool {
         let depends = |id: Id| symbols.iter().any(|symbol| self.graph.expr(id).depends_on(*symbol));
         self.has(|node| matches!(node, ExprNode::Of(Operation::Inverse, matrix) if depends(*matrix)))
@@ -148,7 +149,7 @@ impl<'g> Expr<'g> {
         self.mapped(images, |part| part.expand_node(images))
     }
 
-    /// As [`expand`](Self::expand), and inside roots and functions too: for limits, where cancellation is what is looked for.
+    /// As [`expand`](Self::expand), and inside roots and functions too: for limits, where cancellation is the goal.
     pub fn expand_all(self) -> Expr<'g> {
         let images = Images::default();
         self.mapped(&images, |part| part.rebuild(&images).expand())

@@ -2,7 +2,7 @@
 
 use crate::{Group, Shape};
 
-/// What a symbol stands for. The role decides how often its value changes and how generated code spells it.
+/// The meaning of a symbol. The role decides how often its value changes and how generated code spells it.
 #[derive(Copy, Clone, PartialEq, Eq, Hash, PartialOrd, Ord, Debug)]
 pub enum Role {
     /// The step h.
@@ -65,13 +65,13 @@ pub enum Role {
     OfferedElement(usize),
     /// An element of a declared group while its equation is read.
     DeclaredElement,
-    /// A number of which nothing is known in the special value of a parameter.
+    /// A number about which nothing is known, in the special value of a parameter.
     Unknown,
     /// A letter of a formula that is printed and not computed.
     Letter,
 }
 
-/// What is promised about the values of a symbol.
+/// The promise about the values of a symbol.
 #[derive(Copy, Clone, PartialEq, Eq, Hash, PartialOrd, Ord, Debug)]
 pub enum Property {
     /// Nothing.
@@ -97,8 +97,8 @@ pub struct Symbol {
     pub name: String,
     /// The shape of the value.
     pub shape: Shape,
-    /// What it stands for.
+    /// Its meaning.
     pub role: Role,
-    /// What is promised about its values.
+    /// The promise about its values.
     pub property: Property,
 }

@@ -1,7 +1,7 @@
-//! Maps and interners whose order is that of insertion: what is made with them is the same in every process.
+//! Maps and interners whose order is that of insertion, so that results are the same in every process.
 //!
-//! Editors run the compiler unoptimised at every keystroke, and there the maps of the standard library, made to be optimised and
-//! hashing with care for hostile keys, take a third of its time.
+//! Editors run the compiler unoptimised at every keystroke. There the maps of the standard library take a third of its
+//! time. They are made to be optimised, and hash with care for hostile keys.
 
 use std::hash::{Hash, Hasher};
 

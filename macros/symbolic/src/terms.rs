@@ -64,7 +64,7 @@ impl Graph {
         self.settle(shape, sum)
     }
 
-    /// The sum of expressions of one shape. What stands there on the way makes no expressions: of a long sum they would be as many,
+    /// The sum of expressions of one shape. Partial sums make no expressions: a long sum would have as many of them,
     /// and nearly as long.
     pub fn total<'g>(&'g self, shape: Shape, parts: impl IntoIterator<Item = Expr<'g>>) -> Expr<'g> {
         let mut sum: Vec<Term> = Vec::new();
@@ -119,7 +119,7 @@ impl<'g> Expr<'g> {
         }
     }
 
-    /// A single term: the only one of the sum, or the whole expression as a factor.
+    /// A single term: the only one of the sum, or all of the expression as a factor.
     pub(crate) fn factor(self) -> Term {
         match &*self.node() {
             ExprNode::Sum(terms) if terms.len() == 1 => terms[0].clone(),
@@ -287,7 +287,8 @@ impl Graph {
         .filter(|product| !product.shape().is_scalar() || product.as_number().is_none())
     }
 
-    /// The product of what meets of A, whose columns stand from `column` on, and of B, whose rows stand from `row` on.
+    /// The product of A, whose columns stand from `column` on, and B, whose rows stand from `row` on. Only columns and
+    /// rows that meet count.
     pub(crate) fn overlap<'g>(
         &'g self,
         (a, column): (Expr<'g>, usize),
@@ -303,8 +304,8 @@ impl Graph {
         a * block(b, inner.start - row, 0, Shape::new(inner.len(), right.columns))
     }
 
-    /// The rows of a matrix of numbers between the first and the last that are not zero, with the index of the first: none for zero,
-    /// `None` if these are all rows.
+    /// The rows of a matrix of numbers between the first and the last that are not zero, with the index of the first.
+    /// Zero has no such rows; `None` if these are all rows.
     fn sparse_rows<'g>(&'g self, literal: Expr<'g>) -> Option<(usize, Expr<'g>)> {
         let shape = literal.shape();
         let mut filled = (0..shape.rows).filter(|i| !literal.block(*i, 0, Shape::new(1, shape.columns)).is_zero());

@@ -1,4 +1,4 @@
-//! Tests of what is not seen from outside: numbers, tables, the count of work.
+//! Tests of items that are private to the crate: numbers, tables, the count of work.
 
 mod rational {
     use crate::{Rational, integer, rational};

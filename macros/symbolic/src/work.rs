@@ -1,13 +1,14 @@
-//! The work of an expansion, counted: what would take too much of it is given up, before it takes minutes or the memory of the machine.
+//! The work of an expansion, counted. A computation that would take too much of it is given up, before it takes minutes
+//! or the memory of the machine.
 //!
-//! It is counted and never timed, so that the same declaration comes to the same end everywhere. One unit is about what it takes to
-//! make one term of a sum: some hundred bytes, or some hundred instructions. The count belongs to the thread, for terms and
-//! numbers know no graph that they could ask.
+//! It is counted and never timed, so that the same declaration comes to the same end everywhere. One unit is about the
+//! work of one term of a sum: some hundred bytes, or some hundred instructions. The count belongs to the thread, for
+//! terms and numbers know no graph that they could ask.
 
 use std::cell::Cell;
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
 
-/// What has been counted, and the limit.
+/// The count, and the limit.
 #[derive(Copy, Clone)]
 struct Account {
     spent: u64,
@@ -36,13 +37,13 @@ pub fn spend(units: usize) {
     }
 }
 
-/// What has been counted on this thread.
+/// The count on this thread.
 pub fn spent() -> u64 {
     ACCOUNT.get().spent
 }
 
-/// Does what may take this much work at most, and no more than what is left where this stands within another limit. After an error
-/// what it worked on is in any state.
+/// Does work of this many units at most. Within another limit, its remaining units are a limit too. After an error, the
+/// objects of the work are in any state.
 ///
 /// # Errors
 /// Where it takes more.

@@ -9,7 +9,7 @@ use super::names::{self, Names};
 use super::scope::size;
 use crate::model::ScalarType;
 
-/// What signatures of an expansion are made of. The other side of its paths is the runtime's module `__private`.
+/// The names and types in signatures of an expansion. The other side of its paths is the runtime's module `__private`.
 #[derive(Clone)]
 pub(super) struct Block<'a> {
     /// The runtime crate.
@@ -71,8 +71,8 @@ impl Block<'_> {
     }
 }
 
-/// Items that are compiled where they stand. The lints of straight-line code are ours to mind, not the user's; signatures are the same for every
-/// system, and not every body reads all of its arguments.
+/// Items that are compiled where they stand. The lints of straight-line code are ours to mind, not the user's.
+/// Signatures are the same for every system, and not every body reads all of its arguments.
 pub(super) fn anonymous(items: &TokenStream) -> TokenStream {
     quote! {
         #[allow(clippy::all, clippy::pedantic, unused_imports, unused_mut, unused_parens, unused_variables, dead_code)]
@@ -95,7 +95,7 @@ pub(super) fn types_of_system([q, f, mu]: &[TokenStream; 3], input: &TokenStream
     }
 }
 
-/// What steps are told of the time.
+/// The type by which steps know the time.
 pub(super) fn time_type(is_timed: bool) -> TokenStream {
     if is_timed { quote!(runtime::Clock<T>) } else { quote!(()) }
 }
@@ -125,7 +125,7 @@ pub(super) struct Target {
     pub name: String,
     /// The same in code.
     pub ident: TokenStream,
-    /// Its parameters, as it declares them and as arguments, and what is asked of them, with the bound of the scalar.
+    /// Its parameters, as it declares them and as arguments, and their bounds, with the bound of the scalar.
     pub parameters: TokenStream,
     arguments: TokenStream,
     pub predicates: Option<TokenStream>,
@@ -174,7 +174,7 @@ impl Block<'_> {
         Target::new(ident, &generics, self.scalar, &self.names)
     }
 
-    /// What depends on how the system is stepped, by a unit struct of the user.
+    /// The items that depend on how the system is stepped, by a unit struct of the user.
     pub(super) fn implementation_of_method(&self, name: &Ident, stepping: &TokenStream) -> TokenStream {
         let Target { parameters, predicates, .. } = &self.target;
         let (system, name) = (self.target.of_type(), self.names.of_user(quote!(#name)));

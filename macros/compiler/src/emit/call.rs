@@ -46,7 +46,7 @@ impl Scope<'_, '_> {
         if is_self { quote!(<#item>::#(#behind)::*) } else { self.names.of_user(quote!(#path)) }
     }
 
-    /// An entry of what a call has returned.
+    /// An entry of the result of a call.
     pub(super) fn output_of_call(&self, local: usize, callee: &Callee, output: Output) -> TokenStream {
         let name = format_ident!("t{local}");
         let index = index(output.shape.is_column(), (output.row, output.column));

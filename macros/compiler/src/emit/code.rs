@@ -8,7 +8,7 @@ use super::scope::{Scope, size, spelled};
 use crate::lower::{Code, is_in_brackets};
 
 impl Scope<'_, '_> {
-    /// Tokens of a code; `tight` where it stands beside a multiplication.
+    /// Tokens of a code; `tight` if it is an operand of a multiplication.
     pub fn code(&self, code: &Code, tight: bool) -> TokenStream {
         let mut tokens = TokenStream::new();
         self.write(&mut tokens, code, tight);

@@ -1,4 +1,4 @@
-//! What a stepper computes once: its type, and the checks and code that make it.
+//! The values that a stepper computes once: their type, the checks before, and their code.
 
 use clebsch_symbolic::{IntoList, Role, both};
 use proc_macro2::{Ident, TokenStream};
@@ -67,7 +67,7 @@ impl Emitter<'_, '_> {
         }
     }
 
-    /// Whether Σ is kept as the number κ of κI.
+    /// Whether Σ is stored as the number κ of κI.
     pub(super) fn has_uniform_inertia(&self) -> bool {
         self.formulas.uniform_inertia.is_some()
     }
@@ -166,7 +166,7 @@ impl Emitter<'_, '_> {
 }
 
 impl SystemEmitter<'_, '_> {
-    /// Checks of every field that a closure reads: finite, and what the user promises.
+    /// Checks of every field that a closure reads: that it is finite, and the user's promises.
     pub(super) fn checks(&self) -> TokenStream {
         let system = self.receiver();
         let checks = self.model.parameters.iter().map(|parameter| {
@@ -183,7 +183,7 @@ impl SystemEmitter<'_, '_> {
         checks.collect()
     }
 
-    /// The check of what the user promises of a value.
+    /// The check of a promise of the user about a value.
     pub(super) fn check_of(&self, promise: Promise, name: &str, value: &TokenStream) -> TokenStream {
         let check = match promise {
             Promise::Symmetric => quote!(check_symmetric),

@@ -1,4 +1,4 @@
-//! The implementation of the trait `Controlled`: what choosing the inputs needs.
+//! The implementation of the trait `Controlled`, for the choice of inputs.
 
 use clebsch_symbolic::{Elements, both};
 use proc_macro2::TokenStream;
@@ -11,7 +11,7 @@ use super::functions::{CONTROLLED, FORCED, STEERED};
 use super::scope::size;
 use crate::derive::Id;
 
-/// What the types of `Controlled` are made of.
+/// The data for the types of `Controlled`.
 pub(super) struct ControlTypes<'a> {
     pub is_steered: bool,
     /// The number of inputs.
@@ -89,7 +89,7 @@ impl SystemEmitter<'_, '_> {
         Some(types.implementation(self, functions))
     }
 
-    /// What more the code of `Controlled` is made of.
+    /// Further words in the code of `Controlled`.
     fn word_of_control(&self, word: &str, types: &ControlTypes<'_>) -> Option<TokenStream> {
         let [m, u, w] = [self.dimension, types.inputs, 2 * self.dimension + types.inputs].map(size);
         let body = |id: Id| {

@@ -1,4 +1,4 @@
-//! The types of the momentum equations: closed forms, and what Newton's method needs.
+//! The types of the momentum equations: closed forms, and the input of Newton's method.
 
 use clebsch_symbolic::{Role, Shape, both};
 use proc_macro2::{Ident, TokenStream};
@@ -37,7 +37,7 @@ impl<'g> Emitter<'_, 'g> {
         self.names.equation(self.program.suffix(solve.substep), solve.number)
     }
 
-    /// What an equation holds, by the names that its methods call it, with the types.
+    /// The fields of an equation, by the names that its methods call them, with the types.
     pub(super) fn held_by_equation(&self, solve: &Solve) -> Vec<(&'static str, TokenStream)> {
         let lifetime = self.names.lifetime();
         let reference = |name, ty: TokenStream| (name, quote!(&#lifetime #ty));
@@ -114,7 +114,7 @@ impl<'e, 'a, 'g> EquationType<'e, 'a, 'g> {
         })
     }
 
-    /// What one of them does, where the equation has it.
+    /// The body of one of them, if the equation has it.
     fn function(&self, function: &Function, kernel: Option<&'e Kernel>, words: &Words<'_>) -> Option<Body<'e>> {
         let EquationType { emitter, solve, scope, .. } = self;
         let is_newton = solve.solution == Solution::Newton;
@@ -192,7 +192,7 @@ impl<'e, 'a, 'g> EquationType<'e, 'a, 'g> {
         (locals(), value, scope.grid(&square, false))
     }
 
-    /// The types of what Newton's method computes once, and of its Jacobian.
+    /// The types of the terms that Newton's method computes once, and of its Jacobian.
     fn types(&self) -> TokenStream {
         let EquationType { emitter, solve, target, .. } = self;
         let dimension = size(match solve.structure {
@@ -222,7 +222,7 @@ impl<'e, 'a, 'g> EquationType<'e, 'a, 'g> {
         quote!(type Terms = #terms; type Jacobian = #jacobian;)
     }
 
-    /// What Newton's method computes once.
+    /// The terms that Newton's method computes once.
     fn prepare(&self, kernel: &Kernel) -> TokenStream {
         let (scope, locals) = (&self.scope, self.scope.locals(kernel));
         let values = (0..kernel.outputs.len()).map(|index| scope.scalar(kernel, index));

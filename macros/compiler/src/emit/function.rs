@@ -15,9 +15,9 @@ use crate::lower::Kernel;
 pub struct Function {
     /// Its name.
     pub name: &'static str,
-    /// What its documentation begins with; empty where it has none.
+    /// The beginning of its documentation; empty if it has none.
     pub title: &'static str,
-    /// What it computes, by the id that this has in the first substep.
+    /// The kernel that it computes, by its id in the first substep.
     pub kernel: Id,
     /// The formulas that its documentation shows.
     pub shown: &'static [Id],
@@ -28,7 +28,7 @@ pub struct Function {
     pub code: &'static str,
 }
 
-/// What a generated function does.
+/// The body of a generated function, and its attributes.
 pub(super) struct Body<'k> {
     /// The title of its documentation, where it is not that of the table.
     pub title: Option<&'static str>,
@@ -41,7 +41,7 @@ pub(super) struct Body<'k> {
 }
 
 impl<'k> Body<'k> {
-    /// What one kernel computes, in some code.
+    /// The value of one kernel, in some code.
     pub fn new(kernel: &'k Kernel, code: TokenStream) -> Body<'k> {
         Body { cost: Some(kernel), ..Body::from(code) }
     }
@@ -101,7 +101,7 @@ impl Function {
         Some(Body { cost, ..Body::from(code) })
     }
 
-    /// The body that computes a kernel and returns what it gives.
+    /// The body that computes a kernel and returns its value.
     pub(super) fn computes<'k>(&self, scope: &Scope<'_, '_>, kernel: &'k Kernel) -> Body<'k> {
         let locals = scope.locals(kernel);
         let value = match self.result {
@@ -115,7 +115,7 @@ impl Function {
     }
 }
 
-/// What words of a table stand for.
+/// The tokens for the words of a table.
 pub(super) type Words<'w> = dyn Fn(&str) -> Option<TokenStream> + 'w;
 
 impl<'g> SystemEmitter<'_, 'g> {
@@ -124,7 +124,8 @@ impl<'g> SystemEmitter<'_, 'g> {
         self.functions(table, (0, 0), words, |function, kernel| function.written(scope, kernel, words))
     }
 
-    /// The functions of a table that have a body, made from their kernels; those of a substep, or of an equation in it, have a place.
+    /// The functions of a table that have a body, made from their kernels. Those of a substep, or of an equation in it,
+    /// have a place.
     pub(super) fn functions<'k>(
         &'k self,
         table: &[Function],
@@ -175,13 +176,13 @@ impl Block<'_> {
         quote!(#inline fn #name #arguments -> #result { #code })
     }
 
-    /// The tokens of a text, with what its words stand for.
+    /// The tokens of a text, with its words replaced.
     fn parsed(&self, text: &str, words: &Words<'_>) -> TokenStream {
         // by construction: what the table of functions holds was tokens
         put_in(text.parse().unwrap_or_default(), &|name, _| words(name).or_else(|| self.word(name)))
     }
 
-    /// What a word of a table stands for, unless it is itself.
+    /// The tokens for a word of a table, unless it stands for itself.
     fn word(&self, word: &str) -> Option<TokenStream> {
         let (name, dimension) = (format_ident!("{word}"), size(self.dimension));
         Some(match word {

@@ -1,9 +1,10 @@
-//! What is generated: the functions of each trait, with the kernels that they compute and the formulas that they show.
+//! The functions of each trait in generated code, with the kernels that they compute and the formulas that they show.
 //!
-//! Some names in signatures stand for what they are in a system: `X` for the type of chart coordinates, `U` for that of inputs. `Receiver` is
-//! `&self`, or the system where a method of it is stepped. [`SystemEmitter::functions`](super::SystemEmitter::functions) puts in their
-//! tokens. Code behind `=` has more such words: `Locals` for the shared terms of the kernel, `Value0` for its first output as a vector or a
-//! matrix, `Number0` for it as a scalar.
+//! Some names in signatures are words that each system replaces: `X` by the type of chart coordinates, `U` by that of
+//! inputs. `Receiver` is `&self`, or the system where a method of it is stepped.
+//! [`SystemEmitter::functions`](super::SystemEmitter::functions) puts in their tokens. Code behind `=` has more such
+//! words. `Locals` are the shared terms of the kernel. `Value0` is its first output as a vector or a matrix, and
+//! `Number0` the same as a scalar.
 
 use super::function::Function;
 use crate::derive::Id;
@@ -113,7 +114,8 @@ functions! {
         fn on_space(q: Q, rest: Rest) -> (Q, Rest) { Id::Advance => }
     }
 
-    /// `Substep`: kicks, forces, gradients, the solve and the update; what a declaration does not have is the trait's.
+    /// `Substep`: kicks, forces, gradients, the solve and the update. If a declaration does not have one, the trait
+    /// provides it.
     SUBSTEP(true) {
         /// The kick at the start of a step.
         fn start_kick(&self, c: &C, t: T, q: &Q) -> Option<Mu> { Id::StartKick(0) }
@@ -160,7 +162,7 @@ functions! {
         fn kick_gradient(&self, c: &C, t: T, q: &Q, weight: T, gradient: T) -> Q { Id::SplittingGradient }
     }
 
-    /// `HamiltonEquations`: what a step of order 16 collocates.
+    /// `HamiltonEquations`: the equations that a step of order 16 collocates.
     HAMILTON_EQUATIONS(true) {
         fn step_size(c: &C) -> T { Id::Constants } = { c.step_size }
         /// Hamilton's equations: (q′, p′) at y = (q, p), all entries of q and then those of p, rows first.
@@ -205,7 +207,7 @@ functions! {
         }
     }
 
-    /// What solvers ask of an equation beside its residual.
+    /// The methods of an equation that solvers call, other than its residual.
     SOLVER(true) {
         /// Dρ is symmetric: LDLᵀ where it is definite.
         fn correct(a: &Square, b: &Vector) -> Option<(Vector, Orientation)> { Id::Equation(0, 0) => } = {
@@ -303,7 +305,7 @@ functions! {
         }
     }
 
-    /// `Controlled`: what inputs of forces do to states, by the constants of steps and their size.
+    /// `Controlled`: the effect of inputs of forces on states, by the constants of steps and their size.
     FORCED(false) {
         fn prepare(&self, h: T) -> Result<(C, T), Error> { Id::Constants } = {
             runtime::Ok((runtime::Clebsch::constants(self, h)?, h))

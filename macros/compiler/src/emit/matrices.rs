@@ -1,4 +1,4 @@
-//! Tokens of operations on whole matrices: nalgebra's, and calls of the runtime's for those that it has not.
+//! Tokens of operations on matrices: nalgebra's, and calls of the runtime for those that nalgebra does not have.
 
 use clebsch_symbolic::{IntoList, Operation, Rational, Role, Shape, integer};
 use proc_macro2::TokenStream;
@@ -10,7 +10,7 @@ use crate::lower::{Callee, Code, Kernel, MatrixOperation, Whole};
 use crate::model::Layout;
 
 impl Scope<'_, '_> {
-    /// An operation on whole matrices.
+    /// An operation on matrices.
     pub(super) fn whole(&self, whole: &Whole) -> TokenStream {
         let Whole { operation, operands, shape, .. } = whole;
         let matrix = || matrix(shape.rows, shape.columns);
@@ -95,7 +95,7 @@ impl Scope<'_, '_> {
         }
     }
 
-    /// The type of a shared term, where what is called does not say it.
+    /// The type of a shared term, unless the called function says it.
     pub(super) fn type_of(&self, code: &Code) -> Option<TokenStream> {
         let Code::Whole(whole) = code else { return None };
         let matrix = matrix(whole.shape.rows, whole.shape.columns);
@@ -214,8 +214,8 @@ impl Scope<'_, '_> {
         self.call_of_method(is_gradient, &operands[0], configuration)
     }
 
-    /// The matrix of a linear map: columns of the values of a kernel at the unit vectors of `argument`; terms that do not depend on it stand
-    /// before.
+    /// The matrix of a linear map: columns of the values of a kernel at the unit vectors of `argument`. Terms that do
+    /// not depend on it come first.
     pub(super) fn matrix_of(
         &self,
         kernel: &Kernel,

@@ -58,7 +58,7 @@ pub fn emit(program: &Program<'_>) -> TokenStream {
     anonymous(&quote!(#items #texts))
 }
 
-/// All items, with what emits those that every system has.
+/// All items, with the emitter of those that every system has.
 fn expanded<'a, 'g>(program: &'a Program<'g>) -> (SystemEmitter<'a, 'g>, TokenStream) {
     let (emitter, items) = match program {
         Program::Mechanics(program) => {
@@ -102,7 +102,7 @@ fn pretty(items: &TokenStream) -> String {
     }
 }
 
-/// What every part of the expansion needs.
+/// The data that every part of the expansion needs.
 struct Emitter<'a, 'g> {
     system: SystemEmitter<'a, 'g>,
     program: &'a MechanicsProgram<'g>,
@@ -110,7 +110,7 @@ struct Emitter<'a, 'g> {
     model: &'a Mechanics<'g>,
 }
 
-/// What the parts need that mechanics and control have in common.
+/// The data that mechanics and control share.
 struct SystemEmitter<'a, 'g> {
     block: Block<'a>,
     model: &'a System<'g>,
@@ -166,7 +166,8 @@ impl<'a, 'g> Emitter<'a, 'g> {
         quote!(#power #constants #system #conserves #variational #sensitive #controlled #check #parts #equations #velocity #methods)
     }
 
-    /// The blocks of all methods. The names of types are those of the block around; what is of the steps has names of its own.
+    /// The blocks of all methods. The names of types are those of the outer block; types of steps have names of their
+    /// own.
     pub(super) fn methods(&self) -> TokenStream {
         let blocks = self.program.methods.iter().map(|method| {
             let emitter = self.of_method(method);

@@ -1,8 +1,9 @@
-//! The words that generated code is written with, beside the user's: they give way to what the user's item already calls so.
+//! The words in which generated code is written. They give way to the names of the user's item.
 //!
-//! `runtime` is the module of the runtime for generated code, `T` the scalar, `Q`, `F` and `Mu` the types of configurations, group elements
-//! and momenta, `C` that of the constants. Mostly that is what they are called in the expansion too. Where the user has such a name, or
-//! the scalar is a type parameter, other tokens are put in for them at the end. Until then names of the user are raw identifiers.
+//! `runtime` is the module of the runtime for generated code, and `T` the scalar. `Q`, `F` and `Mu` are the types of
+//! configurations, group elements and momenta, and `C` that of the constants. Mostly these are their names in the
+//! expansion too. Where the user has such a name, or the scalar is a type parameter, other tokens are put in for them
+//! at the end. Until then names of the user are raw identifiers.
 
 use std::collections::BTreeSet;
 
@@ -14,16 +15,16 @@ use crate::model::ScalarType;
 
 const WORDS: [&str; 7] = ["runtime", "T", "Q", "F", "Mu", "C", "Velocity"];
 
-/// Names of generated types and of their lifetime: those of the user's item and what it reads are taken.
+/// Names of generated types and of their lifetime. Names of the user's item and of the code that it reads are taken.
 #[derive(Clone)]
 pub(super) struct Names {
     taken: BTreeSet<String>,
-    /// What words stand for, where that is not themselves.
+    /// The tokens for words that do not stand for themselves.
     words: Option<[TokenStream; 7]>,
 }
 
 impl Names {
-    /// The names beside some tokens of the user.
+    /// The names next to some tokens of the user.
     pub(super) fn new(scalar: &ScalarType, has_configuration: bool, users: &[TokenStream]) -> Names {
         let mut names = Names { taken: BTreeSet::new(), words: None };
         users.iter().for_each(|tokens| collect(tokens.clone(), &mut names.taken));
@@ -77,7 +78,7 @@ impl Names {
         }
     }
 
-    /// Generated code, with what its words stand for.
+    /// Generated code, with its words replaced.
     pub(super) fn put_in(&self, tokens: TokenStream) -> TokenStream {
         let Some(words) = &self.words else { return tokens };
         put_in(tokens, &|name, span| match name.strip_prefix("r#") {
@@ -87,7 +88,7 @@ impl Names {
     }
 }
 
-/// Some tokens, with others for some of their names; fields, methods, lifetimes and what stands in a module or a type are left.
+/// Some tokens, with some of their names replaced. Fields, methods, lifetimes and names in a path stay.
 pub(super) fn put_in(tokens: TokenStream, other: &dyn Fn(&str, Span) -> Option<TokenStream>) -> TokenStream {
     let (mut all, mut before) = (TokenStream::new(), [' ', ' ']);
     for token in tokens {

@@ -16,14 +16,15 @@ use crate::model::LeafSpace;
 const SHORT_STEP: usize = 192;
 
 impl Emitter<'_, '_> {
-    /// The implementations of `Parts`, of `Substep` for each substep, and of what the scheme calls beside them.
+    /// The implementations of `Parts`, of `Substep` for each substep, and of the other traits that the scheme calls.
     pub(super) fn parts(&self) -> TokenStream {
         let (shared, of_scheme) = (self.shared_parts(), self.parts_of_scheme());
         let substeps = (0..self.program.steps.len()).map(|index| self.substep(index));
         quote!(#shared #(#substeps)* #of_scheme)
     }
 
-    /// The names of what moves q and N in signatures, and their types: D = F − I, the chart coordinates x, or x for q and D for N.
+    /// The names and types of the data that moves q and N, in signatures. They are D = F − I, the chart coordinates x,
+    /// or x for q and D for N.
     pub(super) fn word_of_step(&self, word: &str) -> Option<TokenStream> {
         let is_displaced = || self.program.find(Id::Displacement).is_some();
         let updates = |index| self.program.find(Id::MomentumAfter(index)).is_some();
@@ -213,7 +214,7 @@ impl Emitter<'_, '_> {
         if self.program.steps[index].end_is_start { Some(index) } else { is_first.then_some(0) }
     }
 
-    /// Whether all that acts at the end of a substep is what acts at its start.
+    /// Whether the kicks at the end of a substep are those at its start.
     fn ends_as_it_starts(&self, index: usize) -> bool {
         let has = |id: Id| self.program.find(id).is_some();
         let has_gradients =

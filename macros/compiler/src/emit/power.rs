@@ -49,7 +49,7 @@ impl<'g> Emitter<'_, 'g> {
         })
     }
 
-    /// What ties sites together.
+    /// The items that tie sites together.
     fn sites(&self, power: &Power<'g>, target: &Target) -> TokenStream {
         let (length, site, site_type) = (&self.length, &self.target.ident, self.target.of_type());
         let fields = self.model.parameters.iter().zip(&power.copied).map(|(parameter, field)| {

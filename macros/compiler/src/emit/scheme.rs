@@ -1,4 +1,5 @@
-//! Which scheme of the runtime steps a system, and what that scheme calls beside the parts of a step: what one free motion keeps, kicks.
+//! The scheme of the runtime that steps a system. Apart from the parts of a step, a scheme may call the constants of a
+//! free motion, or kicks.
 
 use proc_macro2::{Ident, TokenStream};
 use quote::{format_ident, quote};
@@ -72,7 +73,7 @@ impl Emitter<'_, '_> {
         self.program.turns_in_plane() && is_free(Id::StartGradient(0)) && is_free(Id::EndGradient(0))
     }
 
-    /// What the scheme calls beside the parts of a step.
+    /// The functions that the scheme calls apart from the parts of a step.
     pub(super) fn parts_of_scheme(&self) -> TokenStream {
         if self.formulas.splitting.is_some() {
             return self.split_kicks();
@@ -87,7 +88,7 @@ impl Emitter<'_, '_> {
         if self.keeps_motions() { self.free_motion() } else { TokenStream::new() }
     }
 
-    /// Whether the free motions of several steps are the same, so that what they keep is computed once.
+    /// Whether the free motions of several steps are the same, so that their constants are computed once.
     pub(super) fn keeps_motions(&self) -> bool {
         self.formulas.is_exact && self.free_rotations().next().is_some()
     }
@@ -96,7 +97,7 @@ impl Emitter<'_, '_> {
         if self.formulas.turns_whole() { format_ident!("FreeRotation4") } else { format_ident!("FreeRotation") }
     }
 
-    /// The implementation of `FreeMotion`: what one motion keeps, and how a step follows it.
+    /// The implementation of `FreeMotion`: the constants of a motion, and how a step follows it.
     pub(super) fn free_motion(&self) -> TokenStream {
         let kind = self.kind_of_free_rotation();
         let kept = if self.formulas.turns_whole() { quote!(KeptRotation4) } else { quote!(KeptRotation) };

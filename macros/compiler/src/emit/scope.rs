@@ -1,4 +1,4 @@
-//! Where functions find their inputs, and what kernels compute there.
+//! Where functions find their inputs, and the code of kernels there.
 
 use std::cell::RefCell;
 use std::hash::Hash;
@@ -91,7 +91,7 @@ pub(super) fn spelled<K: Hash + Eq + Clone>(
 }
 
 impl Scope<'_, '_> {
-    /// Where the argument of a role stands; `None` for what is no argument.
+    /// The place of the argument with a role; `None` if the role is no argument.
     pub(super) fn place(&self, role: Role) -> Option<Place<'_>> {
         let leaf = |name: &str, access| Place::Leaf(name.to_string(), access);
         let configuration = |name: &str, i: usize| leaf(name, &self.model.configurations[i].accessor);
@@ -268,8 +268,8 @@ impl Scope<'_, '_> {
         quote!(runtime::#function(#entries))
     }
 
-    /// A matrix of entries, row by row, whatever its shape; the entries that are not zero one by one, with their places, where rows are
-    /// long and most are.
+    /// A matrix of entries, row by row, whatever its shape. If rows are long and most entries are zero, only the others
+    /// are written, each with its place.
     fn matrix(&self, (shape, entries): &(Shape, Vec<Code>)) -> TokenStream {
         let is_zero = |entry: &Code| matches!(entry, Code::Number(value) if value.is_zero());
         let zeros = entries.iter().filter(|entry| is_zero(entry)).count();

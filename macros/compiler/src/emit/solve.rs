@@ -26,7 +26,7 @@ impl Emitter<'_, '_> {
         quote!(#solutions runtime::Ok(#result))
     }
 
-    /// What solves an equation, as a result where it can fail.
+    /// The solution of an equation, as a result if it can fail.
     fn found(&self, solve: &Solve, given: Option<TokenStream>) -> TokenStream {
         let name = self.equation_name(solve);
         let held = self.held_by_equation(solve).into_iter();

@@ -1,5 +1,5 @@
-//! What is emitted beside an error: an implementation with the right types, so that the user sees that error alone and the
-//! editor keeps working. It is never run, because the error is there.
+//! The code that is emitted with an error: an implementation with the right types. The user sees that error alone, and
+//! the editor keeps working. It is never run, because the error is there.
 
 use clebsch_symbolic::IntoList;
 use proc_macro2::TokenStream;
@@ -46,7 +46,7 @@ pub fn stub(declaration: &Declaration, outline: &Outline) -> TokenStream {
     anonymous(&block.named(&quote!(type C = #constants; #controlled #system)))
 }
 
-/// Functions of a table, none of which is ever called.
+/// Functions of a table that are never called.
 fn uncalled<'f>(block: &Block<'_>, table: impl IntoIterator<Item = &'f Function>, words: &Words<'_>) -> TokenStream {
     let code = quote!(::core::unreachable!("the declaration has an error"));
     let function = |function| block.function(function, words, Body::from(code.clone()).inlined(quote!()));

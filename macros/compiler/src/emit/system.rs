@@ -1,4 +1,4 @@
-//! The implementation of the trait `Clebsch` for the user's struct, and what goes with it.
+//! The implementation of the trait `Clebsch` for the user's struct, and further items.
 
 use clebsch_symbolic::{Elements, Group, Property, Role, both};
 use proc_macro2::TokenStream;
@@ -34,7 +34,7 @@ impl<'g> Emitter<'_, 'g> {
         )
     }
 
-    /// What depends on how the system is stepped, and where that is not a method of its own, the system.
+    /// The items that depend on how the system is stepped, and for the declared dials those of the system.
     pub(super) fn stepping(&self, name: Option<TokenStream>, derivation: &str) -> TokenStream {
         let (scheme, order) = (self.scheme(), self.model.order.number());
         let free_motion = self.formulas.is_exact.then(|| flag("IS_FREE_MOTION", true));
@@ -116,7 +116,7 @@ impl<'g> Emitter<'_, 'g> {
         )
     }
 
-    /// The momenta of the free motions that make F, for the Legendre transforms of what moves freely.
+    /// The momenta of the free motions that make F, for the Legendre transforms of free motions.
     fn free_momenta(&self) -> Option<TokenStream> {
         let solves = || self.program.steps[0].solves.iter().filter(|solve| solve.solution == Solution::FreeRotation);
         solves().next()?;
@@ -200,7 +200,8 @@ impl<'g> Emitter<'_, 'g> {
         }
     }
 
-    /// What a momentum is asked for where motions fix the configuration: by a function of the projection, or of the motions ξ_Q(q).
+    /// A property of a momentum where motions fix the configuration: by a function of the projection, or of the motions
+    /// ξ_Q(q).
     fn isotropy(&self, kernel: &Kernel, [of_projection, of_motions]: [&str; 2]) -> TokenStream {
         let scope = self.scope_of_system();
         let [of_projection, of_motions] = both([of_projection, of_motions], |name| format_ident!("{name}"));
@@ -216,7 +217,7 @@ impl<'g> Emitter<'_, 'g> {
 }
 
 impl SystemEmitter<'_, '_> {
-    /// By how much q violates what the declaration promises.
+    /// By how much q violates the promise of the declaration.
     pub(super) fn orbit_defect(&self) -> TokenStream {
         let scope = self.scope_of_system();
         let defects = self.model.configurations.iter().filter_map(|leaf| {

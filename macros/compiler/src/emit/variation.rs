@@ -46,7 +46,7 @@ impl Emitter<'_, '_> {
         edges.collect()
     }
 
-    /// Whether derivatives with respect to what is fixed during a step are asked for.
+    /// Whether the declaration asks for derivatives with respect to the quantities that are fixed during a step.
     fn is_sensitive(&self) -> bool {
         (0..self.formulas.stepped).any(|index| self.program.find(Id::EdgeSlopes(index)).is_some())
     }
@@ -169,7 +169,7 @@ impl Emitter<'_, '_> {
         scope.output(kernel, index)
     }
 
-    /// The shared terms of an edge; what derivatives along motions are made of stands with them.
+    /// The shared terms of an edge. In matrix code, terms along motions stand with their derivatives.
     fn locals_of_edge(&self, kernel: &Kernel) -> TokenStream {
         let depends = kernel.depends_on(along_motion);
         self.scope_of_step().locals_where(kernel, |k| !self.keeps_matrices || !depends[k])

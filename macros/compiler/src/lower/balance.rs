@@ -1,4 +1,5 @@
-//! Sums in the order in which their terms are there: first those that are there first, so that the last one waits for one addition alone.
+//! Sums in the order in which their terms become available. Early terms are added first, so that the last one waits for
+//! one addition alone.
 
 use clebsch_symbolic::{IntoList, Rational, integer};
 
@@ -7,12 +8,14 @@ use super::Code;
 /// The cycles of an addition or a multiplication.
 pub(super) const STEP: u32 = 4;
 
-/// What is still to be added: when it is there, its place among the terms, and a coefficient with what it multiplies; a number without it.
+/// A summand still to be added: the time at which it is available, its place among the terms, and its coefficient with
+/// the factor. A number has no factor.
 type Part = (u32, usize, (Rational, Option<Code>));
 
 /// The sum of a constant and of terms, each with the cycle in which it is there.
 ///
-/// Of all trees of additions, that which adds the two earliest parts as long as there are two is done first, as Huffman's is the shortest code.
+/// The tree of additions always adds the two parts that are available earliest. Of all trees its result is available
+/// first, as Huffman's code is the shortest.
 pub(super) fn balanced(constant: Rational, terms: impl Iterator<Item = ((Rational, Code), u32)>) -> Code {
     let numbered = terms.enumerate();
     let mut parts: Vec<Part> =

@@ -1,11 +1,12 @@
-//! Code: what kernels are made of, and what of each other and of their arguments they read.
+//! Code: the operations of kernels, and the terms and arguments that they read.
 
 use clebsch_symbolic::{Elements, Function, IntoElements, IntoList, Operation, Rational, Role, Shape, integer};
 
 use super::scalar::{Callee, Output, is_unit};
 use super::{Cost, Input};
 
-/// An expression that nests deeper is cut into terms of its own: a parser takes more of its stack for a level than for an operation.
+/// An expression that nests deeper is cut into terms of its own. A parser takes more of its stack for a level than for
+/// an operation.
 pub(super) const DEEPEST_EXPRESSION: usize = 24;
 
 /// Straight-line code of one output entry or shared term.
@@ -39,16 +40,16 @@ pub enum Code {
     Call(Callee, Vec<(Shape, Vec<Code>)>),
     /// An entry of a call, by the index of that term.
     Output(usize, Callee, Output),
-    /// An operation on whole matrices: a shared term, or an entry of one.
+    /// A matrix operation: a shared term, or an entry of one.
     Whole(Box<Whole>),
 }
 
-/// An operation on whole matrices, for code that keeps them.
+/// An operation on matrices, in matrix code.
 #[derive(Clone, PartialEq, Eq, Hash, Debug)]
 pub struct Whole {
-    /// What is done.
+    /// The operation.
     pub operation: MatrixOperation,
-    /// What it is done with.
+    /// Its operands.
     pub operands: Vec<Code>,
     /// The shape of the result.
     pub shape: Shape,
@@ -56,7 +57,7 @@ pub struct Whole {
     pub cost: Cost,
 }
 
-/// What is done with whole matrices.
+/// Operations on matrices.
 #[derive(Clone, PartialEq, Eq, Hash, Debug)]
 pub enum MatrixOperation {
     /// An argument, by its first entry.
@@ -75,7 +76,7 @@ pub enum MatrixOperation {
     InertiaTimes,
     /// A B.
     Product,
-    /// What expressions know as an operation on one matrix, but for bases.
+    /// An operation of expressions on one matrix; bases have operations of their own.
     Of(Operation),
     /// The value of an opaque potential.
     Value,
@@ -143,7 +144,8 @@ impl Kernel {
         self.locals.iter().chain(self.entries()).for_each(|code| code.visit(see));
     }
 
-    /// The arguments that it reads entries of or takes as a whole, with the shapes of these, as often as they stand in it.
+    /// The arguments that it reads, as matrices or by entries, with their shapes. An argument is listed as often as it
+    /// occurs.
     pub fn inputs(&self) -> Vec<(&Input, Shape)> {
         let mut inputs = Vec::new();
         self.visit(&mut |code| inputs.extend(code.input()));
@@ -161,7 +163,7 @@ impl Kernel {
         depends
     }
 
-    /// How often each of its terms stands in what some outputs are made of.
+    /// How often each of its terms occurs in the code of some outputs.
     fn uses(&self, outputs: &[(Shape, Vec<Code>)]) -> Vec<usize> {
         let mut uses = vec![0_usize; self.locals.len()];
         outputs.iter().flat_map(|(_, entries)| entries).flat_map(Code::locals).for_each(|index| uses[index] += 1);
@@ -233,7 +235,7 @@ impl Kernel {
         outputs.collect()
     }
 
-    /// The same with other codes for what is computed once per solve.
+    /// The same with other codes for terms that are computed once per solve.
     pub(super) fn with_terms(&self, terms: &[Code]) -> Kernel {
         let put_in = |code: &Code| match code {
             Code::Term(index) => Some(terms[*index].clone()),
@@ -249,8 +251,8 @@ impl Kernel {
     }
 }
 
-/// Whether a sum is written in brackets beside a multiplication: unless it is a number, or one term with a positive number before it. One term
-/// alone has brackets that decide how it is rounded.
+/// Whether a sum is written in brackets next to a multiplication. A number needs none, nor does one term with a
+/// positive number before it. One term alone has brackets that decide how it is rounded.
 pub fn is_in_brackets(constant: &Rational, terms: &[(Rational, Code)]) -> bool {
     match terms {
         [] => constant.is_negative(),
@@ -323,7 +325,7 @@ impl Code {
         matches!(whole.operation, Of(Operation::Embed(..)) | Skew | SkewComponents | SkewOuter)
     }
 
-    /// The argument that it reads an entry of or takes as a whole, with the shape of that.
+    /// The argument that it reads, as a matrix or by an entry, with the shape of the argument.
     fn input(&self) -> Option<(&Input, Shape)> {
         match self {
             Code::Read(input) => Some((input, Shape::scalar())),
@@ -360,7 +362,7 @@ impl Code {
         locals
     }
 
-    /// An operation on whole matrices.
+    /// An operation on matrices.
     pub(super) fn whole(operation: MatrixOperation, operands: Vec<Code>, shape: Shape, cost: Cost) -> Code {
         Code::Whole(Box::new(Whole { operation, operands, shape, cost }))
     }

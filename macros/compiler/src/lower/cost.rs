@@ -30,7 +30,7 @@ impl Kernel {
         cost
     }
 
-    /// The operations that stand in its code: one on whole matrices is one.
+    /// The operations in its code; an operation on matrices counts as one.
     pub fn length(&self) -> usize {
         let mut length = 0;
         self.visit(&mut |code| {

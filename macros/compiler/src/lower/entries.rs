@@ -1,4 +1,4 @@
-//! Grids of scalars: what expressions are lowered to, and kernels are made of.
+//! Grids of scalars: expressions are lowered to them, and kernels are built from them.
 
 use clebsch_symbolic::{IntoList, Shape};
 

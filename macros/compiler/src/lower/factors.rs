@@ -9,13 +9,14 @@ struct Factored<'a> {
     operations: &'a mut Operations,
     /// The terms of each sum that has changed.
     sums: Table<Id, Vec<(Rational, Id)>>,
-    /// How often each operation stands in what the outputs are made of.
+    /// How often each operation occurs in the code of the outputs.
     uses: Vec<usize>,
     /// Sums that are still to be looked at.
     waiting: Vec<Id>,
 }
 
-/// Takes common factors out of all sums that the outputs are made of; of some of them other terms are known than those they were made with.
+/// Takes common factors out of all sums in the code of the outputs. Some of these sums have terms other than those of
+/// their creation.
 pub(super) fn factored(
     operations: &mut Operations,
     outputs: &[Id],
@@ -115,7 +116,7 @@ impl Factored<'_> {
         choices.filter(|choice| choice.saved > 0).reduce(|best, next| if next.saved > best.saved { next } else { best })
     }
 
-    /// The multiplications that a product of which a factor is taken out needs no more.
+    /// The multiplications that a product saves if a factor is taken out.
     fn saved(&self, product: Id, factor: Id) -> isize {
         let Operation::Product(factors) = self.operations.value(product) else { return 0 };
         let rest = without(factors, factor);

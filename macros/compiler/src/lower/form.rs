@@ -1,4 +1,4 @@
-//! Whether the kernels of a system are written out, entry by entry, or keep whole matrices.
+//! Whether the kernels of a system are unrolled, entry by entry, or are matrix code.
 
 use clebsch_symbolic::{Expr, Group, Interner, IntoList, Operation, View};
 
@@ -8,20 +8,21 @@ use crate::diagnostic::Diagnostics;
 use crate::model::features::{self, Feature, Found};
 use crate::model::{CodeForm, Isotropy, Steered, System};
 
-/// The most multiplications of a linearisation that is written out, by estimate.
+/// The most multiplications of a linearisation that is unrolled, by estimate.
 ///
 /// Steps of systems on either side of it were measured in both forms (`cargo bench -p clebsch-tests --bench large`).
 pub const LARGEST_UNROLLED: usize = 10_000;
 
-/// Systems with fewer unknowns that are neither bodies nor points are written out, however long their formulas are: the loops over so few gain
-/// nothing.
+/// Systems with fewer unknowns are unrolled, unless they are bodies or points. This holds for long formulas too: loops
+/// over so few unknowns gain nothing.
 const FEWEST_UNKNOWNS: usize = 15;
 
 /// Bodies on SO(n) keep matrices from as many unknowns on, those of SO(5): there the same products take six tenths of the time.
 const FEWEST_OF_BODIES: usize = 10;
 
-/// Points on spheres are turned in (q, w) from as many components of the momentum on, those of S⁷: of many steps at once each takes two thirds of the time
-/// there and a third on S¹⁰, a single one eight tenths and half; on S³ twice as long.
+/// Points on spheres turn in (q, w) from so many components of the momentum on: those of S⁷. In a long run a step then
+/// takes two thirds of the time on S⁷ and a third on S¹⁰. A single step takes eight tenths on S⁷ and half on S¹⁰. On S³
+/// it would take twice as long.
 const FEWEST_OF_SPHERES: usize = 28;
 
 /// The most unknowns of an equation that Newton's method eliminates, and the most components of an inertia that is inverted.
@@ -30,26 +31,27 @@ pub const MOST_UNKNOWNS: usize = 64;
 /// How kernels are written, and why.
 #[derive(Clone, Debug)]
 pub struct Form {
-    /// Entry by entry or with whole matrices.
+    /// Unrolled, or matrix code.
     pub code: CodeForm,
-    /// The multiplications of a step that is written out, by estimate.
+    /// The multiplications of a step that is unrolled, by estimate.
     pub estimate: usize,
     /// Whether the declaration asks for it.
     pub is_asked: bool,
-    /// Whether it is a system that keeps matrices at any number of products: a body on SO(5) or larger, or a point on S⁷ or larger.
+    /// Whether its size alone decides for matrix code: a body on SO(5) or larger, or a point on S⁷ or larger.
     pub is_body_or_point: bool,
-    /// What of the system has no code with whole matrices.
+    /// The feature of the system that has no matrix code.
     pub missing: Option<&'static str>,
 }
 
 impl Form {
-    /// Whether kernels keep whole matrices.
+    /// Whether kernels are matrix code.
     pub fn keeps_matrices(&self) -> bool {
         self.code == CodeForm::Matrices
     }
 }
 
-/// The form of a system: what the declaration asks for, else matrices where unrolled code would pass the budget.
+/// The form of a system. A declaration may ask for one; otherwise it is matrix code if unrolled code would exceed the
+/// budget.
 ///
 /// # Errors
 /// A system too large for the only form that it has, or a form that is asked for and not there.
@@ -84,10 +86,10 @@ pub(super) fn choose(formulas: &MechanicsFormulas<'_>) -> Result<Form, Diagnosti
     Ok(Form { code, estimate, is_asked: asked.is_some(), is_body_or_point, missing })
 }
 
-/// Steps of inputs are written out.
+/// Steps of inputs are unrolled.
 ///
 /// # Errors
-/// A system too large for that, or whole matrices where they are asked for.
+/// A system too large for that, or a request for matrix code.
 pub(super) fn check_steered(model: &Steered<'_>) -> Result<(), Diagnostics> {
     if let Some(asked) = model.dials.code.as_ref().filter(|asked| asked.value == CodeForm::Matrices) {
         let asked = (Feature::Matrices, Found::at(asked.span));
@@ -96,7 +98,7 @@ pub(super) fn check_steered(model: &Steered<'_>) -> Result<(), Diagnostics> {
     check_unknowns(model, Some(Feature::Inputs))
 }
 
-/// Code that is written out has few unknowns.
+/// Unrolled code has few unknowns.
 fn check_unknowns(model: &System<'_>, missing: Option<Feature>) -> Result<(), Diagnostics> {
     let dimension = model.dimension();
     if dimension <= MOST_UNKNOWNS {
@@ -122,7 +124,7 @@ fn largest_system(formulas: &MechanicsFormulas<'_>) -> usize {
     solved.map(|equation| equation.components.len()).chain([inertia]).max().unwrap_or(0)
 }
 
-/// What of a system has no code with whole matrices.
+/// The feature of a system that has no matrix code.
 pub(super) fn without_matrices(formulas: &MechanicsFormulas<'_>) -> Option<Feature> {
     let model = &formulas.model;
     let is_quaternion = has_quaternions(model);
@@ -147,8 +149,8 @@ pub(super) fn has_quaternions(model: &System<'_>) -> bool {
         || model.factors.iter().any(|factor| factor.group == Group::UnitQuaternions)
 }
 
-/// About the multiplications of a linearisation of each momentum equation, written out: each column of the Jacobian is a directional
-/// derivative.
+/// About the multiplications of a linearisation of each momentum equation, unrolled. Each column of the Jacobian is a
+/// directional derivative.
 fn estimate(formulas: &MechanicsFormulas<'_>) -> usize {
     let equations = formulas.substeps.iter().flat_map(|substep| &substep.equations);
     let iterated = equations.filter(|equation| matches!(equation.solution, Solution::Newton | Solution::Linear));

@@ -1,7 +1,7 @@
 //! Lowering of matrix expressions: a grid of scalars for each.
 //!
-//! Factors that do not change during a step are gathered before they meet those that do: `2/h·(𝕄 + 𝕄ᵀ)/2·x^` is one constant
-//! matrix times `x^`, however the derivation has distributed it.
+//! Factors that do not change during a step are gathered first. `2/h·(𝕄 + 𝕄ᵀ)/2·x^` is one constant matrix times `x^`,
+//! however the derivation has distributed it.
 
 use std::collections::BTreeMap;
 use std::rc::Rc;
@@ -231,8 +231,8 @@ impl<'g> Scalars {
         Grid::from_fn(Shape::square(n), |(i, j)| if i == j { scale } else { zero })
     }
 
-    /// The inverse: by cofactors up to 3×3, by elimination without pivoting beyond, which is stable for the matrices I ± Z with
-    /// Z skew that arise in the Cayley chart.
+    /// The inverse: by cofactors up to 3×3, by elimination without pivoting beyond. Elimination is stable for the
+    /// matrices I ± Z with Z skew that arise in the Cayley chart.
     fn inverse(&mut self, a: &Grid) -> Grid {
         let n = a.shape.rows;
         if n <= 3 {

@@ -1,4 +1,4 @@
-//! Kernels: straight-line code for some outputs, with what changes less often taken out and common terms shared.
+//! Kernels: straight-line code for some outputs. Terms that change less often are hoisted, and common terms are shared.
 
 mod hoisted;
 mod shorten;
@@ -17,7 +17,7 @@ use super::{Code, Kernel, Rate, Scalar, ScalarNode, Scalars};
 pub use hoisted::Hoisted;
 use shorten::delay_of_term;
 
-/// Where a kernel finds what changes less often than itself.
+/// Where a kernel finds the terms that change less often than itself.
 pub enum Hoisting<'a> {
     /// It computes everything itself.
     Nothing,
@@ -102,7 +102,7 @@ struct Builder<'a, 'b> {
     /// The terms of sums once sums within them are shared, where there are such.
     sums: Table<Id, Vec<(Rational, Id)>>,
     known: Table<Scalar, Id>,
-    /// When each operation is done, once code is made of which the longest chain is what takes the time.
+    /// The time at which each operation is done, if the longest chain of operations determines the time of the code.
     delays: Vec<u32>,
 }
 
@@ -271,7 +271,7 @@ impl Builder<'_, '_> {
         }
     }
 
-    /// What the outputs are made of, in the order in which it was met.
+    /// The operations of the outputs, in the order in which they were met.
     fn used(&self) -> Vec<Id> {
         work::spend(self.operations.len() / 4);
         let mut is_used = vec![false; self.operations.len()];
@@ -346,7 +346,7 @@ impl Builder<'_, '_> {
         }
     }
 
-    /// Whether a value is worth a name of its own when it is used more than once: a read or a change of sign is not.
+    /// Whether a value deserves a name of its own when it is used more than once. A read or a change of sign does not.
     fn is_shared(&self, id: Id) -> bool {
         match self.operations.value(id) {
             Operation::Leaf(_) | Operation::Output(..) => false,

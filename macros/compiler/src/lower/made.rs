@@ -14,7 +14,7 @@ pub(super) struct Maker<'a, 'g> {
     /// Formulas that steps of this system compute, and those of other systems do not.
     pub(super) of_steps: Vec<Id>,
     pub(super) scalars: Scalars,
-    /// What steppers compute once.
+    /// The values that steppers compute once.
     pub(super) hoisted: Hoisted,
     pub(super) table: Vec<(Id, Kernel)>,
 }
@@ -118,7 +118,7 @@ pub(super) fn stack(scalars: &mut Scalars, vectors: &[Expr<'_>], hoisting: Hoist
     kernel(scalars, &outputs, hoisting)
 }
 
-/// Matrices, one output each: with whole matrices where all of them are such.
+/// Matrices, one output each: in matrix code if all of them have a form in matrices.
 pub(super) fn of_matrices(scalars: &mut Scalars, forms: &[MatrixForm<'_>], hoisting: Hoisting<'_>) -> Kernel {
     if let Some(wholes) = MatrixForm::wholes(forms).filter(|_| scalars.keeps_matrices) {
         return matrices::kernel(&wholes);

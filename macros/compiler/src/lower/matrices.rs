@@ -1,8 +1,8 @@
-//! Lowering that keeps matrices: a statement for each operation on them, for systems that are too large to be written out.
+//! Lowering to matrix code: a statement for each operation on matrices, for systems that are too large to be unrolled.
 //!
-//! The expressions are those that are written out elsewhere, entry by entry. What is decided here is what a writer of matrix code
-//! decides: the order in which products are made, letters that sums of products have in common, and products that never need
-//! their matrix, such as Zv and ⟨abᵀ, E⟩ for rotations.
+//! The expressions are those of unrolled code. This module makes the decisions of a writer of matrix code. It orders
+//! the factors of products and finds letters that sums of products have in common. Some products never need their
+//! matrix, such as Zv, or ⟨abᵀ, E⟩ for rotations.
 
 mod blocks;
 mod hoisting;
@@ -63,7 +63,7 @@ fn column(entries: Vec<Code>) -> (Shape, Vec<Code>) {
     (Shape::vector(entries.len()), entries)
 }
 
-/// What is lowered of one kernel.
+/// The state of lowering one kernel.
 #[derive(Default)]
 struct Matrices {
     locals: Vec<Code>,
@@ -82,7 +82,7 @@ impl Matrices {
         expressions.each(|&expr| (expr.shape(), vec![self.value(expr)]))
     }
 
-    /// The code of an expression: a scalar where it is 1×1, else the matrix as a whole.
+    /// The code of an expression: a scalar if it is 1×1, else a matrix.
     fn value(&mut self, expr: Expr<'_>) -> Code {
         if let Some(known) = self.known.get(&expr.position()) {
             return known.clone();
@@ -387,7 +387,8 @@ impl Matrices {
         self.total(shape, summands)
     }
 
-    /// The same as summands: a letter that several words begin or end with is multiplied once, by the sum of what is left of them.
+    /// The same as summands. A letter that several words begin or end with is multiplied once, by the sum of their
+    /// other factors.
     fn summands(&mut self, shape: Shape, terms: Vec<Weighted<'_>>) -> Vec<(Rational, Code)> {
         let mut parts = Vec::new();
         let mut terms = terms;

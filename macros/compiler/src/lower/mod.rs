@@ -105,7 +105,7 @@ fn of_steps(formulas: &MechanicsFormulas<'_>) -> Vec<Id> {
     lift.into_iter().chain(map).chain(coupled.map(Id::MomentumAfter)).into_list()
 }
 
-/// Code that is written out has a limit, as a whole and in one function.
+/// Unrolled code has a limit, in total and in one function.
 fn check_size(
     kernels: Vec<(String, &Kernel)>,
     model: &System<'_>,
@@ -122,7 +122,7 @@ fn check_size(
     Ok(())
 }
 
-/// The error for a system whose code would be too large where it is written out, with what of it has no other.
+/// The error for a system whose unrolled code would be too large, with the feature that has no matrix code.
 fn written_out_too_large(model: &System<'_>, missing: Option<Feature>, size: String) -> Diagnostics {
     let error = too_large(model, size);
     match missing {
@@ -134,7 +134,7 @@ fn written_out_too_large(model: &System<'_>, missing: Option<Feature>, size: Str
     .into()
 }
 
-/// The error for a system whose code would be too large, with what is too large of it.
+/// The error for a system whose code would be too large, with the size that exceeds a limit.
 fn too_large(model: &System<'_>, size: String) -> Diagnostic {
     let groups: Vec<String> = model.factors.each(|factor| factor.group.name(model.graph));
     Diagnostic::new(model.spans.action.place, format!("`{}` is too large: {size}", groups.join(" × "))).help(
@@ -161,8 +161,8 @@ impl<'g> Maker<'_, 'g> {
         gathered
     }
 
-    /// The terms of a power with their gradients. These are gathered where each site is read by few terms, and that takes no more operations than
-    /// adding up what each term has for its sites.
+    /// The terms of a power with their gradients. The gradients are gathered by site if few terms read each site. The
+    /// other condition is that this takes no more operations than adding the shares of each term for its sites.
     fn terms(&mut self, formulas: &MechanicsFormulas<'g>) -> Option<Stencil<'g>> {
         let mut gradients = Vec::new();
         for (number, link) in formulas.links.iter().enumerate() {
@@ -182,7 +182,7 @@ impl<'g> Maker<'_, 'g> {
         stencil
     }
 
-    /// The gradient of one site: what every site has, and a kernel for each other place of a term.
+    /// The gradient of one site: the share that every site has, and a kernel for each other place of a term.
     fn gathered(&mut self, formulas: &MechanicsFormulas<'g>, stencil: &Stencil<'g>) -> Vec<(Id, Kernel)> {
         let common = plain(&mut self.scalars, &stencil.gradient);
         let other = |&(term, number): &(usize, usize)| {
@@ -193,7 +193,7 @@ impl<'g> Maker<'_, 'g> {
         [(Id::SiteGradient, common)].into_iter().chain(others).into_list()
     }
 
-    /// κ of an inertia κI, else Σ, with half of its diagonal for prints; where matrices are kept Σξ.
+    /// κ of an inertia κI, else Σ, with half of its diagonal for prints; in matrix code Σξ.
     fn inertia(&mut self, formulas: &MechanicsFormulas<'g>) {
         match formulas.uniform_inertia {
             None if self.scalars.keeps_matrices => self.rows([Id::Inertia]),
@@ -227,7 +227,8 @@ impl<'g> Maker<'_, 'g> {
         }
     }
 
-    /// The matrix of ξ ↦ ξ_Q(q) where motions that fix q are not free; where matrices are kept the projection to the momenta of motions.
+    /// The matrix of ξ ↦ ξ_Q(q) where motions that fix q are not free; in matrix code the projection to the momenta of
+    /// motions.
     fn isotropy(&mut self, formulas: &MechanicsFormulas<'g>) {
         if formulas.is_free || formulas.model.isotropy != Isotropy::Fixed {
             return;

@@ -1,7 +1,7 @@
-//! Names of constants, made from what they are: `half_h_weight_center_2`, `two_per_h_of_mass_matrix_11_plus_22`.
+//! Names of constants from their formulas: `half_h_weight_center_2`, `two_per_h_of_mass_matrix_11_plus_22`.
 //!
-//! Factors stand side by side, those below a fraction bar behind `per`; what is multiplied with a sum stands before `of`. A sum of entries of one
-//! field names the field once.
+//! Factors follow one another, and those below a fraction bar follow `per`. The factors of a sum stand before `of`. A
+//! sum of entries of one field names the field once.
 
 use clebsch_symbolic::{Elements, IntoList, Rational, Role, integer, work};
 
@@ -26,7 +26,7 @@ fn is_short(name: &str) -> bool {
     !name.is_empty() && name.len() <= LONGEST_NAME && name.chars().all(|c| c.is_ascii_alphanumeric() || c == '_')
 }
 
-/// A name that no other constant has, nor what stands beside them.
+/// A name that no other constant has, and no other name in scope.
 fn distinct(name: String, names: &[String]) -> String {
     let is_taken = |name: &String| {
         let is_beside = ["orientation", "free_rotation"].iter().any(|other| name.starts_with(other));
@@ -91,7 +91,7 @@ impl Scalars {
         (parts.len() < terms.len()).then_some((constant, parts))
     }
 
-    /// What all terms have in common, `of` the rest of them.
+    /// The common factor of all terms, `of` their sum without it.
     fn name_of_sum(&self, constant: Rational, terms: Vec<Term>) -> Option<String> {
         let (constant, terms) = self.multiplied_out(&constant, &terms).unwrap_or((constant, terms));
         let (Some((weight, factors)), true) = (terms.first(), constant.is_zero()) else {
@@ -203,7 +203,7 @@ impl Scalars {
         })
     }
 
-    /// The name of what is no product.
+    /// The name of an expression that is no product.
     fn name_of_base(&self, scalar: Scalar) -> Option<String> {
         match self.node(scalar) {
             ScalarNode::Input(input) if input.role == Role::StepSize => Some("h".into()),

@@ -1,4 +1,5 @@
-//! The program as text: each kernel with its operation counts and its code, and what the derivation tells of it.
+//! The program as text: each kernel with its operation counts and its code, and the facts that the derivation tells of
+//! it.
 
 use std::fmt;
 

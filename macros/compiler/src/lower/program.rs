@@ -1,4 +1,4 @@
-//! The value of this stage: a table of kernels, each with the id of what it computes.
+//! The value of this stage: a table of kernels, each with the id of its formula.
 
 use clebsch_symbolic::{Elements, IntoList};
 use std::ops::Deref;
@@ -37,9 +37,9 @@ pub struct MechanicsProgram<'g> {
     pub formulas: MechanicsFormulas<'g>,
     /// Its kernels.
     pub table: KernelTable,
-    /// Whether kernels are written out or keep whole matrices, and why.
+    /// Whether kernels are unrolled or matrix code, and why.
     pub form: Form,
-    /// What is known of each substep beside its kernels.
+    /// The data of each substep other than its kernels.
     pub steps: Vec<Step>,
     /// How the gradient of one site of a power is gathered from the terms that read it, where it is.
     pub gathered: Option<Stencil<'g>>,
@@ -47,7 +47,7 @@ pub struct MechanicsProgram<'g> {
     pub methods: Vec<MethodProgram<'g>>,
 }
 
-/// A substep beside its kernels.
+/// The data of a substep other than its kernels.
 pub struct Step {
     /// Whether the end kick of a step is the start kick of the next.
     pub end_is_start: bool,
@@ -228,7 +228,7 @@ impl MechanicsProgram<'_> {
         (0..links.len()).flat_map(of_term).chain(of_site).chain(others).into_list()
     }
 
-    /// Whether a kernel is what a step or a method calls.
+    /// Whether a step or a method calls a kernel.
     fn is_listed(&self, id: Id) -> bool {
         let (turns_in_plane, is_displaced) = (self.turns_in_plane(), self.find(Id::Displacement).is_some());
         match id {

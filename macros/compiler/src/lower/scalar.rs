@@ -35,7 +35,7 @@ impl Rate {
 /// An entry of an input.
 #[derive(Clone, PartialEq, Eq, Hash, PartialOrd, Ord, Debug)]
 pub struct Input {
-    /// What the input is.
+    /// The role of the input.
     pub role: Role,
     /// Its name, for the names of shared terms.
     pub name: String,
@@ -54,7 +54,7 @@ impl Input {
     }
 }
 
-/// A function of matrices that generated code calls as a whole.
+/// A function of matrices that generated code calls.
 #[derive(Clone, PartialEq, Eq, Hash, PartialOrd, Ord, Debug)]
 pub enum Callee {
     /// A power series of a matrix.
@@ -63,7 +63,7 @@ pub enum Callee {
     Inverse,
     /// A method of the user's.
     Value(String),
-    /// The gradient method beside it, with one matrix for each argument of the configuration.
+    /// The gradient method of the same potential, with one matrix for each argument of the configuration.
     Gradient(String),
 }
 
@@ -71,7 +71,7 @@ pub enum Callee {
 #[derive(Copy, Clone, PartialEq, Eq, Hash, PartialOrd, Ord, Debug)]
 pub struct CallId(u32);
 
-/// An entry of what a call returns.
+/// An entry of the result of a call.
 #[derive(Copy, Clone, PartialEq, Eq, Hash, PartialOrd, Ord, Debug)]
 pub struct Output {
     /// The leaf of a gradient.
@@ -101,7 +101,7 @@ pub enum ScalarNode {
     Root(Scalar, (i64, i64)),
     /// An elementary function.
     Function(Function, Scalar),
-    /// An entry of what a call returns.
+    /// An entry of the result of a call.
     Output(CallId, Output),
 }
 
@@ -121,7 +121,7 @@ impl ScalarNode {
 pub struct Scalars {
     /// Whether kernels leave sums as they are written, sums within them too.
     pub keeps_sums: bool,
-    /// Whether kernels keep whole matrices and are not written out.
+    /// Whether kernels are matrix code, and not unrolled.
     pub keeps_matrices: bool,
     nodes: Interner<ScalarNode>,
     rates: Vec<Rate>,
@@ -254,7 +254,7 @@ impl Scalars {
         if coefficient.is_one() { a } else { self.sum(integer(0), [(a, coefficient)]) }
     }
 
-    /// A scalar as a number times the rest.
+    /// A scalar as a number times another scalar.
     pub fn factor(&self, scalar: Scalar) -> (Rational, Option<Scalar>) {
         match self.node(scalar) {
             ScalarNode::Sum(constant, terms) if terms.is_empty() => (constant.clone(), None),
@@ -334,7 +334,7 @@ impl Scalars {
         self.scale(inverse, number)
     }
 
-    /// x^exponent: whole part by products and a reciprocal, the rest as a root.
+    /// x^exponent: the integer part by products and a reciprocal, the fraction as a root.
     pub fn power(&mut self, x: Scalar, numerator: i64, denominator: i64) -> Scalar {
         let whole = numerator.div_euclid(denominator);
         let fraction = numerator.rem_euclid(denominator);
@@ -358,7 +358,7 @@ impl Scalars {
         self.intern(ScalarNode::Function(function, x), rate)
     }
 
-    /// The entries of what a call returns.
+    /// The entries of the result of a call.
     pub fn call(&mut self, callee: Callee, arguments: Vec<Rc<Grid>>, leaf: usize, shape: Shape) -> Grid {
         let rate = self.rate_of(arguments.iter().flat_map(|argument| argument.entries.iter().copied()));
         let (index, _) = self.calls.intern((callee, arguments));
@@ -366,7 +366,7 @@ impl Scalars {
         Grid::from_fn(shape, |place| self.intern(entry(place), rate))
     }
 
-    /// What is called, with its arguments entry by entry.
+    /// The function that is called, with its arguments entry by entry.
     pub fn call_of(&self, id: CallId) -> &(Callee, Vec<Rc<Grid>>) {
         self.calls.value(id.0 as usize)
     }

@@ -1,7 +1,8 @@
 //! Signs: each stands between the terms of a sum or at the head of a value, never before a factor and never twice.
 //!
-//! (−a) b = −(a b), a − (−b) = a + b, −a − b = −(a + b) and a + b = b + a hold to the last bit: numbers are rounded alike on both sides of
-//! zero. Terms are otherwise added as before, so that nothing else than the sign of a zero changes.
+//! (−a) b = −(a b), a − (−b) = a + b, −a − b = −(a + b) and a + b = b + a hold to the last bit. The reason is that
+//! numbers are rounded alike on both sides of zero. Terms are otherwise added as before, so that nothing else than the
+//! sign of a zero changes.
 //!
 //! In the loop of a solve, a shared term −a − b is computed as it is where a does not change: −a is made once. Elsewhere a + b is computed and
 //! then subtracted.
@@ -13,8 +14,9 @@ use super::{Code, Cost, Kernel, MatrixOperation, Whole};
 /// A code that begins with no sign, and whether its negative is meant.
 type Signed = (bool, Code);
 
-/// A kernel with its signs moved and with terms that are then the same as one. Its sums may be in any order, in which terms that are added come before those that are subtracted; sums of
-/// the result are in the order in which they are added up. `is_iterated` where the kernel runs in the loop of a solve.
+/// A kernel with its signs moved and with terms that are then the same as one. Its sums may be in any order that has
+/// additions before subtractions. Sums of the result are in the order in which they are added. `is_iterated` where the
+/// kernel runs in the loop of a solve.
 pub(super) fn moved(kernel: Kernel, is_iterated: bool) -> Kernel {
     let mut signs = Signs::default();
     for local in kernel.locals {
@@ -188,7 +190,7 @@ impl Signs {
         (is_negative, Code::Product(parts))
     }
 
-    /// An operation on whole matrices: signs of what it is linear in go through.
+    /// An operation on matrices. It passes on the signs of operands in which it is linear.
     fn matrix(&mut self, whole: Whole) -> Signed {
         let Whole { operation, operands, shape, cost } = whole;
         match operation {
@@ -239,7 +241,8 @@ fn has_terms(code: &Code) -> bool {
     matches!(code, Code::Sum(constant, terms) if !constant.is_zero() || terms.len() > 1)
 }
 
-/// Whether its first number changes less often than the rest: the negative of that number is made outside of the loop of a solve.
+/// Whether its first number changes less often than the others. The negative of that number is then computed outside of
+/// the loop of a solve.
 fn begins_slowly(code: &Code) -> bool {
     match code {
         Code::Number(_) | Code::Constant(_) | Code::Term(_) => true,
@@ -256,7 +259,8 @@ fn bracketed(code: Code) -> Code {
     Code::Sum(integer(0), vec![(integer(1), code)])
 }
 
-/// Whether it is a sum that stands in brackets beside a multiplication. One term that is added stands without before signs are moved.
+/// Whether it is a sum in brackets next to a multiplication. One term that is added stands without before signs are
+/// moved.
 fn is_bracketed(code: &Code) -> bool {
     has_terms(code) || matches!(code, Code::Sum(_, terms) if terms.iter().any(|(weight, _)| weight.is_negative()))
 }

@@ -9,7 +9,7 @@ use super::{Code, Hoisted, Hoisting, Kernel, MechanicsProgram, Step, matrices};
 use crate::derive::{Id, MechanicsFormulas, MomentumEquation, Solution, Structure, SystemFormulas};
 use crate::model::Solver;
 
-/// What is known of a momentum equation beside its kernels.
+/// The data of a momentum equation other than its kernels.
 pub struct Solve {
     /// Its substep.
     pub substep: usize,
@@ -27,7 +27,7 @@ pub struct Solve {
     pub coupled: Vec<usize>,
     /// How it is solved.
     pub solution: Solution,
-    /// What is known of its Jacobian.
+    /// The known structure of its Jacobian.
     pub structure: Structure,
     /// Whether the equation depends on the configuration, on the time or on the input.
     pub moves: bool,
@@ -158,7 +158,8 @@ impl<'g> Maker<'_, 'g> {
         }
     }
 
-    /// What Newton's method computes once and what it linearises, with the residual alone where that is tried first.
+    /// The part of Newton's method that is computed once, and the part that it linearises. If the residual is tried
+    /// alone first, its kernel is there too.
     fn iteration(
         &mut self,
         formulas: &MechanicsFormulas<'g>,

@@ -8,9 +8,9 @@ use super::scalar::is_unit;
 /// A sum: its index, whether it has no constant, and its terms.
 type Sum = (Id, bool, Vec<(Rational, Id)>);
 
-/// The terms of those sums that hold all terms of another one, with that one or its negative in their place and what is left of them, where that
-/// is less work: 1 − 2a − b − c is 1 + d − a with d = −a − b − c. What then stands in a sum by name may stand in another one beside others.
-/// `serves` says of terms and of those that they would replace whether they may.
+/// Some sums contain all terms of another sum. If that is less work, they are written with that sum, or its negative, in
+/// place of these terms. With d = −a − b − c, for example, 1 − 2a − b − c is 1 + d − a. The named sum may then occur,
+/// among other terms, in a further sum. `serves` decides whether some terms may replace others.
 pub(super) fn shared(
     mut sums: Vec<Sum>,
     serves: impl Fn(&[(Rational, Id)], &[(Rational, Id)]) -> bool,
@@ -66,7 +66,8 @@ fn shortest(
     found
 }
 
-/// A sum with ±1 times a part of it by name; `None` where it does not hold the terms of the part, or where that saves nothing.
+/// A sum with ±1 times a part of it by name. `None` if the sum does not contain the terms of the part, or if nothing is
+/// saved.
 fn replaced(whole: &[(Rational, Id)], part: &[(Rational, Id)], name: Id) -> Option<Vec<(Rational, Id)>> {
     if whole.iter().any(|(_, term)| *term == name) {
         return None;

@@ -1,5 +1,5 @@
-//! The kernels of what plans are made of: motions of configurations and edges with their second derivatives, and the choice of inputs with price
-//! and bounds.
+//! The kernels of plans: motions of configurations and edges with their second derivatives, and the choice of inputs
+//! with price and bounds.
 
 use super::made::{Maker, of_matrices, stack};
 use super::{Hoisting, matrices};
@@ -20,7 +20,7 @@ impl<'g> Maker<'_, 'g> {
         }
     }
 
-    /// J(q, (E_j)_Q(q)), column by column; with whole matrices J(q, ξ_Q(q)).
+    /// J(q, (E_j)_Q(q)), column by column; in matrix code J(q, ξ_Q(q)).
     pub(super) fn orbit_metric(&mut self) {
         match self.rows.value(Id::OrbitMetric).filter(|_| self.scalars.keeps_matrices) {
             Some(momenta) => self.add(Id::OrbitMetric, |_, _| matrices::kernel(&matrices::below(momenta))),
@@ -28,7 +28,8 @@ impl<'g> Maker<'_, 'g> {
         }
     }
 
-    /// The kernels of a choice: with the step that inputs make by themselves, or what they do to an edge as those of forces.
+    /// The kernels of a choice. They have the step that inputs make by themselves, or the effect of inputs on an edge
+    /// as that of forces.
     pub(super) fn choice(&mut self, choice: &Choice<'_, 'g>) {
         let is_steered = matches!(choice.step, StepOfChoice::Steered(_));
         let made = |maker: &mut Self, id: Id| maker.matrices(id, &choice.matrices(id));

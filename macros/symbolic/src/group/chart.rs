@@ -81,9 +81,9 @@ impl Chart {
         }
     }
 
-    /// F − I (F itself for translations), in a form without cancellation:
-    /// sZ + sZ² with s = 2/(1 + |x|²) for rotations with n ≤ 3, 2(Z + Z² + pZ̃ − p²I)/(1 + s + p²) with s = |x|², p the Pfaffian of Z and Z̃ its
-    /// dual for n = 4, 2(I − Z)⁻¹Z for other Cayley charts, and Zφ(Z) for exponentials.
+    /// F − I (F itself for translations), in a form without cancellation. For rotations with n ≤ 3 it is sZ + sZ² with
+    /// s = 2/(1 + |x|²). For n = 4 it is 2(Z + Z² + pZ̃ − p²I)/(1 + s + p²) with s = |x|², the Pfaffian p of Z and its
+    /// dual Z̃. Other Cayley charts have 2(I − Z)⁻¹Z, and exponentials have Zφ(Z).
     pub fn increment<'g>(self, group: Group, x: &[Expr<'g>]) -> Expr<'g> {
         let graph = x[0].graph();
         let one = graph.integer(1);
@@ -154,9 +154,10 @@ impl Chart {
         (self == Chart::Sine).then(|| (one, one / (one + cosine(x[0]))))
     }
 
-    /// The matrices A and C by which ρ ↦ A ρ C frees the momentum equation of a Cayley chart of denominators: components of the
-    /// product vanish where those of ρ do. (I − Z) ρ (I − Z)ᵀ for rotations acting from the right, whose residual has F on the left or
-    /// Fᵀ on the right; with the signs changed for left actions; and likewise for other groups, Zᵀ standing for −Z.
+    /// The matrices A and C by which ρ ↦ A ρ C frees the momentum equation of a Cayley chart of denominators.
+    /// Components of the product vanish where those of ρ do. For rotations acting from the right, the residual has F on
+    /// the left or Fᵀ on the right. The map is then (I − Z) ρ (I − Z)ᵀ. For left actions the signs change. Other groups
+    /// are alike, with Zᵀ in place of −Z.
     pub fn clearing<'g>(self, group: Group, x: &[Expr<'g>], left_action: bool) -> Option<(Expr<'g>, Expr<'g>)> {
         if self != Chart::Cayley || group == Group::UnitQuaternions {
             return None;
@@ -188,8 +189,8 @@ fn combination<'g>(group: Group, x: &[Expr<'g>]) -> Expr<'g> {
     group.placed(x[0].graph(), |index, _| x[index])
 }
 
-/// exp Z, by Stumpff functions of s where Zᵏ⁺² = −s Zᵏ for a k up to two, s = −½ tr Z²: rotations, motions of space and of the plane,
-/// SL(2), SO(1, 2).
+/// exp Z, by Stumpff functions of s where Zᵏ⁺² = −s Zᵏ for a k up to two, s = −½ tr Z². Such groups are rotations,
+/// motions of space and of the plane, SL(2) and SO(1, 2).
 fn exponential(z: Expr<'_>) -> Expr<'_> {
     let graph = z.graph();
     let square = z * z;
@@ -240,8 +241,8 @@ fn quaternion<'g>(vector: Expr<'g>, scalar: Expr<'g>) -> Expr<'g> {
     vector.embed(shape, 0, 0) + scalar.embed(shape, 3, 0)
 }
 
-/// 2(I − Z)⁻¹Z. For 4×4 matrices with tr Z = tr Z³ = 0, those of the algebras that keep a form, Z⁴ + sZ² + d = 0 with
-/// s = −½ tr Z² and d = ⅛(tr Z²)² − ¼ tr Z⁴, so that it is 2(Z + Z²)((1 + s)I + Z²)/(1 + s + d).
+/// 2(I − Z)⁻¹Z. Let Z be 4×4 with tr Z = tr Z³ = 0, as in the algebras of a bilinear form. Then Z⁴ + sZ² + d = 0 with s
+/// = −½ tr Z² and d = ⅛(tr Z²)² − ¼ tr Z⁴. So the result is 2(Z + Z²)((1 + s)I + Z²)/(1 + s + d).
 fn even_increment(z: Expr<'_>) -> Expr<'_> {
     let graph = z.graph();
     let one = graph.integer(1);
@@ -368,8 +369,8 @@ impl Group {
         })
     }
 
-    /// dexp_ξ on so(4) = so(3) + so(3), where ad of either half vanishes on the other, by four Stumpff functions: many times as long as φ(ad_ξ),
-    /// and as many times faster. `None` for other groups.
+    /// dexp_ξ on so(4) = so(3) + so(3), where ad of either half vanishes on the other, by four Stumpff functions. It is
+    /// many times as long as φ(ad_ξ), and as many times faster. `None` for other groups.
     pub fn exponential_slope_by_halves(self, xi: Expr<'_>) -> Option<Expr<'_>> {
         (self == Group::SpecialOrthogonal(4)).then(|| {
             let half = |sign: i64| self.exponential_slope((xi + sign * dual_coordinates(xi)) / 2);

@@ -8,7 +8,7 @@ use crate::algebra::{Sparse, dense};
 use crate::node::Id;
 use crate::{Algebra, Elements, Expr, Graph, IntoList, Rational, Shape};
 
-/// What a graph keeps of a declared group.
+/// The data that a graph stores for a declared group.
 #[derive(Debug)]
 pub struct Definition {
     pub(crate) name: String,
@@ -28,8 +28,8 @@ impl Definition {
 }
 
 impl Group {
-    /// The group of matrices that a basis of its Lie algebra generates, or, near the identity, of those on which an expression vanishes
-    /// for the symbol beside it.
+    /// The group of matrices that a basis of its Lie algebra generates. Near the identity it may be given by an
+    /// expression and a symbol: the matrices at which the expression vanishes.
     pub fn declare<'g>(
         graph: &'g Graph,
         name: &str,
@@ -91,7 +91,7 @@ impl Graph {
     }
 }
 
-/// A space of vectors, ready to be asked what lies in it.
+/// A space of vectors, prepared for tests of membership.
 pub struct Span {
     /// Rows in reduced echelon form, each with the column of its pivot.
     rows: Vec<(usize, Vec<Rational>)>,

@@ -1,7 +1,8 @@
-//! Matrix Lie groups as data: what the derivation needs to know of a group, and nothing else.
+//! Matrix Lie groups as data: all that the derivation needs to know of a group.
 //!
-//! The Lie algebra of a group is a sum of *blocks*, each a basis of matrices with a place in the matrices of the group: se(3) is so(3)
-//! in the upper left and R³ in the last column. Blocks are the units in which charts are made and equations uncouple.
+//! The Lie algebra of a group is a sum of *blocks*. Each is a basis of matrices with a place in the matrices of the
+//! group. For example, se(3) is so(3) in the upper left and R³ in the last column. Blocks are the units in which charts
+//! are made and equations uncouple.
 
 mod bases;
 mod chart;
@@ -107,7 +108,7 @@ impl Group {
         self.row().dimension
     }
 
-    /// What holds for every element.
+    /// The property of every element.
     pub fn element_property(self) -> Property {
         match self {
             Group::SpecialOrthogonal(_) => Property::Orthogonal,
@@ -143,7 +144,7 @@ impl Group {
     }
 }
 
-/// What is known of a group by its sizes alone.
+/// The data of a group that its sizes alone give.
 struct Row {
     /// The letters.
     name: &'static str,
@@ -158,7 +159,7 @@ struct Row {
 }
 
 impl Group {
-    /// The row of a group; that of a declared one has its sizes, and its graph knows the rest.
+    /// The row of a group. The row of a declared group has its sizes, and its graph has the other data.
     #[rustfmt::skip]
     fn row(self) -> Row {
         let turns = |n: usize| n * (n - 1) / 2;

@@ -1,4 +1,4 @@
-//! Random elements of groups over a prime field, and what they decide about charts.
+//! Random elements of groups over a prime field, and the decisions about charts that they allow.
 
 use super::{Chart, Group};
 use crate::algebra::Sparse;
@@ -37,7 +37,8 @@ fn cayley_map(z: &Field) -> Field {
     identity_plus(z, negative(one())).inverse().0.multiply(&identity_plus(z, one()))
 }
 
-/// Whether dF F⁻¹ stays in the algebra along the Cayley map: (I − Z)⁻¹ E_i (I + Z)⁻¹ in the span of the basis, for a random Z.
+/// Whether dF F⁻¹ stays in the algebra along the Cayley map. The test is whether (I − Z)⁻¹ E_i (I + Z)⁻¹ is in the span
+/// of the basis, for a random Z.
 pub(super) fn is_cayley_tangent(graph: &Graph, group: Group) -> bool {
     let mut seed = 0;
     let mut random = || {

@@ -12,7 +12,7 @@ use crate::emit::scope::Scope;
 use crate::lower::{Code, Kernel};
 use crate::model::{Leaf, Linear, Power, SiteIndex};
 
-/// What the code of all terms is made of.
+/// The data for the code of all terms.
 pub(super) struct Terms<'e, 'a, 'g> {
     emitter: &'e Emitter<'a, 'g>,
     power: &'e Power<'g>,
@@ -34,7 +34,7 @@ impl<'e, 'a, 'g> Terms<'e, 'a, 'g> {
         terms.collect()
     }
 
-    /// The method that goes through the terms and adds what each has for its sites.
+    /// The method that goes through the terms and adds the share of each to the gradients of its sites.
     pub(super) fn added_gradient(&self) -> TokenStream {
         let length = &self.emitter.length;
         let terms = self.emitter.formulas.links.iter().enumerate().map(|(number, link)| {

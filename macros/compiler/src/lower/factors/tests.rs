@@ -62,7 +62,7 @@ fn numbers_are_factors() {
     assert_eq!(operations(&mut scalars, vec![whole]), (3, 3));
 }
 
-/// k (a b − a b) + k c: what cancels once the factor is out leaves nothing.
+/// k (a b − a b) + k c: terms that cancel once the factor is out leave nothing.
 #[test]
 fn what_cancels_leaves_nothing() {
     let mut scalars = Scalars::default();

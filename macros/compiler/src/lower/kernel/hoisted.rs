@@ -11,21 +11,21 @@ use crate::lower::{Code, Kernel, Scalar, ScalarNode, Scalars, signs};
 pub struct Hoisted {
     /// In the order in which they were met.
     met: Vec<Met>,
-    /// The number of values that are kept.
+    /// The number of values that are stored.
     kept: usize,
 }
 
 #[derive(Clone, Debug)]
 struct Met {
     scalar: Scalar,
-    /// Whether its negative is kept.
+    /// Whether its negative is stored.
     is_negative: bool,
-    /// Where that stands among what is kept.
+    /// Its index among the stored values.
     place: usize,
 }
 
 impl Hoisted {
-    /// Whether the negative of a value is kept, and where.
+    /// Whether the negative of a value is stored, and its index.
     pub(super) fn index(&mut self, scalars: &Scalars, scalar: Scalar) -> (bool, usize) {
         work::spend(1 + self.met.len() / 32);
         let known = |wanted: Scalar| self.met.iter().find(|met| met.scalar == wanted);
@@ -41,7 +41,7 @@ impl Hoisted {
         (is_negative, place)
     }
 
-    /// What is kept: each value as it was first met, and whether its negative is kept.
+    /// The stored values: each as it was first met, and whether its negative is stored.
     pub fn kept(&self) -> impl Iterator<Item = (Scalar, bool)> {
         self.first().map(|(_, met)| (met.scalar, met.is_negative))
     }
@@ -52,7 +52,7 @@ impl Hoisted {
         self.met.iter().enumerate().filter(is_first)
     }
 
-    /// Computes what is kept, one output each.
+    /// Computes the stored values, one output each.
     pub(in crate::lower) fn kernel(&self, scalars: &mut Scalars, hoisting: Hoisting<'_>) -> Kernel {
         // with those that are not kept: what they share with others decides how these are rounded
         let outputs: Vec<Grid> = self.met.each(|met| Grid::scalar(met.scalar));
@@ -68,7 +68,7 @@ impl Hoisted {
 }
 
 impl Scalars {
-    /// −x, if it is known; of what is no sum, only where it is.
+    /// −x, if it is known. Only a sum is negated anew; for another expression −x has to exist.
     fn negated(&self, scalar: Scalar) -> Option<Scalar> {
         let minus = integer(-1);
         match self.node(scalar) {

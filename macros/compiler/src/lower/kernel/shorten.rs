@@ -37,8 +37,8 @@ impl Builder<'_, '_> {
         }
     }
 
-    /// Writes a x with a taken out as n b, which stands nowhere else, as n times b x, where that is at hand: what other sums have of b x is then
-    /// found in this one.
+    /// A product a x with a = n b is written as n times b x. The condition is that a occurs nowhere else and b x is at
+    /// hand. Then b x of other sums is found in this one.
     fn separate_numbers(&self) -> Table<Id, Vec<(Rational, Id)>> {
         let mut sums = Table::default();
         let used = self.used();

@@ -1,4 +1,4 @@
-//! Matrices of blocks, such as those of SE(n), entry by entry: what a person writes in place of views and embeddings.
+//! Matrices of blocks, such as those of SE(n), entry by entry: a person writes them in place of views and embeddings.
 
 use clebsch_symbolic::{Elements, Expr, IntoList, Operation, Rational, Shape, integer};
 
@@ -68,7 +68,7 @@ impl Matrices {
         self.entries(shape, entries)
     }
 
-    /// The entries of a sum of matrices that are made one by one, or of vectors of which one is.
+    /// The entries of a sum of matrices that are all built entry by entry, or of vectors if one of them is.
     pub(super) fn joined(&self, shape: Shape, parts: &[(Rational, Code)]) -> Option<Vec<Code>> {
         let mut listed = parts.iter().map(|(_, part)| self.is_listed(part));
         let is_joined = if shape.is_column() {
@@ -83,7 +83,7 @@ impl Matrices {
     }
 }
 
-/// Σ weight · code, without what is 0.
+/// Σ weight · code, without terms that are 0.
 pub(super) fn total(terms: Vec<(Rational, Code)>) -> Code {
     let (mut constant, mut rest) = (integer(0), Vec::new());
     for (weight, term) in terms {

@@ -29,7 +29,8 @@ impl<'g> Weighted<'g> {
     }
 }
 
-/// A letter that at least two words begin with (`true`) or end with, one of which has others beside it: the most frequent.
+/// A letter that at least two words begin with (`true`) or end with. One of the words has other letters too. The most
+/// frequent letter is taken.
 ///
 /// Vectors keep the side of the vector, so that it is multiplied first.
 pub(super) fn common_letter<'g>(shape: Shape, terms: &[Weighted<'g>]) -> Option<(Expr<'g>, bool)> {

@@ -122,7 +122,7 @@ impl Random {
     }
 }
 
-/// What generated code computes, with the brackets that it is written with.
+/// The values that generated code computes, with the brackets of its text.
 struct Values<'a> {
     locals: Vec<f64>,
     constants: &'a [f64],
@@ -175,7 +175,8 @@ impl Values<'_> {
         is_in_brackets(constant, terms) && (self.in_order || !is_plain)
     }
 
-    /// What stands before a factor times the factor, which is written without brackets where it is a product.
+    /// The product of the number before a factor and the factor. If the factor is a product, it is written without
+    /// brackets.
     fn times(&self, before: Option<f64>, factor: &Code) -> f64 {
         match factor {
             Code::Product(factors) => {
