@@ -36,18 +36,18 @@ impl fmt::Display for Reference {
 /// How often a formula is computed, which decides how its code is written.
 #[derive(Copy, Clone, PartialEq, Eq, Debug)]
 pub enum Heat {
-    /// In steps, or again and again by solvers: what costs least.
+    /// In steps, or again and again by solvers: the cheapest code.
     Hot,
     /// When someone asks for it: matrix code that a person can read.
     Cold,
 }
 
-/// What the catalogue says of a formula.
+/// The facts of a formula in the catalogue.
 #[derive(Copy, Clone, PartialEq, Eq, Debug)]
 pub struct Entry {
-    /// What it is, in words.
+    /// Its name, in words.
     pub title: &'static str,
-    /// Where it comes from; `None` for what is declared or follows from the formulas above it.
+    /// Its source; `None` for a declaration, or if it follows from the formulas above it.
     pub source: Option<Reference>,
     /// How often it is computed.
     pub heat: Heat,
@@ -69,7 +69,7 @@ impl Entry {
     }
 }
 
-/// The numbers of an id, by what they stand for.
+/// The numbers of an id, by their meaning.
 #[derive(Default)]
 #[expect(dead_code, reason = "substeps and equations alone are asked for")]
 struct Numbers<'i> {
@@ -80,7 +80,7 @@ struct Numbers<'i> {
     momentum: Option<&'i mut usize>,
 }
 
-/// One row for each id: its name with the numbers that it holds, and what is said of it.
+/// One row for each id: its name with its numbers, and its entry.
 macro_rules! catalogue {
     ($($(#[$doc:meta])* $name:ident $(($($number:ident: $type:ty),*))? = $entry:expr;)*) => {
         /// Which formula or kernel.
@@ -90,7 +90,7 @@ macro_rules! catalogue {
         }
 
         impl Id {
-            /// What the catalogue says of it.
+            /// Its entry in the catalogue.
             pub fn entry(self) -> Entry {
                 match self {
                     $(Id::$name { .. } => $entry,)*
@@ -109,7 +109,7 @@ macro_rules! catalogue {
 }
 
 impl Id {
-    /// The substep whose formula it is; `None` for those of the whole system.
+    /// The substep whose formula it is; `None` for those of the system.
     pub fn substep(mut self) -> Option<usize> {
         self.numbers().substep.copied()
     }
@@ -148,7 +148,7 @@ catalogue! {
     MomentumMatrix = unlisted("momentum matrix", Cold);
     /// The components of representing matrices.
     MomentumComponents = unlisted("momentum matrix", Cold);
-    /// What vanishes where q lies on the groups that it is promised to lie on.
+    /// The terms that vanish where q lies on the groups that it is promised to lie on.
     Membership = unlisted("group", Cold);
     /// τ(x) − I, and τ(−x) − I behind it.
     Retraction = unlisted("retraction", Hot).by(LieGroupMethods);
@@ -190,7 +190,7 @@ catalogue! {
     Term(term: usize) = listed("term", Hot);
     /// Its gradient at a place that it reads.
     TermGradient(term: usize, place: usize) = listed("gradient of a term", Hot);
-    /// What moves a configuration that is steered.
+    /// The motion of a steered configuration.
     Controls = listed("controls", Hot);
     /// The price of a step.
     Price = listed("price", Hot);
@@ -204,13 +204,13 @@ catalogue! {
     ConservedMomenta = unlisted("conserved", Cold);
     /// M − N, the kick before the solve.
     StartKick(substep: usize) = listed("kick", Hot).by(ClebschOptimalControl);
-    /// What of that kick the cost gives at F = I.
+    /// The part of that kick that the cost gives at F = I.
     RestKick(substep: usize) = unlisted("kick", Hot).by(ClebschOptimalControl);
     /// The same kick of the covector.
     StartGradient(substep: usize) = unlisted("kick of the covector", Hot).by(ClebschOptimalControl);
     /// The impulse of the force before the solve.
     StartForce(substep: usize) = unlisted("impulse of the force", Hot);
-    /// What of it depends on the velocity.
+    /// The part of it that depends on the velocity.
     MovingForce(substep: usize) = unlisted("impulse of the force", Hot);
     /// The impulse of the force after the move.
     EndForce(substep: usize) = unlisted("impulse of the force", Hot);
@@ -222,7 +222,7 @@ catalogue! {
     JacobianFactor(substep: usize, equation: usize) = unlisted("factor of the Jacobian", Hot);
     /// x(μ).
     Solution(substep: usize, equation: usize) = listed("solution", Hot);
-    /// x(μ) to first order in h, component by component: what iterations start from.
+    /// x(μ) to first order in h, component by component: the start of iterations.
     Predictor(substep: usize, equation: usize) = unlisted("predictor", Hot);
     /// M⁺.
     MomentumUpdate(substep: usize) = listed("momentum update", Hot).by(ClebschOptimalControl);
@@ -248,12 +248,12 @@ catalogue! {
     Displacement = unlisted("action", Hot).by(ClebschOptimalControl);
     /// The cotangent lift with F = I + D.
     Lift = unlisted("cotangent lift", Cold).by(ClebschOptimalControl);
-    /// What a step of order 16 collocates.
+    /// The equations that a step of order 16 collocates.
     HamiltonEquations = listed("Hamilton's equations", Hot).by(MechanicsAndSymmetry);
-    /// What its sweeps start from.
+    /// The start of its sweeps.
     Guess = unlisted("predictor", Hot);
     // what follows has kernels, and is no row of a table
-    /// What a stepper computes once.
+    /// The values that a stepper computes once.
     Constants = unlisted("", Hot);
     /// The coefficients of ξ_i ξ_j, i ≤ j, in the kinetic energy.
     EnergyCoefficients = unlisted("", Hot);
@@ -265,9 +265,10 @@ catalogue! {
     Covector = unlisted("", Hot);
     /// The gradient of a term at all places that it reads.
     TermGradients(term: usize) = unlisted("", Hot);
-    /// What the gradient of a site has at every site.
+    /// The part of the gradient that every site has.
     SiteGradient = unlisted("", Hot);
-    /// ℓd, F⁻ℓd, F⁺ℓd, ∂F⁻ℓd/∂η, ∂F⁻ℓd/∂η′, ∂F⁺ℓd/∂η′, and ∂F⁺ℓd/∂η where it is not −(∂F⁻ℓd/∂η′)ᵀ: matrices, or what they make of one motion.
+    /// ℓd, F⁻ℓd, F⁺ℓd, ∂F⁻ℓd/∂η, ∂F⁻ℓd/∂η′, ∂F⁺ℓd/∂η′, and ∂F⁺ℓd/∂η where it is not −(∂F⁻ℓd/∂η′)ᵀ. These are matrices,
+    /// or their products with one motion.
     Edge(substep: usize) = unlisted("", Hot);
     /// ℓd, F⁻ℓd, F⁺ℓd.
     EdgeMomenta(substep: usize) = unlisted("", Hot);
@@ -287,7 +288,7 @@ catalogue! {
     Bracket = unlisted("", Hot);
     /// Where forces take the inputs: ℓ, ∂ℓ/∂η, ∂ℓ/∂u and the second derivatives.
     PriceExpanded = unlisted("", Hot);
-    /// What price and step gain with h and with t.
+    /// The derivatives of price and step with respect to h and t.
     PriceOfTime = unlisted("", Hot);
     /// a, ∂a/∂η, ∂a/∂u and the second derivatives of z·a.
     BoundsExpanded = unlisted("", Hot);
@@ -301,7 +302,7 @@ catalogue! {
     Explicit(substep: usize, equation: usize) = unlisted("", Hot);
     /// −ρ(0) and Dρ of a linear equation.
     System(substep: usize, equation: usize) = unlisted("", Hot);
-    /// What an iteration computes once.
+    /// The terms that an iteration computes once.
     Preparation(substep: usize, equation: usize) = unlisted("", Hot);
     /// ρ(x) alone, where x ← x − s·h·Σ⁻¹ρ(x) is tried before Newton's method.
     Residual(substep: usize, equation: usize) = unlisted("", Hot);

@@ -1,7 +1,8 @@
 //! The Cayley coordinates of a step, Z = (F − I)(F + I)⁻¹ = Σ z_i E_i, as symbols with their own law of motion.
 //!
-//! Lagrangians that are discretised by Cayley's map are functions of z, and z moves by polynomials: along δF = ηF by
-//! δZ = ½ (I − Z) η (I + Z), along δF = Fη by δZ = ½ (I + Z) η (I − Z). Derivatives of what is written with z hold no inverse.
+//! Lagrangians that are discretised by Cayley's map are functions of z, and z moves by polynomials. Along δF = ηF it
+//! moves by δZ = ½ (I − Z) η (I + Z), along δF = Fη by δZ = ½ (I + Z) η (I − Z). So the derivatives of formulas in z
+//! contain no inverse.
 
 use clebsch_symbolic::{Block, Expr, Group, Property, Role, Shape};
 

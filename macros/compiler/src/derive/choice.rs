@@ -9,7 +9,7 @@ use super::{Bend, Id, InputStep, MatrixForm, MechanicsFormulas, SteeredFormulas,
 /// The direction in which symbols move.
 pub(super) type Direction<'g> = Vec<(Expr<'g>, Expr<'g>)>;
 
-/// What the inputs are chosen with.
+/// The data for the choice of inputs.
 pub struct Steering<'g> {
     /// ℓ(t, h, q, u).
     pub price: Jet<'g>,
@@ -19,7 +19,7 @@ pub struct Steering<'g> {
     pub bounds: Vec<Jet<'g>>,
     /// The weights of the bounds.
     pub weights: Expr<'g>,
-    /// What separates q from q⁺: J(q, q⁺ − q).
+    /// The distance from q to q⁺: J(q, q⁺ − q).
     pub approach: Vec<Expr<'g>>,
 }
 
@@ -42,8 +42,8 @@ pub struct Jet<'g> {
 }
 
 impl<'g> Jet<'g> {
-    /// The derivatives of a scalar: gradients with respect to the symbols that move, each gradient differentiated along each direction
-    /// once, and paired with the velocities of all.
+    /// The derivatives of a scalar. Gradients are taken with respect to the symbols that move. Each gradient is
+    /// differentiated once along each direction, and paired with the velocities of all.
     pub(super) fn of(value: Expr<'g>, directions: &[Direction<'g>]) -> Jet<'g> {
         let mut gradients: Vec<(Expr<'g>, Expr<'g>)> = Vec::new();
         for (symbol, _) in directions.iter().flatten() {
@@ -81,13 +81,13 @@ pub struct Choice<'a, 'g> {
     /// The formulas of the system.
     pub formulas: &'a SystemFormulas<'g>,
     at: Inserted<'g>,
-    /// What the inputs are chosen with.
+    /// The data for the choice of inputs.
     pub steering: &'a Steering<'g>,
-    /// What the inputs do.
+    /// The effect of the inputs.
     pub step: StepOfChoice<'a, 'g>,
 }
 
-/// What inputs do in a step.
+/// The effect of inputs in a step.
 #[derive(Copy, Clone)]
 pub enum StepOfChoice<'a, 'g> {
     /// They move the configuration by themselves.
@@ -96,20 +96,20 @@ pub enum StepOfChoice<'a, 'g> {
     Forced(&'a Bend<'g>),
 }
 
-/// An entry of a symmetric matrix of which the lower triangle is known.
+/// An entry of a symmetric matrix, from its lower triangle.
 fn symmetric<'g>(lower: &[Vec<Expr<'g>>], i: usize, j: usize) -> Expr<'g> {
     if i >= j { lower[i][j] } else { lower[j][i] }
 }
 
 impl<'g> SteeredFormulas<'g> {
-    /// What the choice of inputs needs.
+    /// The formulas for the choice of inputs.
     pub fn choice(&self) -> Option<Choice<'_, 'g>> {
         Choice::of(self, StepOfChoice::Steered(&self.step))
     }
 }
 
 impl<'g> MechanicsFormulas<'g> {
-    /// What a choice of inputs needs, where there is one.
+    /// The formulas for a choice of inputs, if there is one.
     pub fn choice(&self) -> Option<Choice<'_, 'g>> {
         let bend = self.substeps.first()?.variation.as_ref()?.bend.as_ref()?;
         Choice::of(self, StepOfChoice::Forced(bend))

@@ -6,8 +6,8 @@ use clebsch_symbolic::{Chart, Expr, Fraction, Graph, Group, Operation, View, Wor
 use super::{ChartBlock, SystemFormulas};
 use crate::model::{Factor, Side};
 
-/// The residual of a factor, the components of `array` less μ, by the congruence with I ∓ Z of a Cayley chart; `None` if denominators
-/// are left, or there are none.
+/// The residual of a factor, the components of `array` less μ, by the congruence with I ∓ Z of a Cayley chart. `None`
+/// if denominators remain, or if there are none.
 pub(super) fn by_congruence<'g>(
     system: &SystemFormulas<'g>,
     k: usize,
@@ -35,8 +35,8 @@ fn momentum<'g>(group: Group, (left, right): (Expr<'g>, Expr<'g>), coordinates: 
     }
 }
 
-/// The rows of the rotation in a chart of rotation and translation, by the same congruence on matrices of the size of the rotation;
-/// `None` if denominators are left, or there are none.
+/// The rows of the rotation in a chart of rotation and translation, by the same congruence on matrices of the size of
+/// the rotation. `None` if denominators remain, or if there are none.
 pub(super) fn of_rotation<'g>(system: &SystemFormulas<'g>, block: &ChartBlock<'g>, rows: Expr<'g>) -> Option<Expr<'g>> {
     let (factor, graph) = (&system.model.factors[block.factor], system.model.graph);
     let n = factor.group.linear_part()?;

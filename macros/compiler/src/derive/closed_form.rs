@@ -17,11 +17,11 @@ pub(super) fn is_solved_by_predictor<'g>(sources: &Sources<'_, 'g>, blocks: &[us
     identity::vanishes(residual.substitute(&solutions))
 }
 
-/// The closed form for a block of rotations with kinetic energy ½κ|ξ|² whose momenta turn one plane: SO(n) or the rotations of
-/// SE(n) for n ≤ 3, spheres for every n, and unit quaternions. `None` if there is none.
+/// The closed form for a block of rotations with kinetic energy ½κ|ξ|² whose momenta turn one plane. These are SO(n) or
+/// the rotations of SE(n) for n ≤ 3, spheres for every n, and unit quaternions. `None` if there is none.
 ///
-/// x = a/(1 + √(1 − |a|²)) with a = hμ/Σ: the equation hM = ½κ(F − Fᵀ) of a bi-invariant kinetic energy, whose rotation by θ in one plane
-/// has sin θ = |a| and tan(θ/2) = |x|.
+/// x = a/(1 + √(1 − |a|²)) with a = hμ/Σ. It solves the equation hM = ½κ(F − Fᵀ) of a bi-invariant kinetic energy. Its
+/// rotation by θ in one plane has sin θ = |a| and tan(θ/2) = |x|.
 pub(super) fn closed_form<'g>(
     sources: &Sources<'_, 'g>,
     before: &Covector<'g>,

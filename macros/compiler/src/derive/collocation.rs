@@ -10,7 +10,8 @@ use crate::diagnostic::Diagnostics;
 use crate::model::features::{self, Feature, Found};
 use crate::model::{Isotropy, Order, System};
 
-/// Hamilton's equations of H(t, q, p) = ½ (J − A)·Σ⁻¹(J − A) + V with J = J(q, p), a function on the whole linear space of q and p.
+/// Hamilton's equations of H(t, q, p) = ½ (J − A)·Σ⁻¹(J − A) + V with J = J(q, p). H is a function on all of the linear
+/// space of q and p.
 ///
 /// With the velocity ξ = Σ⁻¹(J − A) they are q′ = ξ_Q(q) and p′ = −∂_q(⟨p, ξ_Q(q)⟩ − A·ξ + V), ξ fixed: the extremals of the continuous Clebsch
 /// problem. Their flow keeps J where nothing acts, and the equations of the orbit of q.
@@ -27,13 +28,14 @@ pub struct Collocation<'g> {
     pub is_affine: bool,
 }
 
-/// The scales of covectors that are tried: λ of p = λ μ_Q(q), one over the square of the length of a basis element that moves q.
+/// The scales of covectors that are tried: λ of p = λ μ_Q(q). A scale is one over the square of the length of a basis
+/// element that moves q.
 const SCALES: [(i64, i64); 9] = [(1, 1), (1, 2), (1, 4), (2, 1), (4, 1), (1, 3), (1, 6), (1, 8), (8, 1)];
 
-/// What a step of order 16 collocates; `None` where another order is asked for.
+/// The equations that a step of order 16 collocates; `None` for another order.
 ///
 /// # Errors
-/// What such a step cannot do, at the order that asks for it.
+/// Features that such a step does not support, at the order that asks for it.
 pub(super) fn collocation<'g>(
     sources: &Sources<'_, 'g>,
     energy: &Energy<'g>,
@@ -86,8 +88,8 @@ fn velocities<'g>(sources: &Sources<'_, 'g>, momentum: &[Expr<'g>], slope: Expr<
     parts.map(|xi| (*xi, graph.stack(xi.shape(), entries.by_ref().take(xi.shape().rows).into_list()))).into_list()
 }
 
-/// p = Σ λ_k (μ_k)_Q(q), the motion of q by the components of μ for a velocity: J(q, p) = μ where the columns of the generator of each factor are
-/// orthogonal and of the same length.
+/// p = Σ λ_k (μ_k)_Q(q), the motion of q by the components of μ for a velocity. Then J(q, p) = μ if the columns of the
+/// generator of each factor are orthogonal and of the same length.
 fn lift<'g>(sources: &Sources<'_, 'g>) -> Result<Vec<Expr<'g>>, Diagnostics> {
     let (graph, momentum_map) = (sources.model.graph, &sources.momentum_map);
     let returned = |velocities: &[Expr<'g>]| sources.momenta_of(sources.motion_by(velocities));
@@ -130,7 +132,7 @@ fn check<'g>(sources: &Sources<'_, 'g>, energy: &Energy<'g>, is_free: bool) -> R
     })
 }
 
-/// J is quadratic in (q, p), and kept, where ξ_Q(q) is linear in q or affine.
+/// J is quadratic in (q, p), and conserved, if ξ_Q(q) is linear in q or affine.
 fn check_linear<'g>(sources: &Sources<'_, 'g>, general: &[(Expr<'g>, Expr<'g>)]) -> Result<(), Diagnostics> {
     let leaves = general.iter().zip(&sources.symbols.covectors);
     let directions: Vec<_> = leaves.map(|((_, q), direction)| (*q, *direction)).into_list();

@@ -1,8 +1,10 @@
-//! What the choice of inputs needs: the step that inputs make with its derivatives, and price, bounds and the price of the end with theirs.
+//! The formulas for the choice of inputs: the step that inputs make, price, bounds and the price of the end, all with
+//! their derivatives.
 //!
-//! Small changes of a configuration are motions η, q ↦ Φ_{exp η}(q). A step by F(t, h, q, u) takes them to η′ with
-//! exp η′ = (F⁻¹ exp(η) F)(F⁻¹ F(w)) for a right action and (F(w) F⁻¹)(F exp(η) F⁻¹) for a left one, w = (η, u): to first order
-//! η′ = Ad η + b(w), and to second order ½ b″ + ½ [Ad η, b] or ½ [b, Ad η] more (Baker, Campbell, Hausdorff).
+//! Small changes of a configuration are motions η, q ↦ Φ_{exp η}(q). A step by F(t, h, q, u) takes them to η′, with w =
+//! (η, u). For a right action exp η′ = (F⁻¹ exp(η) F)(F⁻¹ F(w)), for a left one exp η′ = (F(w) F⁻¹)(F exp(η) F⁻¹). To
+//! first order η′ = Ad η + b(w). To second order ½ b″ + ½ [Ad η, b] or ½ [b, Ad η] is added (Baker, Campbell,
+//! Hausdorff).
 
 use clebsch_symbolic::{Block, Chart, Elements, Expr, IntoList, Property, Role, Shape, both, indexed};
 
@@ -137,7 +139,7 @@ pub(super) fn step<'g>(model: &Steered<'g>, formulas: &SystemFormulas<'g>) -> In
     }
 }
 
-/// A factor of a step with what moves it.
+/// A factor of a step with its motion.
 struct Factored<'g> {
     factor: Factor<'g>,
     costate: Expr<'g>,
@@ -170,10 +172,10 @@ impl<'g> Factored<'g> {
     }
 }
 
-/// The second derivatives of β·F⁺ℓd + κ·F⁻ℓd along an edge and the input, and what the input does to both ends.
+/// The second derivatives of β·F⁺ℓd + κ·F⁻ℓd along an edge and the input, and the effect of the input on both ends.
 ///
-/// An edge changes by the motions η of q that leave F as it is, and by the motions ζ of q⁺ alone: exp η′ = exp(Ad η) exp ζ for a right action
-/// and exp ζ exp(Ad η) for a left one, so that ± ½ [Ad η, ζ] joins η′ to second order.
+/// An edge changes by the motions η of q that leave F as it is, and by the motions ζ of q⁺ alone. For a right action
+/// exp η′ = exp(Ad η) exp ζ, for a left one exp ζ exp(Ad η). So ± ½ [Ad η, ζ] joins η′ to second order.
 pub struct Bend<'g> {
     /// Along η, ζ and the inputs.
     pub curvature: Vec<Vec<Expr<'g>>>,
@@ -187,7 +189,7 @@ pub struct Bend<'g> {
     pub by_time: [Expr<'g>; 2],
 }
 
-/// What a choice of the inputs of forces needs of an edge.
+/// The derivatives of an edge for a choice of the inputs of forces.
 pub(super) fn bend<'g>(
     formulas: &SystemFormulas<'g>,
     (before, after): (Expr<'g>, Expr<'g>),

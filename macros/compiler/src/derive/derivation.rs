@@ -1,4 +1,4 @@
-//! The constant `DERIVATION`: the derivation in words and formulas, what it costs, and what was left out and why.
+//! The constant `DERIVATION`: the derivation in words and formulas, its cost, and the parts that were left out and why.
 
 mod conserved;
 mod equations;
@@ -10,11 +10,11 @@ use super::symbols::subscript;
 use super::{MechanicsFormulas, SteeredFormulas, Structure};
 use crate::model::{Discretization, Factor, Motion, System};
 
-/// What lowering found, which the derivation tells.
+/// The results of lowering that the derivation reports.
 pub struct Lowered {
     /// How the code is written, and why: a sentence.
     pub form: String,
-    /// The coefficients of ξᵢξⱼ, i ≤ j, in the kinetic energy, without those that are zero; `None` where code keeps whole matrices.
+    /// The coefficients of ξᵢξⱼ, i ≤ j, in the kinetic energy, without those that are zero; `None` for matrix code.
     pub energy: Option<Vec<(usize, usize, String)>>,
     /// Whether the gradient of a site of a power is gathered from the terms that read it.
     pub is_gathered: bool,
@@ -28,7 +28,7 @@ pub struct Lowered {
 
 /// How a momentum equation is iterated.
 pub struct Iteration {
-    /// What is known of its Jacobian.
+    /// The known structure of its Jacobian.
     pub structure: Structure,
     /// Whether x ← x − s h Σ⁻¹ρ(x) is tried before Newton's method.
     pub tries_fixed_point: bool,
@@ -57,7 +57,7 @@ pub fn derivation(formulas: &MechanicsFormulas<'_>, lowered: &Lowered) -> String
     )
 }
 
-/// What a state holds where steps are made in a plane, and how the code is written.
+/// The form of a state if steps turn in a plane, and the form of the code.
 fn form(formulas: &MechanicsFormulas<'_>, lowered: &Lowered) -> String {
     let is_pushed = formulas.substeps.iter().any(|substep| substep.start.is_some() || substep.end.is_some());
     let in_plane = match (lowered.turns_in_plane, is_pushed) {
@@ -72,7 +72,7 @@ fn form(formulas: &MechanicsFormulas<'_>, lowered: &Lowered) -> String {
     format!("{in_plane}{}\n", lowered.form)
 }
 
-/// What a power is.
+/// The description of a power.
 fn sites(formulas: &MechanicsFormulas<'_>, lowered: &Lowered) -> String {
     let Some(power) = &formulas.model.power else { return String::new() };
     let length = &power.length;
@@ -154,7 +154,7 @@ fn frames(model: &System<'_>) -> String {
     frames + "⟨A, E⟩ stands for the components tr(AᵀE_i); x^ for Σ x_i E_i; h for the step.\n"
 }
 
-/// The kinetic energy in coordinates, for a look at what the cost stands for.
+/// The kinetic energy in coordinates, to check the meaning of the cost.
 fn energy(formulas: &MechanicsFormulas<'_>, lowered: &Lowered) -> String {
     let velocities = formulas.symbols.algebra.iter();
     let names: Vec<String> =

@@ -1,5 +1,5 @@
-//! The discrete Lagrangian ℓd(t, h, q, F) = K(t, h, q, F) + U₀(t, q) + U₁(t + h, Φ_F q): separated, tested for time symmetry, and
-//! composed with its adjoint where that fails.
+//! The discrete Lagrangian ℓd(t, h, q, F) = K(t, h, q, F) + U₀(t, q) + U₁(t + h, Φ_F q). It is separated, tested for
+//! time symmetry, and composed with its adjoint if the test fails.
 
 use clebsch_symbolic::{Elements, Expr, IntoList, identity};
 
@@ -21,7 +21,8 @@ pub struct DiscreteLagrangian<'g> {
     pub couples: bool,
 }
 
-/// The cost K(t, h, q, F): as declared, or h ℓ(ξ) or h/2 (ℓ(q, ξ) + ℓ(Φ_F q, ξ)) of a Lagrangian, with the velocity ξ made from F and h.
+/// The cost K(t, h, q, F), as declared or from a Lagrangian. The latter gives h ℓ(ξ) or h/2 (ℓ(q, ξ) + ℓ(Φ_F q, ξ)),
+/// with the velocity ξ computed from F and h.
 pub(super) fn cost<'g>(model: &Mechanics<'g>) -> Result<Expr<'g>, Diagnostics> {
     let (energy, velocities, discretization) = match &model.kinetic {
         Kinetic::Cost(cost) => return Ok(*cost),
@@ -81,14 +82,15 @@ impl<'g> DiscreteLagrangian<'g> {
         }
     }
 
-    /// The Lagrangian with half of U₀ + U₁ at each end. Its step is that of ℓd between two shifts of the momentum by ½J(q, ∂(U₁ − U₀)),
-    /// which undo each other from one step to the next: both make the same configurations.
+    /// The Lagrangian with half of U₀ + U₁ at each end. Its step is that of ℓd between two shifts of the momentum by
+    /// ½J(q, ∂(U₁ − U₀)). The shifts cancel from one step to the next, so both make the same configurations.
     pub(super) fn balanced(&self) -> DiscreteLagrangian<'g> {
         let half = (self.start + self.end) / 2;
         DiscreteLagrangian { start: half, end: half, ..*self }
     }
 
-    /// Whether ℓd is its own adjoint, up to what no variation sees: K(h, F) = −K(−h, F⁻¹) and likewise for the potentials.
+    /// Whether ℓd is its own adjoint, up to terms that no variation sees: K(h, F) = −K(−h, F⁻¹), and likewise for the
+    /// potentials.
     pub fn is_time_symmetric(&self, model: &System<'g>) -> bool {
         let adjoint = self.adjoint(model);
         let leaves = || model.configurations.iter().map(|leaf| leaf.symbol);
@@ -105,7 +107,8 @@ impl<'g> DiscreteLagrangian<'g> {
         kinetic && identity::equal(&potentials(self), &potentials(&adjoint))
     }
 
-    /// The Lagrangian of a part of the step: the step `h` stands for is `step`, and its start is `later` than that of the whole.
+    /// The Lagrangian of a part of the step. Its step size is `step` in place of `h`, and it starts `later` than the
+    /// step.
     fn of_part(&self, model: &System<'g>, step: Expr<'g>, later: Expr<'g>) -> DiscreteLagrangian<'g> {
         let scaled = |part: Expr<'g>| part.substitute(&[(model.step_size, step)]);
         DiscreteLagrangian {
@@ -117,9 +120,9 @@ impl<'g> DiscreteLagrangian<'g> {
     }
 }
 
-/// The discrete Lagrangians whose steps make one step, with the number of parts that the step has: ℓd itself where it has the order
-/// asked for, else half a step of ℓd and half a step of its adjoint, and then ℓd itself again, whose Legendre transform is to be
-/// inverted.
+/// The discrete Lagrangians whose steps make one step, with the number of parts of the step. If ℓd has the required
+/// order, it is ℓd itself. Otherwise the parts are half a step of ℓd and half a step of its adjoint. ℓd itself follows
+/// them, since its Legendre transform is inverted.
 pub(super) fn substeps<'g>(
     model: &Mechanics<'g>,
     lagrangian: &DiscreteLagrangian<'g>,

@@ -220,7 +220,7 @@ pub(super) fn uniform<'g>(symbols: &Symbols<'g>, energy: Expr<'g>, inertia: Expr
     (is_still && symbols.algebra.iter().all(is_multiple)).then_some(kappa)
 }
 
-/// V(t, q): the declared potential and what the cost holds of one.
+/// V(t, q): the declared potential and the potential in the cost.
 pub(super) fn potential<'g>(model: &System<'g>, lagrangian: &DiscreteLagrangian<'g>) -> Result<Expr<'g>, Diagnostics> {
     let (h, graph) = (model.step_size, model.graph);
     let held = if lagrangian.couples { lagrangian.kinetic.substitute(&identities(model)) } else { graph.integer(0) };

@@ -1,4 +1,4 @@
-//! A momentum equation: its residual in the chart, how it is solved, and what is known of its Jacobian.
+//! A momentum equation: its residual in the chart, its solution, and the structure of its Jacobian.
 
 use std::ops::Deref;
 
@@ -29,11 +29,12 @@ pub struct MomentumEquation<'g> {
     pub sine_squared: Option<Expr<'g>>,
     /// The closed form in the chart of the sine, where there is one.
     pub(super) sine: Option<SineForm<'g>>,
-    /// What is known of its Jacobian.
+    /// The known structure of its Jacobian.
     pub structure: Structure,
     /// The coordinates that were put in and have inertia in common with its own.
     pub coupled: Vec<usize>,
-    /// Whether Dρ at x = 0 and μ = 0 is Σ/(s·h), before coordinates were put in: not so where a cost adds to it at every step size.
+    /// Whether Dρ at x = 0 and μ = 0 is Σ/(s·h), before the substitution of coordinates. It is not if a cost adds to it
+    /// at every step size.
     pub is_inertial: bool,
     /// Whether it depends on the configuration or on the time.
     pub moves: bool,
@@ -42,7 +43,7 @@ pub struct MomentumEquation<'g> {
 /// How an equation is solved.
 #[derive(Copy, Clone, PartialEq, Eq, Debug)]
 pub enum Solution {
-    /// By the predictor x = s·h·Σ⁻¹μ, or by substituting what is known into equations of constant slope.
+    /// By the predictor x = s·h·Σ⁻¹μ, or by substituting known coordinates into equations of constant slope.
     Explicit,
     /// By a formula with one square root.
     ClosedForm,
@@ -61,7 +62,8 @@ pub enum Structure {
     Dense,
     /// Symmetric for all x: LDLᵀ.
     Symmetric,
-    /// Blocks of unknowns, by their positions, each of which depends on itself and on those before it: one small system for each.
+    /// Blocks of unknowns, by their positions. Each depends on itself and on those before it: one small system for
+    /// each.
     Triangular(Vec<Vec<usize>>),
     /// δ ↦ ⟨δ^B, E⟩ for skew matrices of so many rows: by the Schur form of B.
     Sylvester(usize),
@@ -78,7 +80,7 @@ pub struct SineForm<'g> {
     pub(super) directional: Expr<'g>,
 }
 
-/// What an equation is derived from.
+/// The data from which an equation is derived.
 pub(super) struct Sources<'a, 'g> {
     pub(super) model: &'a Mechanics<'g>,
     pub(super) system: &'a SystemFormulas<'g>,
@@ -167,8 +169,9 @@ pub(super) fn is_diagonal(matrix: Expr<'_>) -> bool {
     matrix.shape().positions().filter(|(i, j)| i != j).all(|(i, j)| identity::vanishes(matrix.entry(i, j)))
 }
 
-/// Whether D(x) = F − I is put in late and its products are not distributed, which would make them many times longer: in a chart with
-/// roots, and with exponentials where the cost couples configuration and group element.
+/// Whether D(x) = F − I is substituted late and its products are not distributed, because that would make them many
+/// times longer. This is so in a chart with roots, and with exponentials if the cost couples configuration and group
+/// element.
 pub(super) fn is_kept(chart: Chart, couples: bool) -> bool {
     chart == Chart::Root || chart == Chart::Exponential && couples
 }

@@ -45,8 +45,8 @@ struct Residual<'g> {
     cleared: bool,
 }
 
-/// A block whose equation is linear is solved at once, x = s·h·Σ⁻¹μ, and its solution put into the others, where it often leaves
-/// nothing: b × hM_v = 0 for a body about its centre of mass.
+/// A block whose equation is linear is solved at once, x = s·h·Σ⁻¹μ. Its solution is substituted into the others, where
+/// it often leaves nothing: b × hM_v = 0 for a body about its centre of mass.
 fn substitute_explicit<'g>(sources: &Sources<'_, 'g>, residuals: &mut [Residual<'g>]) {
     for i in 0..residuals.len() {
         let Some(solution) = explicit(sources, residuals, i) else { continue };

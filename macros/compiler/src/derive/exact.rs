@@ -18,8 +18,9 @@ pub(super) fn is_free_rotation(model: &Mechanics<'_>, k: usize) -> bool {
     is_exact(model) && !model.factors[k].group.is_translation()
 }
 
-/// What velocities are made by: for the action of the free motion, which is no formula of F, in a cost with the same kinetic energy and
-/// the same symmetries. What does not depend on the discretisation is derived from that.
+/// The discretisation of velocities that stands in for the action of the free motion, which is no formula of F. Its
+/// cost has the same kinetic energy and the same symmetries. All formulas that do not depend on the discretisation are
+/// derived from it.
 pub(super) fn stand_in(model: &Mechanics<'_>, k: usize, discretization: Discretization) -> Discretization {
     match (discretization, model.factors[k].group) {
         (Discretization::Exact, Group::UnitQuaternions) => Discretization::Cayley,

@@ -1,7 +1,7 @@
 //! Forces by the discrete Lagrange–d'Alembert principle: half of the impulse h·f at each end of a step.
 //!
-//! r(F) = N + h/2 f(t, q, ξ) and N⁺ = r⁺(F) + h/2 f(t + h, q⁺, ξ), with the velocity ξ = ξ(F)/h of the step at both ends. The part of f at
-//! ξ = 0 is a kick; the rest joins the momentum equation as the coupling of a cost does.
+//! r(F) = N + h/2 f(t, q, ξ) and N⁺ = r⁺(F) + h/2 f(t + h, q⁺, ξ), with the velocity ξ = ξ(F)/h of the step at both
+//! ends. The part of f at ξ = 0 is a kick. The other part joins the momentum equation as the coupling of a cost does.
 
 use clebsch_symbolic::{Elements, Expr, IntoList, identity};
 
@@ -14,7 +14,8 @@ use crate::model::{Discretization, Mechanics, Order};
 pub struct EdgeForce<'g> {
     /// The impulse at the start that does not depend on the velocity, a function of t, q and u; `None` if there is none.
     pub start: Option<Vec<Expr<'g>>>,
-    /// The rest of the impulse at the start, a function of t, q, F and u that vanishes at F = I; `None` if there is none.
+    /// The part of the impulse at the start that vanishes at F = I; `None` if there is none. It is a function of t, q, F
+    /// and u.
     pub start_moving: Option<Vec<Expr<'g>>>,
     /// The impulse at the end, a function of F and u and of t and q there.
     pub end: Vec<Expr<'g>>,
@@ -62,8 +63,9 @@ fn velocities<'a, 'g>(model: &'a Mechanics<'g>) -> &'a [Expr<'g>] {
     model.force.as_ref().map_or(&[], |force| &force.velocities)
 }
 
-/// The replacement of ξ by ξ(F)/h: by the logarithm where the Lagrangian is discretised so or where Cayley's map leaves a factor, by
-/// the projection where that is asked for, else by Cayley's map. Both ends see the same velocity, so it has to be odd: ξ(F⁻¹) = −ξ(F).
+/// The replacement of ξ by ξ(F)/h. It is the logarithm if the Lagrangian is discretised so or if Cayley's map leaves a
+/// factor. It is the projection if the declaration asks for it, and else Cayley's map. Both ends see the same velocity,
+/// so it has to be odd: ξ(F⁻¹) = −ξ(F).
 fn moving<'g>(model: &Mechanics<'g>, part: Expr<'g>) -> Vec<(Expr<'g>, Expr<'g>)> {
     let chosen = model.kinetic.discretization().unwrap_or(Discretization::Cayley);
     let has_cayley =

@@ -12,13 +12,14 @@ use super::{Entry, Id, Reference, latex};
 pub struct Formula<'g> {
     /// Which it is.
     pub id: Id,
-    /// What it is, in words.
+    /// Its name, in words.
     pub title: &'static str,
     /// The left side, `J(q, p)`.
     pub symbol: String,
-    /// What is computed; one expression for each factor or leaf.
+    /// The expressions that are computed; one for each factor or leaf.
     pub value: Vec<Expr<'g>>,
-    /// What is written as the right side, where that is not what is computed: F⁻¹ is written, the inverse of its group computed.
+    /// The right side of the print, if it differs from the computed expressions. For example F⁻¹ is written, and the
+    /// inverse of its group is computed.
     pub(super) written: Option<Vec<Expr<'g>>>,
     /// Where it comes from.
     pub source: Option<Reference>,
@@ -67,7 +68,7 @@ impl<'g> Formula<'g> {
         Formula { wording: Wording::Shorter, ..Formula::new(id, symbol, value) }
     }
 
-    /// The same formula, of which other expressions are computed than are written.
+    /// The same formula with other expressions to compute than those in print.
     pub(super) fn computed_as(self, value: Vec<Expr<'g>>) -> Formula<'g> {
         if value == self.value { self } else { Formula { written: Some(self.value), value, ..self } }
     }
@@ -86,7 +87,7 @@ impl<'g> Formula<'g> {
         self.expressions().each(|value| value.shape())
     }
 
-    /// What is written.
+    /// The expressions in print.
     fn expressions(&self) -> &[Expr<'g>] {
         self.written.as_deref().unwrap_or(&self.value)
     }

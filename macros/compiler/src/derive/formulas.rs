@@ -1,4 +1,4 @@
-//! The value of the stage `derive`: all that follows from a model, and what is asked of it.
+//! The value of the stage `derive`: all that follows from a model, and the questions that later stages ask of it.
 
 use std::fmt;
 use std::ops::Deref;
@@ -12,7 +12,7 @@ use super::{
 };
 use crate::model::{Isotropy, LeafSpace, Mechanics, Steered};
 
-/// What is derived, as matrix expressions.
+/// The derived formulas, as matrix expressions.
 pub enum Formulas<'g> {
     /// Of mechanics.
     Mechanics(Box<MechanicsFormulas<'g>>),
@@ -20,9 +20,9 @@ pub enum Formulas<'g> {
     Steered(Box<SteeredFormulas<'g>>),
 }
 
-/// What is derived of a configuration that inputs move.
+/// The formulas of a configuration that inputs move.
 pub struct SteeredFormulas<'g> {
-    /// What follows from the action and from the prices.
+    /// The formulas of the action and of the prices.
     pub system: SystemFormulas<'g>,
     /// The model that all of it is derived from.
     pub model: Steered<'g>,
@@ -30,9 +30,9 @@ pub struct SteeredFormulas<'g> {
     pub step: InputStep<'g>,
 }
 
-/// What is derived of mechanics.
+/// The formulas of mechanics.
 pub struct MechanicsFormulas<'g> {
-    /// What follows from the action and from the prices.
+    /// The formulas of the action and of the prices.
     pub system: SystemFormulas<'g>,
     /// The model that all of it is derived from.
     pub model: Mechanics<'g>,
@@ -52,13 +52,14 @@ pub struct MechanicsFormulas<'g> {
     pub energy: Energy<'g>,
     /// V(q), that of the cost included.
     pub potential_energy: Expr<'g>,
-    /// ½J(q, ∂(U₁ − U₀)) for each factor, by which the momentum of a step of first order is ahead of its configuration; `None` if it is not.
+    /// ½J(q, ∂(U₁ − U₀)) for each factor: the momentum of a step of first order is ahead of its configuration by it.
+    /// `None` if it is not ahead.
     pub stagger: Option<Vec<Expr<'g>>>,
     /// Whether a step of first order is one of second order but for that shift.
     pub is_staggered: bool,
-    /// What ties the sites of a power to each other.
+    /// The terms that tie the sites of a power to each other.
     pub links: Vec<SiteTerm<'g>>,
-    /// What is conserved.
+    /// The conserved quantities.
     pub symmetries: Symmetries<'g>,
     /// The declared discrete Lagrangian.
     pub lagrangian: DiscreteLagrangian<'g>,
@@ -68,10 +69,11 @@ pub struct MechanicsFormulas<'g> {
     pub legendre_next: Vec<Expr<'g>>,
     /// J(q, ∂U₁), the last kick of F⁺ℓd, to be taken at q⁺; `None` if there is none.
     pub legendre_kick: Option<Vec<Expr<'g>>>,
-    /// What steps are differentiated with respect to, where that is asked for.
+    /// The quantities with respect to which steps are differentiated, if the declaration asks for that.
     pub quantities: Vec<Quantity<'g>>,
-    /// The substeps of a step and, behind the two of a composed one, the declared Lagrangian itself, whose Legendre transform is to be
-    /// inverted: one of the whole length, or two of half the length where the Lagrangian is not time-symmetric.
+    /// The substeps of a step. A time-symmetric Lagrangian has one of full length, others have two of half the length.
+    /// The two of a composed step are followed by the declared Lagrangian itself, since its Legendre transform is
+    /// inverted.
     pub substeps: Vec<Substep<'g>>,
     /// How many of the substeps make a step: two where ℓd is composed with its adjoint.
     pub stepped: usize,
@@ -81,7 +83,7 @@ pub struct MechanicsFormulas<'g> {
     pub collocation: Option<Collocation<'g>>,
     /// Whether a step is exact for lack of a potential, so that its order says nothing.
     pub is_exact: bool,
-    /// The force in 𝔤* for each factor, a function of t, q, ξ and u; `None` if nothing acts beside the potential.
+    /// The force in 𝔤* for each factor, a function of t, q, ξ and u; `None` if the potential is the only force.
     pub covector: Option<Vec<Expr<'g>>>,
 }
 
@@ -148,7 +150,8 @@ impl MechanicsFormulas<'_> {
         is_timed(&self.model, &self.lagrangian)
     }
 
-    /// Whether a step turns a point on a sphere along a great circle, its momentum M = wqᵀ − qwᵀ as it is: then it can be made in (q, w).
+    /// Whether a step turns a point on a sphere along a great circle, and leaves its momentum M = wqᵀ − qwᵀ as it is.
+    /// Steps can then be made in (q, w).
     pub fn follows_great_circles(&self) -> bool {
         let ([factor], [leaf], [substep]) =
             (self.model.factors.as_slice(), self.model.configurations.as_slice(), self.substeps.as_slice())

@@ -27,7 +27,7 @@ pub(super) fn left_side(symbol: &str) -> String {
     text
 }
 
-/// The length of what stands together at the start of a text: a word, a subscript, or one character.
+/// The length of the unit at the start of a text: a word, a subscript, or one character.
 fn length_of_word(first: char, text: &str) -> usize {
     let behind_word = text.find(|c: char| !(c.is_ascii_alphanumeric() || c == '_')).unwrap_or(text.len());
     match first {

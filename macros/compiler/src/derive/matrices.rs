@@ -64,7 +64,7 @@ impl<'g> Inserted<'g> {
 }
 
 impl<'g> MechanicsFormulas<'g> {
-    /// What the kernels of an edge compute: with whole matrices derivatives along one motion, of which loops make the columns.
+    /// The outputs of the kernels of an edge: in matrix code derivatives along one motion, and loops make the columns.
     pub fn edge_kernels(
         &self,
         index: usize,

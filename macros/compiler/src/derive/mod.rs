@@ -1,9 +1,9 @@
 //! The third stage: from the model to its formulas, by calculus on matrices and groups.
 //!
-//! Everything is derived from one discrete Lagrangian ℓd = K(t, h, q, F) + U₀(t, q) + U₁(t + h, Φ_F q), the cost with the potential
-//! placed by the order, in the form of the discrete Clebsch problem that holds for every group: solve
-//! r(F) = T* ∂_F K − J(q, ∂_q K) = N + J(q, ∂U₀) for F, move, and let N⁺ be the other trivialisation of ∂_F K (which is Ad* of
-//! r where K does not depend on q) plus J(q⁺, ∂U₁).
+//! Everything is derived from one discrete Lagrangian ℓd = K(t, h, q, F) + U₀(t, q) + U₁(t + h, Φ_F q). K is the cost,
+//! and the order places the potential. The form of a step is the discrete Clebsch problem, which holds for every group.
+//! Solve r(F) = T* ∂_F K − J(q, ∂_q K) = N + J(q, ∂U₀) for F, and move. Then N⁺ is the other trivialisation of ∂_F K
+//! plus J(q⁺, ∂U₁). If K does not depend on q, that trivialisation is Ad* of r.
 
 mod catalogue;
 mod cayley;
@@ -160,7 +160,7 @@ fn mechanics(model: Mechanics<'_>) -> Result<MechanicsFormulas<'_>, Diagnostics>
     Ok(formulas)
 }
 
-/// What follows from the action and from prices alone.
+/// The formulas of the action and of prices alone.
 fn system<'g>(model: Rc<System<'g>>, discretization: Option<Discretization>) -> SystemFormulas<'g> {
     let mut system = SystemFormulas::new(model, discretization);
     system.steering = system.chosen_by();
@@ -168,7 +168,7 @@ fn system<'g>(model: Rc<System<'g>>, discretization: Option<Discretization>) -> 
     system
 }
 
-/// What is left without mechanics: the action, and what the choice of inputs needs.
+/// The formulas without mechanics: the action, and those for the choice of inputs.
 fn steered(model: Steered<'_>) -> SteeredFormulas<'_> {
     let system = system(model.system.clone(), None);
     SteeredFormulas { step: control::step(&model, &system), model, system }

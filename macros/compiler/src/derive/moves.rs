@@ -1,4 +1,5 @@
-//! What a move runs: elements as increments D = F − I and in the chart, so that what is near the identity is written without cancellation.
+//! The formulas that a move runs. Elements are increments D = F − I, in the chart, so that values near the identity are
+//! computed without cancellation.
 
 use clebsch_symbolic::{Chart, Elements, Expr, Group, IntoElements, IntoList, Property, Role, Shape, identity};
 
@@ -40,8 +41,8 @@ pub(super) fn from_increment<'g>(group: Group, increment: Expr<'g>) -> Expr<'g> 
     if group.is_translation() { increment } else { group.identity(increment.graph()) + increment }
 }
 
-/// An expression with I + D put in for F. Products are distributed, so that what cancels does so; but not around an inverse, where that
-/// only makes them many times longer: there F occurs as F − I and F + I.
+/// An expression with I + D put in for F. Products are distributed, so that terms cancel. Products around an inverse
+/// are not, since that only makes them many times longer: there F occurs as F − I and F + I.
 pub(super) fn inserted<'g>(expression: Expr<'g>, elements: &[(Expr<'g>, Expr<'g>)]) -> Expr<'g> {
     let inserted = expression.substitute(elements);
     if inserted.has_inverse() { inserted } else { inserted.expand() }
@@ -99,7 +100,8 @@ impl<'g> MechanicsFormulas<'g> {
         self.model.factors.iter().enumerate().map(increment).into_list()
     }
 
-    /// q⁺ = Φ_F(q) with F = I + D: for linear actions q + D q, without cancellation. Where sums keep their rests, what is added to q.
+    /// q⁺ = Φ_F(q) with F = I + D: for linear actions q + D q, without cancellation. With compensated sums, the
+    /// increment of q.
     pub(super) fn advance(&self) -> Vec<Expr<'g>> {
         if !self.is_compensated() {
             return self.at_increments(&self.model.action);
@@ -108,8 +110,9 @@ impl<'g> MechanicsFormulas<'g> {
         self.displacements().into_each(|added| added.substitute(&inverses))
     }
 
-    /// M⁺ = Ad*_{F⁻¹} M for a left action, Ad*_F M for a right one, with F = I + D; the other trivialisation of ∂_F K where the cost couples.
-    /// Where sums keep their rests, what is added to what was solved for. `None` where M does not change.
+    /// M⁺ = Ad*_{F⁻¹} M for a left action, Ad*_F M for a right one, with F = I + D. If the cost couples, it is the
+    /// other trivialisation of ∂_F K. With compensated sums, the increment of the momentum that was solved for. `None`
+    /// where M does not change.
     pub(super) fn momentum_after(&self, substep: &Substep<'g>) -> Option<Vec<Expr<'g>>> {
         if let Some(other) = &substep.other {
             return Some(self.at_increments(other));
@@ -122,8 +125,8 @@ impl<'g> MechanicsFormulas<'g> {
 
     /// q⁺ = q + α x_Q(q) + β x_Q(x_Q(q)) of vectors that turn in one plane, without the matrix of the turn.
     ///
-    /// For each leaf from q and the chart coordinates, or q⁺ − q where sums keep their rests; `None` where a leaf is no vector or does not
-    /// move like that.
+    /// For each leaf from q and the chart coordinates, or q⁺ − q with compensated sums. `None` if a leaf is no vector
+    /// or does not move like that.
     ///
     /// The increments D = αZ + βZ² of the group elements are applied one Z after the other, as cross products in space.
     pub fn displaced(&self) -> Option<Vec<Expr<'g>>> {

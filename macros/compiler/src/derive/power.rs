@@ -1,4 +1,5 @@
-//! What ties the sites of a power to each other: the gradient of each term, differentiated once for all indices.
+//! The terms that tie the sites of a power to each other: the gradient of each term, differentiated once for all
+//! indices.
 
 use clebsch_symbolic::{Elements, Expr, IntoList, Role};
 
@@ -23,7 +24,8 @@ pub struct Home<'g> {
 }
 
 impl<'g> SiteTerm<'g> {
-    /// For each place of the gradient, the term that has a given site there: at most one of a sum over one index, or of none. `None` where there are more.
+    /// For each place of the gradient, the term that has a given site there. A sum over one index, or over none, has at
+    /// most one. `None` where there are more.
     pub fn homes(&self, power: &Power<'g>) -> Option<Vec<Home<'g>>> {
         self.gradient.iter().map(|(place, _)| self.home(power, &power.places[*place])).collect()
     }
@@ -47,9 +49,10 @@ impl<'g> SiteTerm<'g> {
 pub struct Stencil<'g> {
     /// The sites that it reads, whose numbers go on from those of the power; the symbol of the index stands for the site.
     pub places: Vec<SiteIndex<'g>>,
-    /// What every site has: one expression for each leaf of its configuration.
+    /// The part that every site has: one expression for each leaf of its configuration.
     pub gradient: Vec<Expr<'g>>,
-    /// What only some have, or what depends on the index of the term: the numbers of the term, and of the place in its gradient.
+    /// The parts that only some sites have, or that depend on the index of the term. Each is given by the number of the
+    /// term, and that of the place in its gradient.
     pub others: Vec<(usize, usize)>,
 }
 
@@ -99,7 +102,7 @@ impl<'g> Stencil<'g> {
     }
 }
 
-/// Whether a symbol is another one for each index of a term: the index itself, or what a field has there.
+/// Whether a symbol is another one for each index of a term: the index itself, or the value of a field there.
 fn is_of_term<'g>(power: &Power<'g>, symbol: Expr<'g>) -> bool {
     let mut entries =
         power.parameters.iter().filter(|parameter| parameter.per_site).flat_map(|parameter| &parameter.leaves);

@@ -1,4 +1,4 @@
-//! What iterations start from, and equations in the form in which they are solved.
+//! The start of iterations, and equations in the form in which they are solved.
 
 use clebsch_symbolic::{Elements, Expr, IntoElements, IntoList, Shape, both};
 
@@ -7,7 +7,8 @@ use super::symbols::{at_zero, entries, rows_at};
 use super::{MatrixForm, MechanicsFormulas, MomentumEquation, Solution, Substep};
 
 impl<'g> MechanicsFormulas<'g> {
-    /// Whether an equation is started from, or solved by, what is right to first order in h: Σ does not change, and nothing better is known.
+    /// Whether an equation is started from, or solved by, a solution that is right to first order in h. This is so if Σ
+    /// does not change, and nothing better is known.
     pub(super) fn is_predicted(&self, equation: &MomentumEquation<'g>) -> bool {
         let is_known = matches!(equation.solution, Solution::Linear | Solution::FreeRotation);
         equation.formula.is_none() && !is_known && !self.inertia_moves()
@@ -33,7 +34,7 @@ impl<'g> MechanicsFormulas<'g> {
         velocity.into_iter().take(count).zip(components).map(coordinate).into_list()
     }
 
-    /// The same for all components of each block at once, as code with whole matrices computes it; `None` where there is none.
+    /// The same for all components of each block at once, as matrix code computes it; `None` if there is none.
     pub fn whole_predictor(&self, index: usize, number: usize) -> Option<Vec<Expr<'g>>> {
         let substep = self.substeps.get(index)?;
         let equation = substep.equations.get(number).filter(|equation| self.is_predicted(equation))?;

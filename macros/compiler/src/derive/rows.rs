@@ -1,4 +1,4 @@
-//! The rows of the table of formulas, made of what was derived.
+//! The rows of the table of formulas, from the derived expressions.
 
 mod energy;
 mod motions;
@@ -13,7 +13,7 @@ use crate::model::{LeafSpace, Motion};
 /// More conserved momenta are told by the first and the last of them.
 pub(super) const MOST_LISTED: usize = 16;
 
-/// What formulas call things: the user's names, and the letters of symbols that differ in their subscripts.
+/// The names in formulas: those of the user, and the letters of symbols that differ in their subscripts.
 struct Names {
     q: String,
     f: String,
@@ -46,7 +46,7 @@ impl<'g> SystemFormulas<'g> {
         }
     }
 
-    /// The action and what follows from it alone.
+    /// The action and the formulas that follow from it alone.
     fn rows_of_action(&self, Names { q, f, xi, .. }: &Names) -> [Formula<'g>; 2] {
         let action = Formula::new(Id::Action, format!("Φ_{f}({q})"), self.model.action.clone());
         [
@@ -66,7 +66,7 @@ impl<'g> SystemFormulas<'g> {
         parts.each(|part| part.substitute(&inverses))
     }
 
-    /// What vanishes where q lies on its groups. Those of SO(n) and of the unit sphere are the runtime's.
+    /// The terms that vanish where q lies on its groups. Those of SO(n) and of the unit sphere are the runtime's.
     fn row_of_membership(&self) -> Formula<'g> {
         let mut equations = Vec::new();
         for leaf in &self.model.configurations {
@@ -99,7 +99,7 @@ impl<'g> SteeredFormulas<'g> {
         self.table.get_or_init(|| FormulaTable::new(self.rows()))
     }
 
-    /// What inputs move, what they cost, and what binds them.
+    /// The increments, the prices and the bounds of inputs.
     fn rows(&self) -> Vec<Formula<'g>> {
         let names = self.names();
         let Names { q, u, xi, d, .. } = &names;
@@ -145,7 +145,8 @@ impl<'g> MechanicsFormulas<'g> {
         rows
     }
 
-    /// How momenta are made of covectors, how both are carried along, and momenta as matrices; what lies on a group.
+    /// The formulas of momenta: how they are computed from covectors, how both are carried along, and momenta as
+    /// matrices. Also the membership of groups.
     fn rows_of_momenta(&self, Names { q, f, mu, p, .. }: &Names) -> [Formula<'g>; 6] {
         let (factors, symbols) = (&self.model.factors, &self.symbols);
         let coadjoint = Formula::new(Id::Coadjoint, format!("Ad*_{f} {mu}"), self.coadjoint.clone());

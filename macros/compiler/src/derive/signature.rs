@@ -5,8 +5,8 @@ use clebsch_symbolic::{Expr, Matrix, Property, indexed};
 #[cfg(test)]
 mod tests;
 
-/// The numbers of positive and of negative squares in ½ ξ·Σξ, if they are the same for several positive parameters: scalars and entries
-/// of vectors positive, matrices positive definite.
+/// The numbers of positive and of negative squares in ½ ξ·Σξ, if they are the same for several positive parameters.
+/// Scalars and entries of vectors are positive, and matrices positive definite.
 pub(super) fn signature(inertia: Expr<'_>) -> Option<(usize, usize)> {
     let at = |seed: u64| squares(&inertia.evaluate(&mut |symbol| typical(symbol, seed)));
     let first = at(0)?;

@@ -11,7 +11,8 @@ use crate::model::{Mechanics, Order};
 
 /// A step of drifts and kicks, with a force gradient where the potential is a formula.
 pub struct Splitting<'g> {
-    /// U = −h b V + h³ g G·Σ⁻¹G with G = J(q, ∂V): what a kick of the weights b and g adds to the discrete Lagrangian.
+    /// The share of a kick of the weights b and g in the discrete Lagrangian: U = −h b V + h³ g G·Σ⁻¹G with
+    /// G = J(q, ∂V).
     pub potential: Expr<'g>,
     /// J(q, ∂U) for each factor.
     pub kick: Vec<Expr<'g>>,

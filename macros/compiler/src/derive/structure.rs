@@ -1,7 +1,8 @@
-//! What is known of the Jacobian of a momentum equation before any number is: coordinates that the others determine, linear
-//! equations, symmetric and block triangular Jacobians.
+//! The structure of the Jacobian of a momentum equation that is known before any number is. These are coordinates that
+//! the others determine, linear equations, symmetric and block triangular Jacobians.
 //!
-//! Entries are evaluated at random points of a prime field, so that what cancels counts as zero however it is written.
+//! Entries are evaluated at random points of a prime field, so that terms that cancel count as zero, however they are
+//! written.
 
 mod pattern;
 mod sylvester;
@@ -18,8 +19,9 @@ const LARGEST: usize = 20;
 
 /// The equations, to be solved in this order, that an equation for Newton's method falls into.
 ///
-/// Coordinates whose slope in their own equation is constant are put into the others and follow when these are solved, as long as
-/// those stay affine in the momentum, which the path from the identity relies on, or become linear and regular for every momentum.
+/// If the slope of a coordinate in its own equation is constant, that equation is solved for it, and the solution
+/// substituted into the others. There are two conditions. The others stay affine in the momentum, which the path from
+/// the identity needs, or they become linear and regular for every momentum.
 pub(super) fn specialised<'g>(sources: &Sources<'_, 'g>, equation: MomentumEquation<'g>) -> Vec<MomentumEquation<'g>> {
     if equation.solution != Solution::Newton {
         return vec![equation];
@@ -171,8 +173,9 @@ impl<'a, 'b, 'g> Reduced<'a, 'b, 'g> {
         expression.substitute(&blocks.map(|block| (block.coordinates, value(block))).into_list())
     }
 
-    /// Whether a path from the identity leads to the solution, as it is affine in the momentum, or none is needed, as a linear equation
-    /// is regular for every momentum; and whether the orientation at its start is known.
+    /// Whether a path from the identity leads to the solution, or none is needed, and the orientation at its start is
+    /// known. A path leads there if the equation is affine in the momentum. A linear equation that is regular for every
+    /// momentum needs none.
     fn is_solvable(&self) -> bool {
         let is_regular = self.pattern.is_linear() && self.pattern.has_constant_determinant();
         let is_oriented = self.coupled().is_empty() || self.pattern.connected().len() == 1;

@@ -1,4 +1,4 @@
-//! A substep: one discrete Lagrangian with what a step of it needs.
+//! A substep: one discrete Lagrangian with the formulas of its step.
 
 use clebsch_symbolic::{Chart, Elements, Expr, IntoElements, IntoList, identity, indexed};
 
@@ -11,20 +11,20 @@ use crate::diagnostic::{Diagnostics, bail};
 use crate::model::features::{self, Feature, Found};
 use crate::model::{ChartChoice, Discretization, Factor, Mechanics, System};
 
-/// One discrete Lagrangian with what a step of it needs.
+/// One discrete Lagrangian with the formulas of its step.
 pub struct Substep<'g> {
     /// Its part of the step: h is to be read as h divided by this.
     pub divisor: i64,
-    /// The discrete Lagrangian, in terms of the whole step h.
+    /// The discrete Lagrangian, in terms of the step h, not of the substep.
     pub lagrangian: DiscreteLagrangian<'g>,
-    /// How much later than the whole step it starts.
+    /// How much later than the step it starts.
     pub begins: Expr<'g>,
-    /// How much later than the start of the whole step it ends.
+    /// How much later than the start of the step it ends.
     pub ends: Expr<'g>,
     /// The impulse before the solve for each factor, J(q, ∂U₀(q)) and `rest`, which is apart where sums are compensated; `None` if there is
     /// none.
     pub start: Option<Vec<Expr<'g>>>,
-    /// −r(q, I) for each factor, what a coupled cost or a term A·ξ gives at F = I; `None` if nothing.
+    /// −r(q, I) for each factor, the value of a coupled cost or a term A·ξ at F = I; `None` if it vanishes.
     pub rest: Option<Vec<Expr<'g>>>,
     /// J(q, ∂U₁(q)) for each factor, after the move; `None` if there is none.
     pub end: Option<Vec<Expr<'g>>>,
@@ -32,17 +32,17 @@ pub struct Substep<'g> {
     pub equations: Vec<MomentumEquation<'g>>,
     /// For each factor: whether N⁺ = M, because both trivialisations of ∂_F K agree and the cost does not couple.
     pub unchanged: Vec<bool>,
-    /// The momentum after the move for each factor, the other trivialisation of ∂_F K at (q, F): where the cost couples, or r(I)
-    /// changes with the time.
+    /// The momentum after the move for each factor, the other trivialisation of ∂_F K at (q, F). It is there if the
+    /// cost couples, or if r(I) changes with the time.
     pub other: Option<Vec<Expr<'g>>>,
-    /// What acts beside the potential; `None` if nothing does.
+    /// The force in addition to the potential; `None` if there is none.
     pub force: Option<EdgeForce<'g>>,
     /// Second derivatives of the discrete Lagrangian, where they are asked for.
     pub variation: Option<EdgeDerivatives<'g>>,
 }
 
 impl<'g> Substep<'g> {
-    /// The substep of a discrete Lagrangian that starts `begins` after the whole step.
+    /// The substep of a discrete Lagrangian that starts `begins` after the step.
     pub(super) fn new(
         sources: Sources<'_, 'g>,
         variations: &variation::Source<'_, 'g>,
@@ -148,8 +148,8 @@ pub(super) fn legendre<'g>(
     (before, after)
 }
 
-/// Takes the chart of the sine for the rotations that every substep solves in closed form: there the solution needs no root and the
-/// increment one division, where Cayley's chart has the tangent of half the angle to be undone.
+/// Takes the chart of the sine for the rotations that every substep solves in closed form. There the solution needs no
+/// root and the increment one division. In Cayley's chart the tangent of half the angle has to be converted.
 pub(super) fn adopt_sine<'g>(symbols: &mut Symbols<'g>, substeps: &mut [Substep<'g>]) {
     let count = substeps.len();
     for block in symbols.blocks.clone() {

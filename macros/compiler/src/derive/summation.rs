@@ -1,10 +1,10 @@
-//! Compensated summation: what a step adds to q and N, so that the sums can keep what rounding takes off.
+//! Compensated summation: the increments that a step adds to q and N, so that sums can store their rounding errors.
 //!
 //! ```text
 //! q⁺ = q + (Φ_{I+D}(q) − q),    M⁺ = M + (Ad*_{I+D} M − M)
 //! ```
-//! The increments are of the size of a step. They are right to rounding of their own only if q and M cancel in them as formulas do; where
-//! F⁻¹ occurs, I − D F⁻¹ stands for it.
+//! The increments are of the size of a step. They are right to rounding of their own only if q and M cancel in them as
+//! formulas. If F⁻¹ occurs, I − D F⁻¹ stands for it.
 //!
 //! Source: Hairer, Lubich and Wanner, *Geometric Numerical Integration*, §VIII.5 (compensated summation, Kahan 1965, Møller 1965).
 
@@ -22,7 +22,7 @@ impl<'g> MechanicsFormulas<'g> {
         self.model.is_compensated()
     }
 
-    /// What the move adds to the momentum M, for each factor; `None` where it adds nothing.
+    /// The increment of the momentum M by the move, for each factor; `None` if it is zero.
     pub(super) fn momentum_increments(&self, substep: &Substep<'g>) -> Option<Vec<Expr<'g>>> {
         let inverses = self.inverses();
         let added = |(k, m): (usize, &Expr<'g>)| {
@@ -74,7 +74,7 @@ impl<'g> MechanicsFormulas<'g> {
         self.model.graph.symbol("S", shape, Role::Following(k), Property::General)
     }
 
-    /// What the letters stand for.
+    /// The replacements of the letters.
     pub(super) fn inverses(&self) -> Vec<(Expr<'g>, Expr<'g>)> {
         let near = self.increments();
         let mut inverses = Vec::new();

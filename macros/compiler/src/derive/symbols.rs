@@ -24,7 +24,7 @@ pub struct Symbols<'g> {
     pub following: Vec<Expr<'g>>,
     /// q⁺ = Φ_F(q), for each leaf of the configuration.
     pub images: Vec<Expr<'g>>,
-    /// The coordinates of log F, for each factor: what a Lagrangian that is discretised by the exponential depends on.
+    /// The coordinates of log F, for each factor: a Lagrangian that is discretised by the exponential depends on them.
     pub logarithms: Vec<Expr<'g>>,
     /// The representing matrix of the momentum, for each factor.
     pub momentum_matrices: Vec<Expr<'g>>,
@@ -200,8 +200,8 @@ pub(super) fn logarithm<'g>(model: &System<'g>, k: usize) -> Expr<'g> {
     model.graph.symbol(&name, shape, Role::Logarithm(k), Property::General)
 }
 
-/// The chart of a factor: what the velocity is made with, for then ξ is a multiple of x; else the user's choice, or that of the
-/// group.
+/// The chart of a factor. It is that of the velocity, if there is one, for then ξ is a multiple of x. Else it is the
+/// user's choice, or that of the group.
 fn chart(model: &System<'_>, factor: &Factor<'_>, discretization: Option<Discretization>) -> Chart {
     if factor.group.is_translation() {
         return Chart::Identity;

@@ -1,5 +1,5 @@
-//! What follows from the action: the symbols of the derivation, the generator, the momentum map, Ad*, the cotangent lift; elements in
-//! their charts.
+//! The formulas of the action: the symbols of the derivation, the generator, the momentum map, Ad*, the cotangent lift;
+//! elements in their charts.
 
 use std::cell::OnceCell;
 use std::rc::Rc;
@@ -11,9 +11,9 @@ use super::symbols::{identities, of_columns};
 use super::{ChartBlock, FormulaTable, Symbols};
 use crate::model::{Discretization, Side, System};
 
-/// What follows from the action, and from the prices of inputs and of the end.
+/// The formulas of the action, and of the prices of inputs and of the end.
 pub struct SystemFormulas<'g> {
-    /// What it is derived from.
+    /// The model from which it is derived.
     pub model: Rc<System<'g>>,
     /// The symbols that the derivation adds to those of the model.
     pub symbols: Symbols<'g>,
@@ -21,7 +21,7 @@ pub struct SystemFormulas<'g> {
     pub generator: Vec<Expr<'g>>,
     /// J(q, p), for each factor.
     pub momentum_map: Vec<Expr<'g>>,
-    /// What the choice of inputs needs; `None` where nothing is chosen.
+    /// The formulas for the choice of inputs; `None` if there is no choice.
     pub steering: Option<Steering<'g>>,
     /// The price of the end; `None` if there is none.
     pub endpoint: Option<Endpoint<'g>>,
@@ -30,7 +30,7 @@ pub struct SystemFormulas<'g> {
 }
 
 impl<'g> SystemFormulas<'g> {
-    /// What follows from the action of a model, the prices still to come.
+    /// The formulas of the action of a model; prices are still to come.
     pub(super) fn new(model: Rc<System<'g>>, discretization: Option<Discretization>) -> SystemFormulas<'g> {
         let symbols = Symbols::new(&model, discretization);
         let generator = generator(&model, &symbols);
@@ -48,7 +48,8 @@ impl<'g> SystemFormulas<'g> {
         self.symbols.charts[factor].increment(self.model.factors[factor].group, &self.symbols.coordinates(factor))
     }
 
-    /// s·h/c with s = dx/dξ at the identity in a block: x is that times a velocity, to first order in one of c parts of a step.
+    /// s·h/c with s = dx/dξ at the identity in a block. To first order, x is this factor times a velocity in one of c
+    /// parts of a step.
     pub(super) fn chart_step(&self, block: usize, divisor: i64) -> Expr<'g> {
         let ChartBlock { factor, block, .. } = self.symbols.blocks[block];
         let blocks = self.model.graph.blocks(self.model.factors[factor].group);

@@ -26,7 +26,8 @@ impl<'g> Covector<'g> {
     }
 }
 
-/// T* ∂_F K of each factor before the step and after it: T*_id L_F then R_F for a left action, R_F then L_F for a right one.
+/// T* ∂_F K of each factor before the step and after it. For a left action these are T*_id L_F and R_F, for a right one
+/// R_F and L_F.
 pub(super) fn of_all<'g>(model: &System<'g>, kinetic: Expr<'g>) -> (Vec<Covector<'g>>, Vec<Covector<'g>>) {
     (0..model.factors.len()).map(|k| of_factor(model, kinetic, k)).unzip()
 }

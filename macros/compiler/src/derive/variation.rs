@@ -1,5 +1,5 @@
-//! Second derivatives of a discrete Lagrangian: its Legendre transforms differentiated along the motions of both ends of an edge, and
-//! with respect to everything that is fixed during a step.
+//! Second derivatives of a discrete Lagrangian. Its Legendre transforms are differentiated along the motions of both
+//! ends of an edge, and with respect to everything that is fixed during a step.
 
 use clebsch_symbolic::{Elements, Expr, IntoList, Property, both, indexed};
 
@@ -21,7 +21,7 @@ pub struct EdgeDerivatives<'g> {
     /// η′, ∂F⁻ℓd η and ∂F⁺ℓd η for the motions η of q that leave F as it is. They carry q⁺ along, by η′ = Ad_F η for a left action and
     /// η′ = Ad_{F⁻¹} η for a right one. Where the cost does not couple only potentials and forces are left of the derivatives.
     pub carried: [Expr<'g>; 3],
-    /// What a choice of inputs needs, where there is one.
+    /// The formulas for a choice of inputs, if there is one.
     pub bend: Option<Bend<'g>>,
     /// The derivatives of F⁻ℓd and of F⁺ℓd with respect to each of the [`Quantity`]s, where they are asked for.
     pub slopes: Option<[Vec<Expr<'g>>; 2]>,
@@ -82,15 +82,15 @@ pub(super) fn check(model: &Mechanics<'_>) -> Result<(), Diagnostics> {
     })
 }
 
-/// What variations are made for.
+/// The data for variations.
 pub(super) struct Source<'a, 'g> {
     pub system: &'a SystemFormulas<'g>,
-    /// What to differentiate with respect to; empty if nothing is asked for.
+    /// The quantities to differentiate with respect to; empty if the declaration asks for none.
     pub quantities: &'a [Quantity<'g>],
 }
 
 impl<'g> Source<'_, 'g> {
-    /// The variation of a discrete Lagrangian whose step starts `begins` and ends `ends` after the whole step.
+    /// The variation of a discrete Lagrangian whose step starts `begins` and ends `ends` after the full step.
     pub fn variation(
         &self,
         lagrangian: &DiscreteLagrangian<'g>,

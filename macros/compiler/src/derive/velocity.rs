@@ -7,8 +7,8 @@ use crate::diagnostic::Diagnostics;
 use crate::model::features::{self, Feature, Found};
 use crate::model::{Discretization, Factor, System};
 
-/// The velocity ξ(F)/h of a factor, as the coordinates of log F/h, of 2(F − I)(F + I)⁻¹/h, projected where that leaves the algebra, or of
-/// P(F − I)/h.
+/// The velocity ξ(F)/h of a factor. It is the coordinates of log F/h, of 2(F − I)(F + I)⁻¹/h, projected if that leaves
+/// the algebra, or of P(F − I)/h.
 pub(super) fn of_element<'g>(model: &System<'g>, k: usize, h: Expr<'g>, discretization: Discretization) -> Expr<'g> {
     let Factor { group, symbol: f, .. } = model.factors[k];
     let identity = group.identity(model.graph);
@@ -49,7 +49,8 @@ pub(super) fn moser_veselov<'g>(
     Ok(cost)
 }
 
-/// Σ of a velocity, where the energy is a quadratic form of it alone: a term that couples two velocities is no part of either's form.
+/// Σ of a velocity, if the energy is a quadratic form of it alone. A term that couples two velocities belongs to the
+/// form of neither.
 pub(super) fn inertia<'g>(energy: Expr<'g>, velocities: &[Expr<'g>], velocity: Expr<'g>) -> Option<Expr<'g>> {
     let gradient = energy.gradient(velocity);
     let inertia = gradient.matrix_of_linear(velocity);

@@ -1,4 +1,4 @@
-//! What is wrong with an action, with the formulas that show it.
+//! The mistakes of an action, with the formulas that show them.
 
 use clebsch_symbolic::{Expr, Group, Shape, identity};
 
@@ -59,7 +59,8 @@ impl<'g> Action<'_, 'g> {
         format!("acting by {name}1 and then by {name}2{formula} {products}")
     }
 
-    /// A formula that says more than the closure itself: it is short, and no products of quaternions are written out in it.
+    /// A formula that says more than the closure itself: it is short, and products of quaternions are not expanded in
+    /// it.
     fn formula(&self, expr: Expr<'g>) -> Option<String> {
         Some(ascii(expr)).filter(|formula| self.is_readable(formula))
     }
@@ -162,7 +163,7 @@ fn smallest_group(one: Group, other: Group) -> Option<Group> {
     }
 }
 
-/// The first leaf of which two images differ.
+/// The first leaf in which two images differ.
 pub(super) fn first_difference<'g>(one: &[Expr<'g>], other: &[Expr<'g>]) -> usize {
     one.iter().zip(other).position(|(a, b)| !identity::equal(&[*a], &[*b])).unwrap_or(0)
 }

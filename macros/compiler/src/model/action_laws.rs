@@ -1,5 +1,5 @@
-//! The laws of the action, checked exactly and factor by factor: the identity moves nothing, products act as one after the
-//! other, different factors do not meet, and every factor moves something. The side of each factor is found here.
+//! The laws of the action, checked exactly and factor by factor. The identity moves nothing, and products act one after
+//! the other. Different factors do not meet, and every factor moves something. The side of each factor is found here.
 
 use clebsch_symbolic::{Chart, Elements, Expr, Graph, Group, IntoList, Operation, Role, View, both, identity, indexed};
 
@@ -7,7 +7,7 @@ use super::{Configuration, Factor, LeafSpace, Side};
 use crate::diagnostic::Diagnostics;
 use crate::parse::Closure;
 
-/// The action with what it acts on.
+/// The action with its arguments.
 pub(super) struct Action<'a, 'g> {
     pub graph: &'g Graph,
     pub closure: &'a Closure,
@@ -126,7 +126,7 @@ impl<'g> Action<'_, 'g> {
     }
 }
 
-/// What is known of whether an expression lies on a group for all values of its symbols.
+/// Whether an expression lies on a group for all values of its symbols, as far as that is known.
 #[derive(Copy, Clone, PartialEq, Eq)]
 pub(super) enum Verdict {
     /// It does.

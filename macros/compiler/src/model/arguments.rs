@@ -66,7 +66,7 @@ pub(super) fn of_action<'d>(declaration: &'d Declaration, diagnostics: &'d Diagn
 }
 
 impl<'d> TypedArguments<'d> {
-    /// What stands inside `[…; N]` of both types, where these have a const generic N for their length.
+    /// The types inside `[…; N]` of both arguments, if these have a const generic N for their length.
     ///
     /// # Errors
     /// Where only one of them has, or another one.

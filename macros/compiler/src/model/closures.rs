@@ -1,4 +1,4 @@
-//! The closures as a whole: what each of them gives, and what it has to give.
+//! The values of the closures, and the types that they must have.
 
 use clebsch_symbolic::{Expr, Graph, IntoList, Shape, both};
 use syn::{BinOp, Expr as Syntax, ExprBinary};
@@ -16,12 +16,12 @@ use super::{Discretization, Factor, Kinetic, Written};
 use crate::diagnostic::{Location, error, refuse, report};
 use crate::parse::{self, Closure, Declaration, Opaque, parenthesized, spell, tail};
 
-/// What an optional closure gives, if it is there; `None` where it has an error, which was reported.
+/// The value of an optional closure, if it is there; `None` if it has an error, which was reported.
 pub(super) fn optional<C, T>(closure: Option<C>, read: impl FnOnce(C) -> Option<T>) -> Option<Option<T>> {
     closure.map_or(Some(None), |closure| read(closure).map(Some))
 }
 
-/// What closures over the arguments of the action are read with.
+/// The data for reading closures over the arguments of the action.
 pub(super) struct Closures<'a, 'c, 'g> {
     pub context: &'a mut Context<'c, 'g>,
     pub declaration: &'a Declaration,
@@ -39,7 +39,7 @@ impl<'g> Closures<'_, '_, 'g> {
         self.typed.space.as_ref()?.leaves_of((key, body), &value, &is, self.context.diagnostics)
     }
 
-    /// What the action of a power gives for each site; any other value as it is.
+    /// The value of the action of a power for each site; any other value as it is.
     fn of_site(&self, body: &Syntax, value: Value<'g>) -> Option<Value<'g>> {
         let Some(power) = &self.context.power else { return Some(value) };
         match value {

@@ -1,4 +1,4 @@
-//! What is chosen: the closures `controls` and `dynamics`, the price, the bounds and the price of the end.
+//! The choice of inputs: the closures `controls` and `dynamics`, the price, the bounds and the price of the end.
 
 use clebsch_symbolic::Expr;
 use syn::{BinOp, Expr as Syntax};

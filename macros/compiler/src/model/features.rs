@@ -18,13 +18,13 @@ use rows::ROWS;
 struct Row {
     /// The features that are refused; the error is at their place.
     refused: &'static [Feature],
-    /// The features beside which they are refused.
+    /// The features with which they are refused.
     beside: &'static [Feature],
-    /// What is wrong. `{refused}` and `{beside}` are the two features, `{name}` is a name that the declaration gives.
+    /// The message. `{refused}` and `{beside}` are the two features, `{name}` is a name that the declaration gives.
     message: &'static str,
     /// The mathematical reason; empty where the message says it.
     why: &'static str,
-    /// What to write instead.
+    /// The replacement.
     help: &'static str,
 }
 
@@ -62,7 +62,7 @@ pub(crate) fn refusals(found: impl Fn(Feature) -> Option<Found>) -> impl Iterato
     combinations().filter_map(move |combination| error(combination, &found))
 }
 
-/// The same for one feature: what else is found that it does not go with.
+/// The same for one feature: the features with which it does not go together.
 pub(crate) fn refusals_of(
     (feature, itself): (Feature, Found),
     found: impl Fn(Feature) -> Option<Found>,
@@ -77,7 +77,7 @@ fn error((row, refused, beside): Combination, found: &dyn Fn(Feature) -> Option<
     Some(row.diagnostic(refused, beside))
 }
 
-/// Whether a feature goes with what else is found.
+/// Whether a feature goes with all other features that are found.
 ///
 /// # Errors
 /// The first combination that the table refuses.
@@ -95,7 +95,7 @@ pub(crate) fn refusal(refused: (Feature, Found), beside: (Feature, Found)) -> Di
     }
 }
 
-/// A row with one of its pairs: what is refused, and beside what.
+/// A row with one of its pairs: the refused feature, and the other one.
 type Combination = (&'static Row, Feature, Feature);
 
 /// Every row for each of its pairs.
@@ -106,7 +106,7 @@ fn combinations() -> impl Iterator<Item = Combination> {
     ROWS.iter().flat_map(of_row)
 }
 
-/// The features beside which one is refused, in the order of the table.
+/// The features with which one is refused, in the order of the table.
 pub(crate) fn refused_beside(feature: Feature) -> impl Iterator<Item = Feature> {
     ROWS.iter().filter(move |row| row.refused.contains(&feature)).flat_map(|row| row.beside.iter().copied())
 }
@@ -153,7 +153,7 @@ fn conflicts(own: &str, others: &[&str]) -> String {
     format!("{own}: not with{gap}{}{}", named.join(", "), below.collect::<String>())
 }
 
-/// The table of what does not go together in Markdown.
+/// The table of combinations that are refused, in Markdown.
 pub(crate) fn features_as_markdown() -> String {
     let head = "| feature | not with | reason | cure |\n|---|---|---|---|\n";
     ROWS.iter().map(markdown_row).fold(head.to_string(), |table, row| table + &row)
@@ -177,7 +177,7 @@ fn without_tags(text: &str) -> String {
     text.split('`').enumerate().map(part).into_list().join("`")
 }
 
-/// Few features by their words, else what stands for them.
+/// Few features by their words, else words for all of them.
 fn either(features: &[Feature], stand_in: &str) -> String {
     if features.len() > 2 { stand_in.to_string() } else { words(features, " or ") }
 }

@@ -16,7 +16,7 @@ use super::{Access, Layout, Leaf, Parameter, Promise, ScalarType};
 use crate::diagnostic::{Diagnostic, Diagnostics, bail, error};
 use crate::parse::{Declaration, Field, spell_type};
 
-/// What closures can read.
+/// The fields that closures can read.
 pub(super) struct Fields<'g> {
     /// Each field by name; `None` if no closure reads it, or if its type has an error that was reported.
     known: BTreeMap<String, Option<Value<'g>>>,

@@ -127,7 +127,7 @@ fn stacked<'g>(graph: &'g Graph, factor: &Factor<'g>, values: &[Value<'g>]) -> O
     })
 }
 
-/// What forces do not go with.
+/// The dials that do not go with forces.
 pub(super) fn check_dials(declaration: &Declaration, diagnostics: &Diagnostics) {
     let Some(force) = declaration.force.as_ref().or(declaration.force_on.as_ref()) else { return };
     let boundary = |feature| Found::when(feature == Feature::Boundary && declaration.dials.emit.boundary);

@@ -13,7 +13,7 @@ use super::{ChartChoice, Configuration, Factor, LeafSpace};
 use crate::diagnostic::{Diagnostic, Diagnostics, bail, error, nearest, report};
 use crate::parse::{Declaration, Dials, listed, spell_type};
 
-/// What the names in types refer to, and what collects the errors of types.
+/// The meaning of the names in types, and the collector of errors in types.
 #[derive(Copy, Clone)]
 pub(super) struct GroupNames<'d> {
     pub generics: &'d Generics,
@@ -57,7 +57,7 @@ struct Maker {
     of_two: Option<fn(usize, usize) -> Group>,
     /// Whether n is even.
     even: bool,
-    /// What its elements are, and its dimension, for the docs.
+    /// The description of its elements, and its dimension, for the docs.
     about: [&'static str; 2],
 }
 
@@ -169,8 +169,8 @@ fn check_dimension(ty: &Type, group: Group) -> Result<Group, Diagnostic> {
     Ok(group)
 }
 
-/// Refuses a large group that is not one of rotations of unit vectors, whose steps are found without an equation, and what is not
-/// looked at for those.
+/// Refuses a large group, unless it is one of rotations of unit vectors, whose steps are found without an equation. It
+/// also refuses features that are not available for those.
 pub(super) fn large(declaration: &Declaration, factors: &[Factor], leaves: &[Configuration]) -> Option<Diagnostic> {
     let is_looked_at = |factor: &&Factor| factor.group.dimension() > DIMENSION || is_large(factor.group, leaves);
     let factor = factors.iter().find(is_looked_at)?;

@@ -28,7 +28,7 @@ impl Layout {
         }
     }
 
-    /// What it is, for messages.
+    /// Its description, for messages.
     pub(super) fn describe(&self) -> String {
         match self {
             Layout::Leaf(_) => "no tuple".to_string(),
@@ -61,7 +61,7 @@ impl Layout {
     }
 }
 
-/// The parts to go through, from the outside in: `.0[1]`. None for what is a single leaf.
+/// The parts to go through, from the outside in: `.0[1]`. It is empty for a single leaf.
 #[derive(Clone, PartialEq, Eq, Hash, Debug, Default)]
 pub struct Access(Vec<Part>);
 

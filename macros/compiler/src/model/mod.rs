@@ -157,13 +157,13 @@ pub fn model<'g>(graph: &'g Graph, declaration: &Declaration) -> Result<Model<'g
     })))
 }
 
-/// What moves the configuration.
+/// The key that moves the configuration.
 enum Mover<'g> {
     Momenta(Kinetic<'g>),
     Inputs(Motion<'g>),
 }
 
-/// What the closures give.
+/// The values of the closures.
 struct ClosureValues<'g> {
     action: Vec<Expr<'g>>,
     laws: Vec<(Side, bool)>,

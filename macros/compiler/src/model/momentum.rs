@@ -1,4 +1,4 @@
-//! Systems of momenta alone: the action has said from which side the group acts, and nothing is left of what it acts on.
+//! Systems of momenta alone: the action has said from which side the group acts, and its configuration is dropped.
 
 use clebsch_symbolic::Expr;
 

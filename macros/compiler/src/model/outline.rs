@@ -1,4 +1,4 @@
-//! What a declaration with errors still says: the types that its integrator would have.
+//! The part of a declaration with errors that can still be read: the types that its integrator would have.
 
 use clebsch_symbolic::{Elements, Graph, Group, Shape};
 use quote::ToTokens;
@@ -11,7 +11,7 @@ use crate::parse::{Argument, Declaration, Pattern, Potential};
 
 /// The types of an integrator, without its mathematics.
 pub struct Outline {
-    /// The const generic that is the number of sites of a power, of which the rest says what one is.
+    /// The const generic that is the number of sites of a power. The other fields describe one site.
     pub sites: Option<syn::Ident>,
     /// The group element.
     pub element: Nested,

@@ -1,8 +1,8 @@
 //! Powers: a group Gᴺ that acts site by site on Qᴺ, with a const generic N.
 //!
-//! The site is a system of its own, which the other stages derive as they derive any other. What ties sites to each other is the potential: a sum of
-//! terms, each the same formula at every index that its sums run through. A formula names the sites that it reads by *places*, `q[i]`,
-//! `q[(i + 1) % N]`, and is differentiated once.
+//! The site is a system of its own, which the other stages derive as they derive any other. The potential ties the
+//! sites to each other. It is a sum of terms, and each is the same formula at every index of its sums. A formula names
+//! the sites that it reads by *places*, `q[i]`, `q[(i + 1) % N]`, and is differentiated once.
 
 #[cfg(test)]
 mod tests;
@@ -18,7 +18,7 @@ pub struct SiteIndex<'g> {
     pub wraps: bool,
 }
 
-/// What the index of a sum runs through: from the first expression up to and without the second.
+/// The range of the index of a sum: from the first expression up to and without the second.
 pub type Range<'g> = (Expr<'g>, Expr<'g>);
 
 /// A term of a sum over sites, and the sums around it.
@@ -31,14 +31,14 @@ pub struct Term<'g> {
 }
 
 impl Term<'_> {
-    /// What its indices run through, `i in 0..N, j in i + 1..N`; nothing where there is no sum.
+    /// The ranges of its indices, `i in 0..N, j in i + 1..N`; empty if there is no sum.
     pub fn indices(&self) -> String {
         let of_depth = |(depth, (from, to)): (usize, &Range<'_>)| format!("{} in {from}..{to}", index_name(depth));
         self.ranges.iter().enumerate().map(of_depth).into_list().join(", ")
     }
 }
 
-/// What the index of a sum inside `depth` others is called.
+/// The name of the index of a sum inside `depth` others.
 pub(super) fn index_name(depth: usize) -> String {
     ["i", "j", "k", "l"].get(depth).map_or_else(|| format!("i{depth}"), ToString::to_string)
 }
@@ -88,7 +88,8 @@ impl Linear {
         Some(linear)
     }
 
-    /// Whether an expression can be declared as an index or as the end of a range: in this form, with numbers of less than 32 bits.
+    /// Whether an expression can be declared as an index or as the end of a range. It has this form, with numbers of
+    /// less than 32 bits.
     pub(super) fn is_declarable(expr: Expr<'_>) -> bool {
         let is_small = |number: &i64| number.unsigned_abs() < 1 << 32;
         Linear::of(expr).is_some_and(|linear| {

@@ -10,7 +10,7 @@ use crate::parse::{Declaration, spell_type};
 /// The scalar that all types agree on.
 pub(super) struct Agreement<'d> {
     generics: &'d Generics,
-    /// What all agree on, and what named it first.
+    /// The scalar on which all agree, and the item that named it first.
     pub found: Option<(ScalarType, String)>,
     diagnostics: &'d Diagnostics,
 }

@@ -1,4 +1,4 @@
-//! The names that an expression may use, and what is known about those that it may not.
+//! The names that an expression may use, and the facts about those that it may not.
 
 use clebsch_symbolic::{Expr, Group, IntoList};
 use proc_macro2::Ident;
@@ -18,7 +18,7 @@ pub(super) struct Scope<'g> {
     /// Every name with its value, the latest last.
     pub names: Vec<(String, Option<Value<'g>>)>,
     arguments: usize,
-    /// Names of the declaration that are not arguments here, and what to do about it.
+    /// Names of the declaration that are not arguments here, and the advice for each.
     pub missing: Vec<(String, String)>,
     /// The symbols of velocities, each with the group of its factor.
     pub velocities: Vec<(Expr<'g>, Group)>,
@@ -72,7 +72,7 @@ impl<'g> Scope<'g> {
         self.arguments = self.names.len();
     }
 
-    /// Introduces a name of a `let` or of a closure inside; arguments stay what they are.
+    /// Introduces a name of a `let` or of a closure inside. Arguments keep their meaning.
     pub fn add(&mut self, ident: &Ident, value: Option<Value<'g>>, what: &str, diagnostics: &Diagnostics) {
         if !check_reserved(ident, what, diagnostics) {
             return;

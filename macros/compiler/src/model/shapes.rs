@@ -1,5 +1,5 @@
-//! Sizes and shapes in types: `Vector3`, `Matrix2x3<f64>`, `SMatrix<f64, 2, 8>`, recognised by their last path segment; and the limits within
-//! which the compiler is sure to come to an end.
+//! Sizes and shapes in types: `Vector3`, `Matrix2x3<f64>`, `SMatrix<f64, 2, 8>`, recognised by their last path segment.
+//! Also the limits within which the compiler surely ends.
 
 use clebsch_symbolic::{IntoList, Shape};
 use syn::{Expr, ExprLit, GenericArgument, GenericParam, Generics, Lit, LitInt, PathArguments, PathSegment, Type};
@@ -28,10 +28,10 @@ pub(super) fn size_argument(argument: &GenericArgument, generics: &Generics) -> 
     }
 }
 
-/// What to write instead of a large number of factors.
+/// The replacement of a large number of factors.
 pub(crate) const IN_LOOPS: &str = "give a const generic for the number of equal sites, `struct Chain<const N: usize>` and `[SO<3>; N]`: then they are stepped in loops, however many they are";
 
-/// The number that a literal is; `None` for what is no literal of a whole number.
+/// The number of a literal; `None` unless it is a literal integer.
 fn number(expr: &Expr) -> Option<&LitInt> {
     match expr {
         Expr::Group(group) => number(&group.expr),
@@ -40,7 +40,7 @@ fn number(expr: &Expr) -> Option<&LitInt> {
     }
 }
 
-/// The length of a product `[…; N]`: a size, but that more sites than are written out have another way.
+/// The length of a product `[…; N]`. It is a size, but for more sites than can be unrolled there is another way.
 pub(super) fn length(expr: &Expr, generics: &Generics) -> Result<usize, Diagnostic> {
     let value = number(expr).and_then(|number| number.base10_parse::<usize>().ok());
     let in_loops = value.filter(|value| *value > LARGEST).map(|_| IN_LOOPS);
@@ -154,7 +154,7 @@ pub(super) fn vectors<'t>(ty: &'t Type, generics: &Generics) -> Option<Result<Ve
     Some(read())
 }
 
-/// What to write for a name that looks like a vector or a matrix and is none.
+/// The advice for a name that looks like a vector or a matrix and is none.
 pub(super) fn hint(name: &str) -> Option<String> {
     let digits: String = name.chars().skip_while(|c| !c.is_ascii_digit()).collect();
     let n = digits.parse::<usize>().ok();

@@ -1,4 +1,5 @@
-//! The sites of a power while closures are read: what they meet, and what becomes of the model of one site.
+//! The sites of a power while closures are read: the places and fields that closures meet. At the end the model becomes
+//! that of one site.
 
 use clebsch_symbolic::{Elements, Expr, Graph, IntoList, Property, Role, Shape};
 use proc_macro2::Ident;
@@ -11,7 +12,7 @@ use super::{Configuration, Item, Leaf, Order, Parameter, Part, Power, ScalarType
 use crate::diagnostic::Diagnostics;
 use crate::parse::{Declaration, Potential};
 
-/// What closures need to know of a power, and what they find.
+/// The data of a power that closures need, and the data that they find.
 pub(super) struct Sites<'g> {
     /// The const generic N.
     pub length: Ident,
@@ -19,7 +20,7 @@ pub(super) struct Sites<'g> {
     /// The configuration of a site.
     space: Space<'g>,
     pattern: String,
-    /// What the sums around the expression that is read run through, the outermost first.
+    /// The ranges of the sums around the expression that is read, the outermost first.
     pub ranges: Vec<Range<'g>>,
     /// The places that have been met.
     pub places: Vec<SiteIndex<'g>>,
@@ -53,7 +54,7 @@ impl<'g> Sites<'g> {
         Value::nested(&self.space.layout, &leaves)
     }
 
-    /// What a field has at a place, with new symbols like those of the site itself where it is met first.
+    /// The value of a field at a place. When it is first met it gets new symbols, like those of the site itself.
     pub fn entry(&mut self, field: usize, place: usize, parameter: &Parameter<'g>) -> Vec<Expr<'g>> {
         if let Some((.., leaves)) = self.entries.iter().find(|(of, at, _)| (*of, *at) == (field, place)) {
             return leaves.clone();
@@ -101,7 +102,7 @@ pub(super) fn of_one_site<'g>(terms: &[Term<'g>], sites: Expr<'g>, graph: &'g Gr
     Ok(sum)
 }
 
-/// Reports what a power cannot have yet.
+/// Reports features that a power cannot have yet.
 pub(super) fn check(declaration: &Declaration, diagnostics: &Diagnostics) {
     let dials = &declaration.dials;
     let emitted = |asked: bool| asked.then(|| Found::at(declaration.ident.span()));
@@ -128,7 +129,7 @@ pub(super) fn check(declaration: &Declaration, diagnostics: &Diagnostics) {
     diagnostics.extend(features::refusals_of((Feature::Power, Found::somewhere()), found));
 }
 
-/// What ties sites to each other; the system becomes that of one site.
+/// The terms that tie sites to each other; the system becomes that of one site.
 pub(super) fn power_of<'g>(
     system: &mut System<'g>,
     energy: Expr<'g>,

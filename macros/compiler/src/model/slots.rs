@@ -1,4 +1,4 @@
-//! Which argument stands for what: each is found by the name that the action gives, and they keep their order.
+//! The meaning of each argument. It is found by the name that the action gives, and arguments keep their order.
 
 use clebsch_symbolic::{Elements, IntoList};
 use syn::ext::IdentExt;
@@ -119,7 +119,7 @@ pub(super) struct Matched<'d> {
 }
 
 impl<'d> Matched<'d> {
-    /// Finds the slot that each argument takes, and reports what is wrong with them.
+    /// Finds the slot that each argument takes, and reports mistakes in them.
     pub fn new(names: TypedArguments<'d>, closure: &'d Closure, slots: &'static [Slot]) -> Matched<'d> {
         let arguments = &closure.arguments;
         let mut taken: Vec<Option<Slot>> = arguments.each(|argument| names.find(&argument.pattern, slots));
@@ -214,7 +214,7 @@ impl<'d> Matched<'d> {
         }
     }
 
-    /// What to write where the potential reads the velocity, if this is its pattern in the Lagrangian.
+    /// The advice if the potential reads the velocity and this is its pattern in the Lagrangian.
     fn of_velocity(&self) -> Option<(&'d Pattern, String)> {
         let velocity = self.names.velocity.filter(|_| self.slots == POTENTIAL)?;
         let name = velocity.spell();
@@ -284,7 +284,7 @@ impl<'d> Matched<'d> {
         }
     }
 
-    /// The names of the declaration that are no arguments here, and what to do about each.
+    /// The names of the declaration that are no arguments here, and the advice for each.
     pub fn missing(&self) -> Vec<(String, String)> {
         let named = [Slot::Time, Slot::Step, Slot::Configuration, Slot::Element, Slot::Chosen];
         let named = named.into_iter().filter(|slot| *slot != Slot::Chosen || !self.slots.contains(&Slot::Input));
@@ -307,7 +307,7 @@ impl<'d> Matched<'d> {
         missing.chain(of_velocity).into_list()
     }
 
-    /// What the closure may depend on.
+    /// The arguments on which the closure may depend.
     fn dependence(&self) -> String {
         let (key, q) = (&self.closure.key, self.names.configuration.spell());
         let has = |slot| self.slots.contains(&slot);

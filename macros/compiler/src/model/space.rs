@@ -1,4 +1,4 @@
-//! Products of spaces: their leaves, what a value gives for each, and the names that a pattern gives them.
+//! Products of spaces: their leaves, the expressions of a value for each leaf, and the names that a pattern gives them.
 
 use clebsch_symbolic::{Elements, Expr, Graph, IntoList, Role};
 use syn::ext::IdentExt;
@@ -41,13 +41,14 @@ impl<'g> Space<'g> {
         Space { layout: Layout::Tuple(Vec::new()), leaves: Vec::new() }
     }
 
-    /// What it is in a closure.
+    /// Its value in a closure.
     pub fn value(&self) -> Value<'g> {
         let values: Vec<_> = self.leaves.each(|leaf| Value::leaf(leaf.symbol, leaf.is_quaternion));
         Value::nested(&self.layout, &values)
     }
 
-    /// The value of a closure, or of a part of its body, leaf by leaf; or an error that says what does not fit. `is` says what the value is.
+    /// The value of a closure, or of a part of its body, leaf by leaf. An error names the part that does not fit. `is`
+    /// names the value.
     pub fn leaves_of(
         &self,
         (key, body): (&Ident, &Syntax),
@@ -76,7 +77,7 @@ impl<'g> Space<'g> {
     }
 }
 
-/// What an image under an action is.
+/// The words for an image under an action.
 pub(super) fn new_value_of(old: &Pattern) -> String {
     format!("the new value of `{}`, which has the shape of the old one", old.spell())
 }

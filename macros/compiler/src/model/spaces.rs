@@ -29,7 +29,7 @@ pub(super) struct SpaceType<'t> {
 }
 
 impl SpaceType<'_> {
-    /// What holds for every point.
+    /// The property of every point.
     pub fn property(&self) -> Property {
         match self.space {
             LeafSpace::Vectors => Property::General,

@@ -157,7 +157,7 @@ impl<'g> ActedSystem<'_, '_, 'g> {
     }
 }
 
-/// A factor as what a symmetry moves.
+/// A factor as a configuration that a symmetry moves.
 fn as_leaf<'g>(factor: &Factor<'g>) -> Configuration<'g> {
     Configuration {
         symbol: factor.symbol,

@@ -1,4 +1,4 @@
-//! Tables: an action and the side from which each factor acts, an action and what is wrong with it.
+//! Tables: an action and the side from which each factor acts, an action and its mistake.
 
 use clebsch_symbolic::Graph;
 
@@ -41,7 +41,7 @@ fn acts(table: &[(&str, &str)]) {
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }
 
-/// Φ_gh = Φ_g Φ_h for what stands on the left, Φ_gh = Φ_h Φ_g for what stands on the right, and the inverse changes the side.
+/// Φ_gh = Φ_g Φ_h for factors on the left, Φ_gh = Φ_h Φ_g for factors on the right, and the inverse changes the side.
 #[test]
 fn every_group_acts_on_itself() {
     let groups = [

@@ -1,4 +1,5 @@
-//! The factors of the group, the leaves of the configuration and velocities: their symbols, and what they are in closures.
+//! The factors of the group, the leaves of the configuration and velocities: their symbols, and their values in
+//! closures.
 
 use clebsch_symbolic::{Block, Elements, Expr, Graph, Group, IntoList, Property, Role, Shape};
 use syn::Type;
@@ -15,14 +16,14 @@ use super::{Access, Factor, Layout, LeafSpace, Side};
 use crate::diagnostic::{Diagnostics, Location};
 use crate::parse::{Closure, Pattern};
 
-/// What the two arguments of the action stand for. A part with an error, which was reported, is `None`.
+/// The meaning of the two arguments of the action. A part with an error, which was reported, is `None`.
 pub(super) struct Typed<'g> {
     pub element: Layout,
     pub factors: Option<Vec<Factor<'g>>>,
     pub space: Option<Space<'g>>,
 }
 
-/// A system whose action has been read: what symmetries, forces and inputs are read for.
+/// A system whose action has been read, for reading symmetries, forces and inputs.
 pub(super) struct ActedSystem<'a, 'c, 'g> {
     pub context: &'a mut Context<'c, 'g>,
     pub arguments: &'a Arguments<'a, 'g>,
@@ -112,7 +113,7 @@ impl<'d, 'g> Arguments<'d, 'g> {
         self.scope(&self.matched(closure, slots), &[])
     }
 
-    /// The scope in which arguments have the values of their slots, and what is left out has a reason.
+    /// The scope in which arguments have the values of their slots, with the reason for each name that is left out.
     pub fn scope(&self, matched: &Matched, introduced: &[(Slot, Option<Value<'g>>)]) -> Scope<'g> {
         let mut scope = Scope::new(&self.members);
         for (argument, slot) in matched.arguments() {
@@ -139,7 +140,7 @@ impl<'g> Factor<'g> {
     }
 }
 
-/// What velocities are made for.
+/// The data for velocities.
 pub(super) struct Velocity<'a, 'g> {
     pub graph: &'g Graph,
     pub factors: &'a [Factor<'g>],
@@ -147,8 +148,8 @@ pub(super) struct Velocity<'a, 'g> {
 }
 
 impl<'g> Velocity<'_, 'g> {
-    /// The value of a pattern, and the symbols of the factors. One name stands for all that is in its place, a tuple for the parts of a
-    /// product or for the blocks of one factor: `(omega, v)` for SE(3).
+    /// The value of a pattern, and the symbols of the factors. One name stands for everything in its place. A tuple
+    /// stands for the parts of a product or for the blocks of one factor: `(omega, v)` for SE(3).
     pub fn of(&self, pattern: &Pattern, layout: &Layout) -> Option<(Value<'g>, Vec<Expr<'g>>)> {
         match (pattern, layout) {
             (Pattern::Tuple(patterns, _), Layout::Tuple(parts)) if patterns.len() == parts.len() => {

@@ -10,7 +10,7 @@ use super::power::{SiteIndex, Term};
 use super::{Access, Layout};
 use crate::parse::{Dials, Discretization, Emit, Isotropy, Located, Opaque, Order, Promise, Summation};
 
-/// What the mathematics of a declaration is, checked: names, shapes, groups, the laws of the action.
+/// The mathematics of a declaration, checked: names, shapes, groups, the laws of the action.
 pub enum Model<'g> {
     /// Momenta move the configuration.
     Mechanics(Box<Mechanics<'g>>),
@@ -18,11 +18,11 @@ pub enum Model<'g> {
     Steered(Box<Steered<'g>>),
 }
 
-/// What mechanics and control have in common: the user's struct, the group with its action, and the inputs.
+/// The part that mechanics and control share: the user's struct, the group with its action, and the inputs.
 pub struct System<'g> {
     /// The owner of all expressions.
     pub graph: &'g Graph,
-    /// What generated code needs of the user's struct.
+    /// The data of the user's struct that generated code needs.
     pub item: Item,
     /// Every field that a closure reads, in order of declaration.
     pub parameters: Vec<Parameter<'g>>,
@@ -46,13 +46,13 @@ pub struct System<'g> {
     pub inputs: Vec<Configuration<'g>>,
     /// How the leaves of the input nest.
     pub input: Layout,
-    /// What the inputs are chosen by; `None` where nothing is chosen.
+    /// The choice of the inputs; `None` if there is no choice.
     pub control: Option<InputChoice<'g>>,
     /// φ(t, q), the price of the end; `None` if there is none.
     pub endpoint: Option<Expr<'g>>,
     /// The dials that the user turns and that the model is not made of.
     pub dials: Dials,
-    /// What is emitted beside the integrator.
+    /// The items that are emitted with the integrator.
     pub emit: Emit,
     /// The closures' bodies as written, for the errors of later stages.
     pub spans: Spans,
@@ -60,7 +60,7 @@ pub struct System<'g> {
 
 /// A mechanical system.
 pub struct Mechanics<'g> {
-    /// What it has in common with other models.
+    /// The part that it shares with other models.
     pub system: Rc<System<'g>>,
     /// The kinetic part of the discrete Lagrangian, or the Lagrangian that it is to be made of.
     pub kinetic: Kinetic<'g>,
@@ -70,11 +70,11 @@ pub struct Mechanics<'g> {
     pub opaque: Option<Opaque>,
     /// The forces; `None` where nothing but the potential acts.
     pub force: Option<Force<'g>>,
-    /// What ties sites to each other, where the declaration is a power and this is the model of a site.
+    /// The terms that tie sites to each other, if the declaration is a power and this is the model of a site.
     pub power: Option<Power<'g>>,
     /// The symmetries that the user offers; whether cost and potential have them is still open.
     pub symmetries: Vec<OfferedSymmetry<'g>>,
-    /// What becomes of motions of the group that move no configuration.
+    /// How to treat motions of the group that move no configuration.
     pub isotropy: Isotropy,
     /// Where the potential is placed.
     pub order: Order,
@@ -82,7 +82,7 @@ pub struct Mechanics<'g> {
 
 /// A configuration that inputs move.
 pub struct Steered<'g> {
-    /// What it has in common with other models.
+    /// The part that it shares with other models.
     pub system: Rc<System<'g>>,
     /// How the inputs move it.
     pub motion: Motion<'g>,
@@ -176,9 +176,9 @@ pub struct Parameter<'g> {
     pub name: String,
     /// Where a closure first reads it.
     pub first_use: Span,
-    /// What the user promises about its values.
+    /// The user's promise about its values.
     pub promise: Option<Promise>,
-    /// Whether it is an array with one entry for each site of a power, of which the rest says what one is.
+    /// Whether it is an array with one entry for each site of a power. The other fields then describe one entry.
     pub per_site: bool,
     /// How arrays nest.
     pub structure: Layout,
@@ -191,7 +191,7 @@ pub struct Parameter<'g> {
 pub struct Leaf<'g> {
     /// Its symbol.
     pub symbol: Expr<'g>,
-    /// How it is reached from the field, `[0]`; whole for a field that is no array.
+    /// How it is reached from the field, `[0]`; empty for a field that is no array.
     pub accessor: Access,
     /// Its shape.
     pub shape: Shape,
@@ -259,7 +259,7 @@ pub struct Configuration<'g> {
     pub accessor: Access,
 }
 
-/// What a leaf of the configuration is promised to be.
+/// The promise about a leaf of the configuration.
 #[derive(Copy, Clone, PartialEq, Eq, Debug)]
 pub enum LeafSpace {
     /// Any vector or matrix.
@@ -308,13 +308,13 @@ impl<'g> Kinetic<'g> {
         }
     }
 
-    /// How a Lagrangian becomes a cost; `None` for what is one.
+    /// How a Lagrangian becomes a cost; `None` for a cost.
     pub fn discretization(&self) -> Option<Discretization> {
         if let Kinetic::Lagrangian { discretization, .. } = self { Some(*discretization) } else { None }
     }
 }
 
-/// What acts beside the potential, as functions of t, q, ξ and the input u.
+/// The forces other than that of the potential, as functions of t, q, ξ and the input u.
 pub struct Force<'g> {
     /// The force in 𝔤*, in the components of each factor; `None` if there is none.
     pub of_group: Option<Vec<Expr<'g>>>,
@@ -326,11 +326,11 @@ pub struct Force<'g> {
     pub written: Vec<Written>,
 }
 
-/// What inputs are chosen by.
+/// The choice of inputs.
 pub struct InputChoice<'g> {
     /// ℓ(t, h, q, u), the price of a step.
     pub price: Expr<'g>,
-    /// What has to hold.
+    /// The conditions that have to be satisfied.
     pub bounds: Vec<Bound<'g>>,
     /// The price as written.
     pub written: Written,
@@ -384,7 +384,7 @@ pub struct Written {
     pub text: String,
 }
 
-/// What makes a power of the model of a site.
+/// The data that turns the model of a site into a power.
 #[derive(Clone)]
 pub struct Power<'g> {
     /// The user's struct; that of the model is the site.
@@ -397,7 +397,7 @@ pub struct Power<'g> {
     pub places: Vec<SiteIndex<'g>>,
     /// The potential, a sum of terms.
     pub terms: Vec<Term<'g>>,
-    /// The fields that terms read; those of the model are what the site reads.
+    /// The fields that terms read; those of the model are the fields that the site reads.
     pub parameters: Vec<Parameter<'g>>,
     /// The user's fields that the site has copies of, in the order of the model's parameters.
     pub copied: Vec<syn::Member>,

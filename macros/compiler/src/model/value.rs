@@ -1,4 +1,5 @@
-//! What an expression of a closure may be: a matrix, the identity of a size that is still open, a tuple, an array.
+//! The possible values of an expression of a closure: a matrix, the identity of a size that is still open, a tuple, an
+//! array.
 
 use clebsch_symbolic::{Elements, Expr};
 
@@ -9,13 +10,13 @@ use super::power::{Range, Term};
 pub(super) enum Value<'g> {
     /// A matrix; scalars are 1×1.
     Matrix(Expr<'g>),
-    /// A scalar times the identity, whose size comes from what it meets.
+    /// A scalar times the identity; the other operand gives its size.
     Identity(Expr<'g>),
     /// A quaternion, by its coordinates i, j, k, w.
     Quaternion(Expr<'g>),
     Tuple(Vec<Value<'g>>),
     Array(Vec<Value<'g>>),
-    /// One value for each site of a power, `q`: what it is, and that of the site itself.
+    /// One value for each site of a power, `q`: its kind, and the value of the site itself.
     PerSite(Each, Box<Value<'g>>),
     /// The indices from the first up to and without the second, `0..N`.
     Range(Expr<'g>, Expr<'g>),
@@ -47,7 +48,7 @@ impl<'g> Value<'g> {
         }
     }
 
-    /// Takes a value apart as a layout nests; or says what was found and what was expected, as leaves do.
+    /// Takes a value apart as a layout nests; or says, leaf by leaf, which value was found and which was expected.
     pub fn leaves(
         &self,
         layout: &Layout,
@@ -85,7 +86,7 @@ impl<'g> Value<'g> {
         }
     }
 
-    /// What it is, for messages: `3x3`, `a pair`.
+    /// Its description, for messages: `3x3`, `a pair`.
     pub fn describe(&self) -> String {
         match self {
             Value::Matrix(expr) if expr.shape().is_scalar() => "a scalar".into(),
@@ -103,7 +104,7 @@ impl<'g> Value<'g> {
     }
 }
 
-/// What there is one of for each site.
+/// The kinds of values that each site has one of.
 #[derive(Copy, Clone, PartialEq, Eq, Debug)]
 pub(super) enum Each {
     /// The group element or the velocity.

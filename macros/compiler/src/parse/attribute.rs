@@ -42,7 +42,7 @@ pub(super) fn read_items(
     }
 }
 
-/// `key = value` and the comma after it; after an error the rest of the item is still to be skipped.
+/// `key = value` and the comma after it; after an error the remaining tokens of the item are still to be skipped.
 fn read_item(stream: ParseStream, keys: &mut Keys) -> Result<(), Diagnostic> {
     let key = stream.call(Ident::parse_any)?;
     if is_named(&key) {
@@ -61,7 +61,7 @@ fn read_item(stream: ParseStream, keys: &mut Keys) -> Result<(), Diagnostic> {
     bail!(&key, "unknown key `{key}`"; help "{help}")
 }
 
-/// What follows on a key that takes one value, and the comma after it.
+/// The tokens after a key that takes one value, and the comma after it.
 pub(super) fn read_value(key: &Ident, found: &Key, stream: ParseStream, keys: &mut Keys) -> Result<(), Diagnostic> {
     if !keys.give(key) {
         bail!(key, "`{key}` is given twice"; help "remove one of the two");
@@ -88,7 +88,7 @@ fn find(key: &Ident) -> Option<&'static Key> {
     KEYS.iter().find(|known| key == known.name)
 }
 
-/// Whether a name follows on a key, of which there may be several.
+/// Whether a name follows a key that may occur several times.
 pub(crate) fn is_named(key: &Ident) -> bool {
     key == "group" || key == "method"
 }

@@ -1,8 +1,9 @@
 //! Limits on the size of a declaration, checked before anything recurses: for any tokens at all the compiler must come to an end.
 //!
-//! Parsers recurse into brackets and behind operators in front of operands, and what is parsed is as deep as chains of operators are long.
-//! All of it together, on the way from the item to any of its tokens, has to fit into the two megabytes of stack that threads have, also
-//! where neither syn nor this compiler is optimised: there a bracket in a type takes 35 kilobytes.
+//! Parsers recurse into brackets, and behind operators in front of operands. The parsed expression is as deep as chains
+//! of operators are long. All levels from the item to any of its tokens have to fit into the two megabytes of stack
+//! that threads have. This must hold where neither syn nor this compiler is optimised too: there a bracket in a type
+//! takes 35 kilobytes.
 
 use proc_macro2::{Spacing, Span, TokenStream, TokenTree};
 
@@ -18,7 +19,7 @@ const LINK: usize = 1;
 const RUN: usize = 2000;
 /// Characters of a number: syn reads it digit by digit with all digits before.
 const DIGITS: usize = 500;
-/// Tokens of the whole item.
+/// Tokens of the item.
 const TOTAL: usize = 60_000;
 
 /// Refuses items that are nested too deeply or too long to be read.
@@ -60,7 +61,7 @@ struct Run {
     /// Operators without an operand between them.
     prefixes: usize,
     last: Option<char>,
-    /// What is in brackets, with the levels on the way to it.
+    /// The tokens in brackets, with the levels on the way to them.
     groups: Vec<(TokenStream, usize)>,
 }
 
@@ -117,7 +118,7 @@ impl Run {
         self.last = Some(punct.as_char());
     }
 
-    /// Hands on what is in brackets, as deep as the whole run makes it, and starts anew.
+    /// Passes on the tokens in brackets, with the depth of the complete run, and starts anew.
     fn end(&mut self, outside: usize, pending: &mut Vec<(TokenStream, usize)>) {
         let run = std::mem::take(self);
         let chain = outside + run.length * LINK;

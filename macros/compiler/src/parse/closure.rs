@@ -16,7 +16,7 @@ pub struct Closure {
     /// The key that it is the value of.
     pub key: Ident,
     pub(crate) arguments: Vec<Argument>,
-    /// What is between the bars, bars included.
+    /// The tokens between the bars, bars included.
     pub head: Location,
     pub(crate) body: Expr,
 }

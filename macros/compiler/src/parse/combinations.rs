@@ -31,7 +31,7 @@ fn is_declared_alone(feature: Feature) -> bool {
     )
 }
 
-/// Where a key was given, or a value of one. What a method takes stands in `of_steps`.
+/// Where a key was given, or a value of one. Keys of a method are in `of_steps`.
 fn place(keys: &Keys, of_steps: &Keys, feature: Feature) -> Option<Span> {
     let (dials, emit) = (&of_steps.dials, &keys.dials.emit);
     let readable = |name| keys.closures.get(name).map(|closure: &Closure| closure.key.span());

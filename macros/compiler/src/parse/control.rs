@@ -1,4 +1,4 @@
-//! What is steered: `controls`, `dynamics` or `effort`, with `bounds` and `endpoint`.
+//! The keys of control: `controls`, `dynamics` or `effort`, with `bounds` and `endpoint`.
 
 use clebsch_symbolic::IntoList;
 use proc_macro2::{Ident, Literal};
@@ -9,7 +9,7 @@ use super::keys::Keys;
 use super::{Argument, Closure, Kinetic, Pattern};
 use crate::diagnostic::{Location, refuse, report};
 
-/// What a choice of inputs costs, and what it is bound by.
+/// The price of a choice of inputs, and its bounds.
 #[derive(Clone)]
 pub struct Choice {
     /// The price of a step: the `cost` of a system with `controls` or `dynamics`, the `effort` of one with forces.
@@ -18,8 +18,8 @@ pub struct Choice {
     pub bounds: Option<Closure>,
 }
 
-/// What moves the configuration, and by what its inputs are chosen: the keys that say what is steered are taken. Where inputs, not momenta,
-/// move the configuration, its cost is the price.
+/// The key that moves the configuration, and the choice of its inputs. The keys of both are taken out of `keys`. Where
+/// inputs, not momenta, move the configuration, its cost is the price.
 pub(super) fn read(keys: &mut Keys) -> (Option<Kinetic>, Option<Choice>) {
     let bounds = keys.closures.remove("bounds");
     let Some(motion) = keys.closures.remove("controls").or_else(|| keys.closures.remove("dynamics")) else {

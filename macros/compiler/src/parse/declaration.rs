@@ -13,7 +13,7 @@ use super::{
 };
 use crate::diagnostic::{Diagnostic, error};
 
-/// What the user declared: the struct, the closures and the dials, as written.
+/// The user's declaration as written: the struct, the closures and the dials.
 #[derive(Clone)]
 pub struct Declaration {
     pub(crate) ident: Ident,
@@ -31,7 +31,7 @@ pub struct Declaration {
     pub force: Option<Closure>,
     /// The force as a covector of the configuration.
     pub force_on: Option<Closure>,
-    /// What the choice of inputs costs and is bound by; `None` where nothing is chosen.
+    /// The price and the bounds of a choice of inputs; `None` if there is no choice.
     pub control: Option<Choice>,
     /// The price of the end.
     pub endpoint: Option<Closure>,
@@ -62,7 +62,7 @@ impl Potential {
     }
 }
 
-/// The key that says what moves the configuration: a kinetic energy, or inputs.
+/// The key that moves the configuration: a kinetic energy, or inputs.
 #[derive(Clone)]
 pub enum Kinetic {
     /// `controls = …`, the velocity that inputs give.
@@ -109,8 +109,8 @@ impl Kinetic {
     }
 }
 
-/// Puts the declaration together, and says what is missing or too much; `None` without a readable action. A kinetic energy that is missing is
-/// the action's closure, which nothing reads: the declaration has an error.
+/// Puts the declaration together, and reports keys that are missing or too many; `None` without a readable action. A
+/// kinetic energy that is missing is the action's closure, which nothing reads: the declaration has an error.
 pub(super) fn assemble(input: &DeriveInput, mut keys: Keys, fields: Vec<Field>) -> Option<Declaration> {
     let diagnostics = keys.diagnostics;
     combinations::check(&keys);

@@ -1,4 +1,4 @@
-//! What a declaration chooses from: its dials with their values, and the promises on its fields.
+//! The choices of a declaration: its dials with their values, and the promises on its fields.
 
 use clebsch_symbolic::IntoList;
 use std::fmt;
@@ -135,7 +135,7 @@ words! {
 }
 
 words! {
-    /// What becomes of motions of the group that move no configuration.
+    /// How to treat motions of the group that move no configuration.
     Isotropy {
         /// They are no motions: `state()` refuses a momentum along them.
         Fixed "fixed",
@@ -206,7 +206,7 @@ impl Order {
     }
 }
 
-/// What is emitted beside the integrator.
+/// The items that are emitted with the integrator.
 #[derive(Copy, Clone, PartialEq, Eq, Default, Debug)]
 pub struct Emit {
     /// The constant `GENERATED`, the generated code as text; needs the feature `generated`.
@@ -215,7 +215,7 @@ pub struct Emit {
     pub latex: bool,
     /// The derivatives of a step with respect to state, parameters, step size and time.
     pub tangent: bool,
-    /// What problems with fixed endpoints need: second derivatives of the discrete Lagrangian.
+    /// The second derivatives of the discrete Lagrangian, for problems with fixed endpoints.
     pub boundary: bool,
     /// The momentum alone: the configuration is `()`.
     pub momentum: bool,
@@ -229,7 +229,7 @@ pub(super) struct Emitted {
     about: &'static str,
 }
 
-/// The words of `emit`: where each is noted, and what it gives.
+/// The words of `emit`: where each is noted, and the items that it adds.
 #[rustfmt::skip]
 pub(super) const EMITTED: [(&str, Emitted); 5] = [
     ("generated", Emitted { part: |emit| &mut emit.generated, about: "The constant `GENERATED`, the generated code as text; needs the feature `generated`." }),

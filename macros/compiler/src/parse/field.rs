@@ -15,7 +15,7 @@ pub struct Field {
     /// Its name or number.
     pub member: Member,
     pub(crate) ty: Type,
-    /// What is promised about its values, and where.
+    /// The promise about its values, and its place.
     pub promise: Option<(Promise, Span)>,
 }
 

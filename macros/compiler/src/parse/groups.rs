@@ -17,7 +17,7 @@ pub struct DeclaredGroup {
     pub(crate) definition: Definition,
 }
 
-/// What a declared group is.
+/// The definition of a declared group.
 #[derive(Clone)]
 pub enum Definition {
     /// All matrices that satisfy an equation.
@@ -26,7 +26,7 @@ pub enum Definition {
     Basis(Vec<Expr>, Location),
 }
 
-/// Reads what follows on the word `group`.
+/// Reads the tokens after the word `group`.
 pub(super) fn read(word: &Ident, stream: ParseStream, keys: &mut Keys) -> Result<(), Diagnostic> {
     let Ok(name) = stream.call(Ident::parse_any) else {
         bail!(word, "a group of one's own has a name";

@@ -29,7 +29,7 @@ impl<T> Located<T> {
     }
 }
 
-/// A key: what can stand on the left of `=`.
+/// A key: a name that can stand on the left of `=`.
 pub(super) struct Key {
     pub name: &'static str,
     /// How its value is read.
@@ -55,7 +55,8 @@ pub(super) enum Kind {
     Potential,
     /// A closure, or a list of them.
     Symmetry,
-    /// Anything else: how it is read; how it prints and where it is, if it was given; and the values that it chooses from, with meanings.
+    /// Any other key. It has a function that reads it, and one that prints it and gives its place, if it was given.
+    /// Last are the values from which it chooses, with meanings.
     Dial(fn(&mut Dials, Reader) -> Result<(), Diagnostic>, fn(&Dials) -> Option<Located<String>>, fn() -> Meanings),
     /// Part of the language, but not of this version.
     Later,

@@ -21,7 +21,7 @@ pub struct DeclaredMethod {
     pub dials: Dials,
 }
 
-/// Reads what follows on the word `method`.
+/// Reads the tokens after the word `method`.
 pub(super) fn read(word: &Ident, stream: ParseStream, keys: &mut Keys) -> Result<(), Diagnostic> {
     let Ok(name) = stream.call(Ident::parse_any) else {
         bail!(word, "a method has a name, that of a unit struct";
@@ -71,7 +71,7 @@ fn dials() -> impl Iterator<Item = &'static str> {
     KEYS.iter().filter(|key| key.of_method).map(|key| key.name)
 }
 
-/// The methods of a struct, none of which may be the struct itself.
+/// The methods of a struct; the struct itself cannot be one.
 pub(super) fn checked(system: &Ident, keys: Vec<(Ident, Keys)>, diagnostics: &Diagnostics) -> Vec<DeclaredMethod> {
     for (name, _) in keys.iter().filter(|(name, _)| name.unraw() == system.unraw()) {
         report!(diagnostics, name.span(), "the method `{system}` is the system itself";

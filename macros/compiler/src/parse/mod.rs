@@ -51,7 +51,7 @@ pub(crate) fn parse_with_errors(item: TokenStream) -> Option<Declaration> {
     read(item).ok()?.0
 }
 
-/// The declaration, as far as it can be read, and what is wrong with it.
+/// The declaration, as far as it can be read, and its errors.
 fn read(item: TokenStream) -> Result<(Option<Declaration>, Diagnostics), Diagnostics> {
     bounds::check(&item)?;
     let input: DeriveInput = syn::parse2(item).map_err(Diagnostic::from)?;

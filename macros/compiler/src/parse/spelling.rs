@@ -45,7 +45,7 @@ pub(crate) fn tail(body: &Expr) -> &Expr {
     }
 }
 
-/// The text of an expression; what is deeper than any message needs is left out.
+/// The text of an expression; parts that are deeper than any message needs are left out.
 pub fn spell(expr: &Expr) -> String {
     spell_within(expr, LEVELS)
 }

@@ -81,7 +81,7 @@ impl Reader<'_, '_> {
         Ok(())
     }
 
-    /// `[a, b]`, of the words for what is emitted.
+    /// `[a, b]`, a list of words for emitted items.
     pub fn words(self, dial: &mut Emit) -> Result<(), Diagnostic> {
         if !self.stream.peek(syn::token::Bracket) {
             let word = self.stream.fork().call(Ident::parse_any).map(|word| word.to_string());
@@ -105,7 +105,7 @@ impl Reader<'_, '_> {
         Ok(())
     }
 
-    /// A number that has a value for the dial; else the error for what was written.
+    /// A number that has a value for the dial; else the error for the token that was written.
     pub fn number<L: Parse + ToTokens, T>(
         self,
         dial: &mut Option<Located<T>>,

@@ -1,4 +1,4 @@
-//! What acts, what is conserved, and what a problem does not need.
+//! The forces, the conserved quantities, and the parts that a problem does not need.
 
 use super::{bounds, inputs};
 use crate::derive::{MOST_LISTED, MechanicsFormulas, Substep};
@@ -29,7 +29,7 @@ pub(super) fn forces(formulas: &MechanicsFormulas<'_>) -> String {
     text
 }
 
-/// What is conserved, and what is not known to be.
+/// The conserved quantities, and those that are not known to be conserved.
 pub(super) fn conserved(formulas: &MechanicsFormulas<'_>) -> String {
     let symmetries = &formulas.symmetries;
     let summed = if formulas.model.power.is_some() { ", summed over all sites" } else { "" };
@@ -66,7 +66,7 @@ fn for_any_axis(sentences: &[String]) -> Vec<String> {
     told
 }
 
-/// What this problem does not need, and what was not proved.
+/// The parts that this problem does not need, and the facts that were not proved.
 pub(super) fn left_out(formulas: &MechanicsFormulas<'_>) -> String {
     let mut text = String::new();
     if formulas.potential_energy.is_zero() && formulas.links.is_empty() {

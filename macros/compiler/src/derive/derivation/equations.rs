@@ -68,7 +68,7 @@ pub(super) fn how(formulas: &MechanicsFormulas<'_>, equation: &MomentumEquation<
     }
 }
 
-/// What its linear systems make use of.
+/// The structure that its linear systems use.
 fn structure(structure: &Structure) -> String {
     match structure {
         Structure::Dense => String::new(),

@@ -103,7 +103,7 @@ fn stagger(formulas: &MechanicsFormulas<'_>) -> &'static str {
     }
 }
 
-/// What keeps configurations on their spaces.
+/// The reason why configurations stay on their spaces.
 fn spaces(formulas: &MechanicsFormulas<'_>) -> String {
     let is = |which: fn(&LeafSpace) -> bool| formulas.model.configurations.iter().any(|leaf| which(&leaf.space));
     let (mut what, mut how) = (Vec::new(), Vec::new());
@@ -122,7 +122,7 @@ fn spaces(formulas: &MechanicsFormulas<'_>) -> String {
     format!("Rounding is taken off {what}, {how}: they stay there for any number of steps of (q, N).\n")
 }
 
-/// What an iteration that ends early leaves as it is, and what it does not.
+/// The properties that an iteration preserves although it ends early, and those that it does not.
 fn tolerance(formulas: &MechanicsFormulas<'_>) -> String {
     let Some(tolerance) = &formulas.model.dials.tolerance else { return String::new() };
     let kept = formulas.conserved_by_any_element();

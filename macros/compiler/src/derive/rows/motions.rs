@@ -27,7 +27,7 @@ impl<'g> SystemFormulas<'g> {
 }
 
 impl<'g> MechanicsFormulas<'g> {
-    /// What variations and the choice of inputs need of motions.
+    /// The formulas of motions for variations and for the choice of inputs.
     pub(super) fn rows_of_motions(&self, names: &Names) -> Vec<Formula<'g>> {
         if !self.model.has_variations() {
             return Vec::new();
@@ -39,7 +39,8 @@ impl<'g> MechanicsFormulas<'g> {
         ]
     }
 
-    /// The chart in which small motions of a factor are written: Cayley's where it stays in the group, for it has no end, else that of the solve.
+    /// The chart of small motions of a factor. It is Cayley's if that stays in the group, for it has no end, else that
+    /// of the solve.
     fn retraction(&self, k: usize) -> Chart {
         let has_cayley_chart = self.model.factors[k].group.has_cayley_chart(self.model.graph);
         if has_cayley_chart { Chart::Cayley } else { self.symbols.charts[k] }

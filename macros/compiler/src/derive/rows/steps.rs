@@ -67,7 +67,7 @@ impl<'g> MechanicsFormulas<'g> {
         ]
     }
 
-    /// An equation with its Jacobian, its solution where there is a formula for it, and what iterations start from.
+    /// An equation with its Jacobian, its solution if there is a formula for it, and the start of iterations.
     fn rows_of_equation(&self, Names { x, delta, .. }: &Names, index: usize, number: usize) -> Vec<Formula<'g>> {
         let (substep, equation) = (&self.substeps[index], &self.substeps[index].equations[number]);
         let symbol = format!("Dρ({x})·{delta}");
@@ -106,8 +106,9 @@ impl<'g> MechanicsFormulas<'g> {
         names.into_list().join(", ")
     }
 
-    /// What a scheme needs beside its substeps: N − π of a step of first order, the kicks of a splitting with their weights b and g, Hamilton's
-    /// equations, which a step of order 16 collocates, and what its sweeps start from.
+    /// The formulas that a scheme needs in addition to its substeps. A step of first order has N − π, and a splitting
+    /// has kicks with the weights b and g. A step of order 16 has Hamilton's equations, which it collocates, and the
+    /// start of its sweeps.
     pub(super) fn rows_of_scheme(&self, names: &Names) -> Vec<Formula<'g>> {
         let Names { q, x, .. } = names;
         let stagger = self.stagger.clone().unwrap_or_default();

@@ -5,8 +5,8 @@ use clebsch_symbolic::{Elements, Expr, IntoList, Matrix, Number, Shape};
 
 use crate::derive::equation::{MomentumEquation, Sources, Structure};
 
-/// The values of a Jacobian at a random point, and at two others with the same parameters: where the coordinates have other values, and where the
-/// momenta, the configuration, the time and the input have.
+/// The values of a Jacobian at a random point, and at two others with the same parameters. The first of these has other
+/// coordinates. The second has other momenta, another configuration, time and input.
 pub(super) struct Pattern([Matrix<Residue>; 3]);
 
 /// Whether Dρ at x = 0 and μ = 0 is Σ/(s·h).
@@ -106,7 +106,7 @@ impl Pattern {
         connected(self.count(), |i, j| !self.is_zero(i, j) || !self.is_zero(j, i))
     }
 
-    /// What linear systems with this Jacobian are solved by.
+    /// The structure by which linear systems with this Jacobian are solved.
     pub(super) fn structure(&self) -> Structure {
         let count = self.count();
         let needs = closure(count, |i, j| !self.is_zero(i, j));
@@ -124,7 +124,7 @@ impl Pattern {
     }
 }
 
-/// The sets of what is related, directly or by way of others.
+/// The sets of related indices, directly or by way of others.
 pub(in crate::derive) fn connected(count: usize, relates: impl Fn(usize, usize) -> bool) -> Vec<Vec<usize>> {
     let reaches = closure(count, relates);
     classes(count, |i, j| reaches[i][j])

@@ -5,12 +5,12 @@ use clebsch_symbolic::{Expr, Group, Operation, Shape, View};
 use crate::derive::equation::MomentumEquation;
 use crate::derive::{ChartBlock, Solution, SystemFormulas};
 
-/// From as many unknowns on, those of SO(7), Newton's method solves Sylvester's equation and not a linear system in all of them: it takes as long
-/// there, half as long for SO(10), and less memory in all.
+/// The fewest unknowns (21, those of SO(7)) for which Newton's method solves Sylvester's equation. The alternative is a
+/// linear system in all unknowns. It takes as long for SO(7), twice as long for SO(10), and more memory in all.
 const FEWEST_OF_SYLVESTER: usize = 21;
 
 impl<'g> MomentumEquation<'g> {
-    /// The factor of the Jacobian where Newton's method solves Sylvester's equation, if code keeps whole matrices.
+    /// The factor of the Jacobian if Newton's method solves Sylvester's equation in matrix code.
     pub(in crate::derive) fn large_jacobian_factor(&self, system: &SystemFormulas<'g>) -> Option<Expr<'g>> {
         let is_large = self.solution == Solution::Newton && self.components.len() >= FEWEST_OF_SYLVESTER;
         if is_large { self.sylvester_factor(system) } else { None }

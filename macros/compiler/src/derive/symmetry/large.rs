@@ -30,7 +30,8 @@ pub(super) fn find<'g>(system: &SystemFormulas<'g>, lagrangian: &DiscreteLagrang
     Symmetries { conserved, ..Symmetries::default() }
 }
 
-/// The variations of K, U₀ and U₁ along ξ in factor k, q ↦ Φ_g q with F ↦ gFg⁻¹ (left) or g⁻¹Fg (right), as their slopes in ξ.
+/// The variations of K, U₀ and U₁ along ξ in factor k, as their slopes in ξ. The direction is q ↦ Φ_g q with F ↦ gFg⁻¹
+/// (left) or g⁻¹Fg (right).
 fn slopes<'g>(system: &SystemFormulas<'g>, lagrangian: &DiscreteLagrangian<'g>, k: usize) -> Vec<Expr<'g>> {
     let (factor, xi) = (&system.model.factors[k], system.symbols.algebra[k]);
     let turned = system.conjugation(k, xi);

@@ -1,9 +1,9 @@
 //! Conserved momenta: the directions along which cost and potential are invariant for every value of the parameters.
 //!
-//! A direction moves the configuration by δq and the group element by δF so that q⁺ moves with them: q ↦ Φ_g q with F ↦ gFg⁻¹ for the
-//! group itself, q ↦ gq or qg with F as it is where that commutes with the action, and what the user offers. Invariance is linear in
-//! the direction, so all invariant directions together, diagonals of equal factors among them, are one null space. The momentum of a
-//! direction w is ⟨p, δq⟩ = ⟨N, ξ⟩ with ξ_Q(q) = δq.
+//! A direction moves the configuration by δq and the group element by δF so that q⁺ moves with them. Directions of the
+//! group itself are q ↦ Φ_g q with F ↦ gFg⁻¹. Those that commute with the action are q ↦ gq or qg with F as it is. The
+//! user may offer others. Invariance is linear in the direction, so all invariant directions together, diagonals of
+//! equal factors among them, are one null space. The momentum of a direction w is ⟨p, δq⟩ = ⟨N, ξ⟩ with ξ_Q(q) = δq.
 
 mod directions;
 mod large;
@@ -21,22 +21,22 @@ use directions::Directions;
 /// A conserved momentum.
 #[derive(Clone)]
 pub struct ConservedMomentum<'g> {
-    /// What it is, `about e3, spatial`.
+    /// Its name, such as `about e3, spatial`.
     pub name: String,
     /// Its value, a function of q and μ.
     pub value: Expr<'g>,
 }
 
-/// What is known of the symmetries of a system.
+/// The known symmetries of a system.
 #[derive(Default)]
 pub struct Symmetries<'g> {
     /// The momenta that are conserved for every value of the parameters.
     pub conserved: Vec<ConservedMomentum<'g>>,
-    /// What is conserved too for special parameters, as sentences.
+    /// The momenta that are also conserved for special parameters, as sentences.
     pub special: Vec<String>,
     /// Offered symmetries that are none, by the index of the offer.
     pub refused: Vec<usize>,
-    /// Whether functions that are no rational ones hide what may be conserved too.
+    /// Whether functions that are not rational may hide further conserved momenta.
     pub undecided: bool,
 }
 
@@ -95,8 +95,9 @@ pub(super) fn find<'g>(
     symmetries
 }
 
-/// One column for each direction: the variations of K, U₀ and U₁, which all vanish along a symmetry, what the force changes of its
-/// momentum, ⟨f, ξ⟩, and the variation of each term of a power where all sites move alike.
+/// One column for each direction, with three kinds of rows. The variations of K, U₀ and U₁ all vanish along a symmetry.
+/// ⟨f, ξ⟩ is the change of its momentum by the force. The last rows are the variations of each term of a power where
+/// all sites move alike.
 fn variations<'g>(
     sources: &Sources<'_, 'g>,
     lagrangian: &DiscreteLagrangian<'g>,
@@ -197,7 +198,7 @@ impl<'g> Finder<'_, 'g> {
         format!("{}, {frames}", parts.join(" + "))
     }
 
-    /// The offered symmetries of which some direction is no symmetry.
+    /// The offered symmetries that have a direction that is no symmetry.
     fn refused(&self, found: &[Vec<Rational>]) -> Vec<usize> {
         let is_whole = |offer: usize| {
             let is_of_offer = |i: usize| self.families[self.directions[i].family].offered == Some(offer);
@@ -209,8 +210,8 @@ impl<'g> Finder<'_, 'g> {
 }
 
 impl<'g> MechanicsFormulas<'g> {
-    /// The conserved momenta that every F conserves, whether or not it solves the momentum equation: those with the same value at
-    /// (Φ_F q, M⁺) as at (q, M) where M⁺ is made of M. Kicks leave them as they are.
+    /// The conserved momenta that every F conserves, whether or not it solves the momentum equation. They have the same
+    /// value at (Φ_F q, M⁺) as at (q, M) if M⁺ is computed from M. Kicks leave them as they are.
     pub(in crate::derive) fn conserved_by_any_element(&self) -> Vec<&ConservedMomentum<'g>> {
         let substeps = || self.substeps.iter().take(self.stepped);
         if substeps().any(|substep| substep.other.is_some()) {

@@ -90,7 +90,7 @@ impl<'g> Finder<'_, 'g> {
         sentences
     }
 
-    /// What has to be special for a direction to be a symmetry; `None` where nothing of this kind makes it one.
+    /// The special parameters for which a direction is a symmetry; `None` if there are none of this kind.
     fn conditions(&self, position: usize, axis: usize) -> Option<String> {
         let column = self.matrix.block(0, position, Shape::new(self.matrix.shape().rows, 1));
         let leaves = self.sources.model.parameters.iter().flat_map(|parameter| &parameter.leaves);

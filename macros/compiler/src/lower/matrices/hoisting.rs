@@ -4,8 +4,8 @@ use clebsch_symbolic::{Elements, IntoList, Role, Shape};
 
 use crate::lower::{Code, Kernel};
 
-/// A kernel of an iteration as two. The outputs of the first are terms that do not depend on the coordinates, or on a
-/// direction of them, as far as other terms need them. The second has all other terms.
+/// A kernel of an iteration as two. The outputs of the first are terms that depend neither on the coordinates nor on a
+/// direction of them, if other terms need them. The second has all other terms.
 pub(in crate::lower) fn hoisted(kernel: Kernel) -> (Kernel, Kernel) {
     let depends = kernel.depends_on(|role| matches!(role, Role::Chart(_) | Role::Direction(_)));
     let moving = kernel.locals.iter().zip(&depends).filter(|(_, depends)| **depends).map(|(code, _)| code);

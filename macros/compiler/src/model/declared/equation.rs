@@ -1,5 +1,5 @@
-//! A group by an equation: the identity satisfies it, its Lie algebra is the kernel of the derivative there, and the equation holds
-//! along the group that this algebra generates.
+//! A group by an equation. The identity satisfies it, its Lie algebra is the kernel of the derivative there, and the
+//! equation holds along the group that this algebra generates.
 
 use clebsch_symbolic::{
     Elements, Expr, Graph, Group, IntoList, Property, Rational, Role, Shape, Sparse, both, indexed, reduce,

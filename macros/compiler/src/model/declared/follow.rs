@@ -9,7 +9,7 @@ use super::numbers::{Exact, Series};
 /// The order up to which curves are followed.
 const ORDER: usize = 8;
 
-/// The values of an expression at F = I; `None` where they are no rational numbers that can be held.
+/// The values of an expression at F = I; `None` if they are not rational numbers of the available size.
 pub(super) fn at_identity<'g>(expr: Expr<'g>, symbol: Expr<'g>) -> Option<Vec<Rational>> {
     let value = expr.evaluate(&mut |_| Matrix::scaled_identity(symbol.shape().rows, Exact::from_integer(1)));
     value.entries.into_iter().map(Exact::rational).collect()

@@ -86,7 +86,7 @@ fn check_literal(key: &str, stream: TokenStream) -> Result<(), Diagnostics> {
     Ok(())
 }
 
-/// The error for what is known at run time alone.
+/// The error for values that are known only at run time.
 fn not_literal(place: Location, key: &str, what: &str) -> Diagnostic {
     error!(place, "the {key} cannot depend on {what}";
         help "write the numbers themselves";
@@ -123,7 +123,7 @@ fn spell_matrix(shape: Shape, entries: &[Rational]) -> String {
     format!("[{}]", rows.join("; "))
 }
 
-/// The first bracket of two elements of a basis that lies outside of their span: which, and what it is.
+/// The first bracket of two elements of a basis that lies outside of their span: the elements and the bracket.
 fn open_bracket(graph: &Graph, shape: Shape, basis: &[Sparse]) -> Option<(usize, usize, Vec<Rational>)> {
     let algebra = graph.algebra(shape, basis.to_vec());
     let span = graph.span(algebra);

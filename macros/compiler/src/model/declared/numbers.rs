@@ -1,5 +1,5 @@
-//! What equations are evaluated with: exact rational numbers that can be copied, and truncated power series, which say how a formula
-//! changes along a curve.
+//! The numbers in which equations are evaluated: exact rational numbers that can be copied, and truncated power series.
+//! The latter give the change of a formula along a curve.
 
 use clebsch_symbolic::{Analytic, Function, Matrix, Number, Rational, Shape};
 
@@ -33,7 +33,7 @@ macro_rules! without_functions {
 pub(super) struct Exact(Option<(i128, i128)>);
 
 impl Exact {
-    /// The number, if it could be held.
+    /// The number, if it fits.
     pub fn rational(self) -> Option<Rational> {
         self.0.map(|(numerator, denominator)| Rational::new(numerator, denominator))
     }

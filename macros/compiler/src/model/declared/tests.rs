@@ -90,7 +90,7 @@ fn dimensions_of_declared_groups() {
     }
 }
 
-/// What is no group, with what the first line says.
+/// Equations that define no group, with the first line of the message.
 #[test]
 #[rustfmt::skip]
 fn solutions_that_are_no_group_are_refused() {

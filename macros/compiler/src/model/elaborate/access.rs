@@ -120,7 +120,7 @@ impl<'g> Elaborator<'_, '_, 'g> {
     }
 }
 
-/// What to write in place of `base.index`, where the base has that entry.
+/// The replacement of `base.index`, if the base has that entry.
 fn instead_of_part(base: &str, index: usize, value: &Value) -> Option<String> {
     match value {
         Value::Array(_) => Some(format!("write `{base}[{index}]`")),

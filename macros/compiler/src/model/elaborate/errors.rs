@@ -8,7 +8,7 @@ use super::{Elaborator, Value};
 use crate::diagnostic::{Diagnostic, Location, error};
 use crate::parse::{parenthesized, spell};
 
-/// What an operator does, for messages.
+/// The verb for an operator, for messages.
 pub(super) fn verb(operator: &BinOp) -> &'static str {
     match operator {
         BinOp::Add(_) => "added",
@@ -93,7 +93,7 @@ impl<'g> Elaborator<'_, '_, 'g> {
     }
 }
 
-/// Where an expression is, by its keyword if it has one, what it is, and what to write instead.
+/// Where an expression is (by its keyword if it has one), its kind, and its replacement.
 fn describe(syntax: &Syntax) -> (Location, &'static str, String) {
     let at = |span: Span, what, help: &str| (span.into(), what, help.to_string());
     let whole = |what, help: &str| (Location::from(syntax), what, help.to_string());

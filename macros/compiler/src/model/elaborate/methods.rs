@@ -95,7 +95,7 @@ impl<'g> Elaborator<'_, '_, 'g> {
         self.build(call, &[a, a], Growth::Product, || make(a))
     }
 
-    /// What methods make of an identity whose size is still open.
+    /// The results of methods of an identity whose size is still open.
     fn of_identity(&mut self, rule: Rule, call: &ExprMethodCall, scale: Expr<'g>) -> Option<Value<'g>> {
         match (call.method.to_string().as_str(), rule) {
             ("transpose" | "symmetric_part", _) => return Some(Value::Identity(scale)),

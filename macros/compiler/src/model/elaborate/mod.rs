@@ -33,14 +33,14 @@ use crate::parse::{Closure, parenthesized, shortened, spell};
 
 /// Operators and methods inside each other.
 const DEPTH: usize = 200;
-/// Expressions that one closure may have, ranges written out.
+/// The most expressions of one closure, with ranges expanded.
 const WORK: usize = 100_000;
 /// The weight of one expression: factors, terms and digits together.
 const WEIGHT: u64 = 1 << 14;
 /// Functions of functions, products of sums of products.
 const NESTING: u32 = 512;
 
-/// What the elaboration of all closures shares.
+/// The data that the elaboration of all closures shares.
 pub(super) struct Context<'c, 'g> {
     pub graph: &'g Graph,
     pub fields: &'c Fields<'g>,
@@ -69,7 +69,7 @@ impl<'c, 'g> Context<'c, 'g> {
 /// Elaborates the body of one closure.
 pub(super) struct Elaborator<'e, 'c, 'g> {
     pub context: &'e mut Context<'c, 'g>,
-    /// What the closure gives, `potential`.
+    /// The key of the closure, `potential`.
     pub key: &'e str,
     scope: Scope<'g>,
     /// Expressions whose values lie on a group.
@@ -250,7 +250,7 @@ impl<'e, 'c, 'g> Elaborator<'e, 'c, 'g> {
         Some(expr)
     }
 
-    /// The size of what is made of some operands, unless it is too large.
+    /// The size of the result of some operands, unless it is too large.
     fn grown(&mut self, at: &dyn ToTokens, operands: &[Expr<'g>], growth: Growth) -> Option<Size> {
         let sizes: Vec<Size> = operands.each(|&operand| self.size(operand));
         let nesting = sizes.iter().map(|size| size.nesting).max().unwrap_or(0);

@@ -136,8 +136,8 @@ impl<'g> Elaborator<'_, '_, 'g> {
         Some(Value::Matrix(product))
     }
 
-    /// The argument of the action with the group that it most likely has, where the groups of two do not fit each other, or one does not fit a
-    /// vector: `R: SO<3>`.
+    /// The argument of the action with the group that it most likely has, `R: SO<3>`. It serves where the groups of two
+    /// arguments do not fit each other, or one does not fit a vector.
     fn meant_group(&self, at: &ExprBinary, left: Expr<'g>, right: Expr<'g>) -> Option<String> {
         let argument = |expr: Expr<'g>, syntax: &Syntax| {
             let Syntax::Path(path) = syntax else { return None };

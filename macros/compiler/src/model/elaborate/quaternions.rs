@@ -25,7 +25,7 @@ pub(super) const METHODS: [(&str, QuaternionRule, &str); 7] = [
     ("normalize",    (2, Growth::Power(2), |q| q.normalize(),     true), "q/|q|"),
 ];
 
-/// Methods of matrices and of nalgebra's quaternions, and what to write instead.
+/// Methods of matrices and of nalgebra's quaternions, and their replacements.
 #[rustfmt::skip]
 const SYNONYMS: [(&str, &str); 9] = [
     ("transpose", "conjugate"), ("adjoint", "conjugate"), ("vector", "imag"), ("as_vector", "imag"), ("real", "scalar"),
@@ -33,7 +33,7 @@ const SYNONYMS: [(&str, &str); 9] = [
 ];
 
 impl<'g> Elaborator<'_, '_, 'g> {
-    /// An operator of which at least one side is a quaternion.
+    /// An operator with a quaternion on at least one side.
     pub(super) fn quaternions(&mut self, link: &ExprBinary, left: Value<'g>, right: Value<'g>) -> Option<Value<'g>> {
         use BinOp::{Add, Div, Mul, Sub};
         let graph = self.graph();

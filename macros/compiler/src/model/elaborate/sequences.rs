@@ -1,4 +1,4 @@
-//! Arrays, tuples, ranges, and what is done to them: `[a, b]`, `(0..3).map(|i| …).sum()`.
+//! Arrays, tuples, ranges, and the operations on them: `[a, b]`, `(0..3).map(|i| …).sum()`.
 
 use clebsch_symbolic::{Expr, IntoList};
 use syn::{Expr as Syntax, ExprClosure, ExprMethodCall, ExprRange, ExprRepeat, RangeLimits};
@@ -34,7 +34,7 @@ impl<'g> Elaborator<'_, '_, 'g> {
         if is_power { self.range_of_power(range, start, end) } else { self.range_of_numbers(range, start, end) }
     }
 
-    /// A range whose ends are known here, written out.
+    /// A range with numbers for ends, expanded.
     pub(super) fn range_of_numbers(&mut self, range: &ExprRange, start: &Syntax, end: &Syntax) -> Option<Value<'g>> {
         let start = self.position(start, RANGE, "ends of ranges");
         let end = self.position(end, RANGE, "ends of ranges");

@@ -102,7 +102,7 @@ impl<'g> Elaborator<'_, '_, 'g> {
         }
     }
 
-    /// A scalar beside a sum.
+    /// A scalar factor of a sum.
     fn factor(&mut self, syntax: &Syntax, value: Value<'g>) -> Option<Expr<'g>> {
         let expr = self.as_matrix(syntax, value)?;
         if !expr.shape().is_scalar() {
@@ -113,7 +113,7 @@ impl<'g> Elaborator<'_, '_, 'g> {
         Some(expr)
     }
 
-    /// `q[i]`: what a site has.
+    /// `q[i]`: the value of a site.
     pub(super) fn site(&mut self, index: &ExprIndex, of: Each, own: Value<'g>) -> Option<Value<'g>> {
         let place = match self.elaborate(&index.index)? {
             Value::Wrapped(expr) => SiteIndex { index: expr, wraps: true },

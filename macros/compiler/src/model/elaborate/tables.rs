@@ -1,4 +1,4 @@
-//! The methods of closures as data: name, what they are applied to, and the expression that they make.
+//! The methods of closures as data: name, type of the receiver, and the resulting expression.
 
 use clebsch_symbolic::{Expr, Function, Shape};
 use syn::ExprMethodCall;
@@ -12,7 +12,7 @@ pub(super) type Binary = for<'g> fn(Expr<'g>, Expr<'g>) -> Expr<'g>;
 pub(super) type Method =
     for<'e, 'c, 'g> fn(&mut Elaborator<'e, 'c, 'g>, &ExprMethodCall, Expr<'g>) -> Option<Value<'g>>;
 
-/// What a method is applied to, and how it makes its value.
+/// The receiver of a method, and how the method makes its value.
 #[derive(Copy, Clone)]
 pub(super) enum Rule {
     /// Any matrix.
@@ -118,7 +118,7 @@ pub(super) const METHODS: [(&str, usize, Rule, &str); 39] = [
     ("ln",             0, Rule::Scalar(Function::Ln), "ln x, the natural logarithm"),
 ];
 
-/// Methods without a derivative everywhere: why, and what to write instead, with `…` for the receiver.
+/// Methods without a derivative everywhere: the reason, and the replacement, with `…` for the receiver.
 #[rustfmt::skip]
 pub(super) const REFUSED: [(&str, &str, &str); 19] = [
     ("abs",        "has no derivative at 0",               "smooth it, `(… * … + self.width * self.width).sqrt()`"),

@@ -1,4 +1,4 @@
-//! Tables: an expression and what it means, an expression and what is wrong with it.
+//! Tables: an expression and its meaning, an expression and its mistake.
 
 use super::super::slots::COST;
 use clebsch_symbolic::{Graph, Property, Role, Shape, identity};
@@ -110,7 +110,7 @@ fn meaning(expression: &str) -> String {
     elaborate(expression).unwrap_or_else(|errors| errors.to_string())
 }
 
-/// All lines of a table that do not hold, with what was found.
+/// All lines of a table that fail, with the actual result.
 #[track_caller]
 fn check(table: &[(&str, &str)], found: impl Fn(&str) -> String) {
     let differs = |(expression, expected): &(&str, &str)| {

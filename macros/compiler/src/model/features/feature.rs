@@ -1,9 +1,9 @@
-//! What a declaration can have that does not go with everything.
+//! Features of a declaration that do not go with everything.
 
-/// The features with what messages and docs call them.
+/// The features with their names in messages and docs.
 macro_rules! features {
     ($($feature:ident $words:literal,)+) => {
-        /// A feature: a key, a value of a dial, or what a stage finds out about a declaration.
+        /// A feature: a key, a value of a dial, or a property that a stage finds in a declaration.
         #[derive(Copy, Clone, PartialEq, Eq, Debug)]
         pub(crate) enum Feature {
             $($feature,)+
@@ -20,7 +20,7 @@ macro_rules! features {
                 self.words().strip_prefix('`').and_then(|word| word.strip_suffix('`')) == Some(name)
             }
 
-            /// Whether it is a key of this name, a value of one, or what one declares.
+            /// Whether it is a key of this name, a value of one, or a declaration by one.
             pub fn belongs_to(self, name: &str) -> bool {
                 match self {
                     Feature::OpaquePotential => name == "potential",

@@ -13,7 +13,7 @@ const UNROLLED: &str = "leave out `code`, or write `code = unrolled`";
 const WITHOUT_MATRICES: &[Feature] =
     &[Inputs, Power, Quaternions, ExactDrifts, FreeRotation, Collocation, HeldConfiguration, GeneralLagrangian];
 
-/// What is refused, beside what, the message, why, and what to write.
+/// The refused features, the others, the message, the reason, and the replacement.
 #[rustfmt::skip]
 pub(super) const ROWS: [Row; 48] = [
     // inputs move the configuration
