@@ -114,8 +114,7 @@ functions! {
         fn on_space(q: Q, rest: Rest) -> (Q, Rest) { Id::Advance => }
     }
 
-    /// `Substep`: kicks, forces, gradients, the solve and the update. If a declaration does not have one, the trait
-    /// provides it.
+    /// `Substep`: kicks, forces, gradients, the solve and the update. The trait provides those that a declaration lacks.
     SUBSTEP(true) {
         /// The kick at the start of a step.
         fn start_kick(&self, c: &C, t: T, q: &Q) -> Option<Mu> { Id::StartKick(0) }
