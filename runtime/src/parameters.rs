@@ -13,28 +13,28 @@ const SINGULAR: Error = Error::SingularKineticEnergy { condition: f64::INFINITY 
 
 /// A constant of the user's crate that a closure reads.
 #[diagnostic::on_unimplemented(
-    message = "a constant that a closure reads is an `f64` or an `f32`, not `{Self}`",
-    label = "this is neither",
+    message = "a constant that a closure reads is a number, not `{Self}`",
+    label = "this is none",
     note = "write `const NAME: f64 = …;`, or read a vector or a matrix from a field, as in `self.center`"
 )]
 pub trait Constant {
-    /// The same number.
+    /// The same number; the nearest one for integers beyond 2⁵³.
     fn to_f64(self) -> f64;
 }
 
-impl Constant for f64 {
-    #[inline(always)]
-    fn to_f64(self) -> f64 {
-        self
-    }
+/// Implements [`Constant`].
+macro_rules! constants {
+    ($($number:ty)*) => { $(
+        impl Constant for $number {
+            #[inline(always)]
+            fn to_f64(self) -> f64 {
+                self as f64
+            }
+        }
+    )* };
 }
 
-impl Constant for f32 {
-    #[inline(always)]
-    fn to_f64(self) -> f64 {
-        self.into()
-    }
-}
+constants!(f32 f64 i8 i16 i32 i64 isize u8 u16 u32 u64 usize);
 
 /// A constant in the precision of a system.
 #[inline(always)]

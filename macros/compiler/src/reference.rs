@@ -103,7 +103,7 @@ A closure is one formula, in the syntax of Rust and the names of nalgebra. The m
 | `1 / 2`, `0.1` | exact rational numbers |
 | `h`, `t` | the step and the time, where they are arguments |
 | `I` | the identity matrix of the size that fits |
-| `PI`, `GRAVITY`, `path::G` | π, and scalar constants of your crate |
+| `PI`, `GRAVITY`, `path::G` | π, and constants of your crate: floats and integers |
 | `self.name` | a field |
 | `a + b`, `a - b`, `-a`, `a * b`, `a / b` | sums and products of matrices; only scalars divide |
 | `v.x`, `v[0]`, `m[(0, 1)]` | entries, counted from 0 |

@@ -92,3 +92,26 @@ potentials! {
     made_vectors: Vector3::new(x.y, x.z * x.x, s).dot(&Vector3::new(x.x, 1.0, x.y)) + Vector3::z().dot(&x);
     columns: a.column(1).dot(&x) * (a * x)[2];
 }
+
+const COUNT: usize = 3;
+const G: f64 = 9.81;
+
+/// A potential of constants of several types, of one letter, of the struct, and of its generics.
+#[derive(Clebsch, Clone, Debug)]
+#[clebsch(
+    action    = |a: Translation<3>, x: Vector3| x + a,
+    cost      = |h, a| a.norm_squared() / (2 * h),
+    potential = |x| COUNT * x.x + self::G * x.y + Self::LEGS * x.z + (D - SIZE) * x.norm_squared(),
+)]
+struct Constants<const D: usize, const SIZE: i16>;
+
+impl<const D: usize, const SIZE: i16> Constants<D, SIZE> {
+    const LEGS: i64 = -4;
+}
+
+#[test]
+fn constants_are_numbers_of_any_type() {
+    let x = Vector3::new(0.5, 0.25, 2.0);
+    let plain = 3.0 * 0.5 + 9.81 * 0.25 - 4.0 * 2.0 + (7.0 + 2.0) * x.norm_squared();
+    assert_eq!(Constants::<7, -2>.potential(0.0, &x), plain);
+}

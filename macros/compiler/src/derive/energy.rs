@@ -25,11 +25,16 @@ pub(super) fn kinetic<'g>(
 ) -> Result<Energy<'g>, Diagnostics> {
     if let Kinetic::Lagrangian { energy, velocities, .. } = &model.kinetic {
         let replaced: Vec<_> = velocities.iter().copied().zip(system.symbols.algebra.iter().copied()).into_list();
-        return declared(system, energy.substitute(&replaced));
+        return declared(model, system, energy.substitute(&replaced));
     }
     let derivatives = along_exponential(system, cost);
     let second = (model.step_size * derivatives[1] / 2).expand();
     let gyroscopic = gyroscopic(model, derivatives[0])?;
+    if !gyroscopic.is_zero() {
+        let limit = if second.is_zero() { Some(second) } else { limit(second, model.step_size) };
+        let of_limit = |limit| check_order(model, &system.symbols.algebra, limit, gyroscopic);
+        limit.map_or(Ok(()), of_limit)?;
+    }
     let kinetic = check_scaling(model, second)?;
     let general = if is_quadratic(model, &derivatives) { None } else { Some(general(system, cost)?) };
     check_rank(system, kinetic)?;
@@ -53,8 +58,12 @@ fn general<'g>(system: &SystemFormulas<'g>, cost: Expr<'g>) -> Result<Expr<'g>, 
 }
 
 /// The parts of a declared Lagrangian ℓ(t, q, ξ): of second and of first order in ξ.
-fn declared<'g>(system: &SystemFormulas<'g>, lagrangian: Expr<'g>) -> Result<Energy<'g>, Diagnostics> {
-    let (graph, algebra) = (system.model.graph, &system.symbols.algebra);
+fn declared<'g>(
+    model: &Mechanics<'g>,
+    system: &SystemFormulas<'g>,
+    lagrangian: Expr<'g>,
+) -> Result<Energy<'g>, Diagnostics> {
+    let (graph, algebra) = (model.graph, &system.symbols.algebra);
     let rest = at_zero(algebra.iter().copied());
     let directions: Vec<_> = algebra.each(|xi| (*xi, *xi));
     let first = lagrangian.differential(&directions);
@@ -67,6 +76,9 @@ fn declared<'g>(system: &SystemFormulas<'g>, lagrangian: Expr<'g>) -> Result<Ene
     let quadratic = identity::equal(&[twice.differential(&directions)], &[2 * twice]);
     let half = if quadratic { twice } else { twice_second_order(algebra, &rest, lagrangian) } / 2;
     let kinetic = half.expand();
+    if quadratic {
+        check_order(model, algebra, kinetic, gyroscopic)?;
+    }
     check_rank(system, kinetic)?;
     let general = (!quadratic).then(|| lagrangian - lagrangian.substitute(&rest));
     Ok(Energy { kinetic, gyroscopic, general })
@@ -167,6 +179,31 @@ fn is_quadratic<'g>(model: &System<'g>, derivatives: &[Expr<'g>]) -> bool {
             && derivative.least_exponent(model.step_size).is_some_and(|least| least <= integer(1 - order))
     };
     !(survives(3) || survives(4))
+}
+
+/// Refuses velocities of which ½ ξ·Σξ + A(t, q)·ξ has the linear part alone: their momentum is A, which determines no velocity.
+fn check_order<'g>(
+    model: &Mechanics<'g>,
+    algebra: &[Expr<'g>],
+    kinetic: Expr<'g>,
+    gyroscopic: Expr<'g>,
+) -> Result<(), Diagnostics> {
+    let is_linear = |xi: &Expr<'g>| gyroscopic.depends_on(*xi) && identity::vanishes(kinetic.gradient(*xi));
+    let linear: Vec<usize> = (0..algebra.len()).filter(|k| is_linear(&algebra[*k])).into_list();
+    if linear.is_empty() {
+        return Ok(());
+    }
+    let (what, of_each): (_, Vec<String>) = match &model.kinetic {
+        Kinetic::Cost(_) => ("cost", linear.each(|k| format!("of `{}`", model.factors[*k].name))),
+        Kinetic::Lagrangian { velocities, .. } => ("lagrangian", linear.each(|k| format!("`{}`", velocities[*k]))),
+    };
+    let velocity = match of_each.as_slice() {
+        [one] => format!("the velocity {one}"),
+        all => format!("the velocities {}", all.join(", ")),
+    };
+    bail!(model.spans.kinetic.place, "the {what} is linear in {velocity}, so no momentum determines a velocity";
+        note "that momentum is a function of the configuration: T*Q is not the phase space, and the motion is of first order in time";
+        note "systems of first order, as point vortices and guiding centres are, cannot be declared yet");
 }
 
 fn check_rank<'g>(system: &SystemFormulas<'g>, energy: Expr<'g>) -> Result<(), Diagnostics> {

@@ -239,6 +239,7 @@ pub(super) fn suggestion(name: &str, names: GroupNames) -> Option<String> {
         "Unitary" => Some("U"),
         "Lorentz" => return Some("SO<1, 3>".into()),
         "UnitQuaternion" => return Some("SU<2>".into()),
+        "UnitComplex" => return Some("SO<2>".into()),
         "Translate" | "Shift" => Some("Translation"),
         _ => None,
     };

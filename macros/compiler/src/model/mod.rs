@@ -89,7 +89,7 @@ pub fn model<'g>(graph: &'g Graph, declaration: &Declaration) -> Result<Model<'g
     let power = sites
         .zip(typed.space.clone())
         .map(|(length, space)| Sites::new(graph, length, space, types.configuration.spell(), fields.leaf_count()));
-    let mut context = Context::new(graph, &fields, power, &diagnostics);
+    let mut context = Context::new(graph, &fields, &declaration.generics, power, &diagnostics);
     let formulas = ClosureValues::read(&mut context, declaration, &arguments, &typed, names);
     let Context { constants, power, .. } = context;
     let Arguments { step_size, time, .. } = arguments;

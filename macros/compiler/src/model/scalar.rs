@@ -30,6 +30,12 @@ impl<'d> Agreement<'d> {
     /// Compares one more scalar with those before.
     pub fn meet(&mut self, ty: &Type, whose: &str) {
         let text = spell_type(ty);
+        if last_name(ty) == "Complex" {
+            report!(self.diagnostics, ty, "the scalar of {whose} is `{text}`, and all scalars are real";
+                help "write real numbers, twice as many: the real parts before the imaginary parts";
+                note "`U<N>` moves vectors of 2N real components, and `SU<2>` moves a `Quaternion`");
+            return;
+        }
         let Some(scalar) = named_scalar(&last_name(ty), self.generics) else {
             report!(self.diagnostics, ty, "the scalar `{text}` of {whose} is neither `f64`, `f32` nor a type parameter";
                 help "write `f64`"; note "a macro cannot see what an alias stands for");

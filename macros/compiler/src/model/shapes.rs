@@ -167,6 +167,7 @@ pub(super) fn hint(name: &str) -> Option<String> {
         ("Vec" | "DVector", None) => {
             Some("write a vector of fixed size, like `Vector3<f64>` or `SVector<f64, 8>`".into())
         }
+        ("Complex", None) => Some("write `Vector2<f64>`, the real part before the imaginary part".into()),
         ("DMatrix", None) => Some("write a matrix of fixed size, like `Matrix3<f64>` or `SMatrix<f64, 2, 8>`".into()),
         _ => None,
     }

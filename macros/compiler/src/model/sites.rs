@@ -7,7 +7,6 @@ use proc_macro2::Ident;
 use super::features::{self, Feature, Found};
 use super::power::{Range, SiteIndex, Term};
 use super::space::Space;
-use super::value::Value;
 use super::{Configuration, Item, Leaf, Order, Parameter, Part, Power, ScalarType, System};
 use crate::diagnostic::Diagnostics;
 use crate::parse::{Declaration, Potential};
@@ -44,14 +43,15 @@ impl<'g> Sites<'g> {
         })
     }
 
-    pub fn configuration_at(&self, place: usize) -> Value<'g> {
+    /// The configuration of the site at a place.
+    pub fn configuration_at(&self, place: usize) -> Space<'g> {
         let text = self.places[place].text();
         let leaf = |(number, leaf): (usize, &Configuration<'g>)| {
             let name = format!("{}[{text}]{}", self.pattern, leaf.accessor);
-            Value::leaf(like(leaf.symbol, &name, Role::At(place, number)), leaf.is_quaternion)
+            Configuration { symbol: like(leaf.symbol, &name, Role::At(place, number)), name, ..leaf.clone() }
         };
-        let leaves: Vec<Value<'g>> = self.space.leaves.iter().enumerate().map(leaf).into_list();
-        Value::nested(&self.space.layout, &leaves)
+        let leaves = self.space.leaves.iter().enumerate().map(leaf).into_list();
+        Space { layout: self.space.layout.clone(), leaves }
     }
 
     /// The value of a field at a place. When it is first met it gets new symbols, like those of the site itself.

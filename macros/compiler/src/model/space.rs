@@ -1,12 +1,12 @@
 //! Products of spaces: their leaves, the expressions of a value for each leaf, and the names that a pattern gives them.
 
-use clebsch_symbolic::{Elements, Expr, Graph, IntoList, Role};
+use clebsch_symbolic::{Elements, Expr, Graph, Group, IntoList, Role};
 use syn::ext::IdentExt;
 use syn::{Expr as Syntax, Ident};
 
 use super::spaces::{Product, SpaceType};
 use super::value::Value;
-use super::{Configuration, Layout, quaternion};
+use super::{Configuration, Layout, LeafSpace, quaternion};
 use crate::diagnostic::{Diagnostics, refuse};
 use crate::parse::{Pattern, shortened, tail};
 
@@ -45,6 +45,14 @@ impl<'g> Space<'g> {
     pub fn value(&self) -> Value<'g> {
         let values: Vec<_> = self.leaves.each(|leaf| Value::leaf(leaf.symbol, leaf.is_quaternion));
         Value::nested(&self.layout, &values)
+    }
+
+    /// The symbols of leaves that lie on a group.
+    pub fn members(&self) -> impl Iterator<Item = (Expr<'g>, Group)> {
+        self.leaves.iter().filter_map(|leaf| match leaf.space {
+            LeafSpace::Group(group) => Some((leaf.symbol, group)),
+            LeafSpace::Vectors | LeafSpace::Unit => None,
+        })
     }
 
     /// The value of a closure, or of a part of its body, leaf by leaf. An error names the part that does not fit. `is`

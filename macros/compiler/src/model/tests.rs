@@ -152,3 +152,36 @@ fn what_is_no_action() {
         ("|F: Heisenberg<1>, q: Heisenberg<1>| F.transpose() * q", "error: the action moves `q` to `Fᵀ*q`, which is not always in Heisenberg<1>"),
     ]);
 }
+
+/// The configuration of a site lies on the group that the action names: closures of a power read the same parts as those of a single system.
+#[test]
+fn sites_are_on_their_group() {
+    for (group, read) in [
+        ("SE<2>", "q[i].rotation().trace() + q[i].translation().x"),
+        ("SE<3>", "(q[i].inverse() * q[i]).rotation().inverse().trace() + q[i].translation().x"),
+        ("Aff<2>", "q[i].rotation().inverse().trace() + q[i].translation().x"),
+        ("Sim<3>", "q[i].rotation().trace() + (q[i] * q[i]).translation().x"),
+        ("SO<4>", "q[i].inverse().trace()"),
+        ("SU<2>", "(q[i].inverse() * self.axis).x"),
+        ("(SE<3>, SU<2>)", "q[i].0.translation().x + (q[i].1 * self.axis).x"),
+    ] {
+        let (product, square) = match group {
+            "(SE<3>, SU<2>)" => ("(q[i].0 * F[i].0, q[i].1 * F[i].1)", "w[i].0.norm_squared() + w[i].1.norm_squared()"),
+            _ => ("q[i] * F[i]", "w[i].norm_squared()"),
+        };
+        for (generics, n) in [("<const N: usize>", "N"), ("", "4")] {
+            for neighbour in ["i".to_string(), format!("(i + 1) % {n}")] {
+                let potential = read.replace("[i]", &format!("[{neighbour}]"));
+                let metric = format!("(1 + ({read}).powi(2))");
+                let item = format!(
+                    "#[clebsch(action = |F: [{group}; {n}], q: [{group}; {n}]| (0..{n}).map(|i| {product}),
+                        lagrangian = |q, w| (0..{n}).map(|i| {metric} * ({square}) / 2).sum(), potential = |q| (0..{n}).map(|i| {potential}).sum())]
+                    struct S{generics} {{ axis: Vector3<f64> }}"
+                );
+                let declaration = parse(item.parse().expect("the table holds Rust")).expect("a declaration");
+                let errors = model(&Graph::new(), &declaration).err();
+                assert!(errors.is_none(), "{item}\n{}", errors.unwrap_or_default());
+            }
+        }
+    }
+}

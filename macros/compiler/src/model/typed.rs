@@ -12,7 +12,7 @@ use super::slots::{Matched, Slot};
 use super::space::{Space, leaf_names};
 use super::spaces::{Product, SpaceType};
 use super::value::{Each, Value};
-use super::{Access, Factor, Layout, LeafSpace, Side};
+use super::{Access, Factor, Layout, Side};
 use crate::diagnostic::{Diagnostics, Location};
 use crate::parse::{Closure, Pattern};
 
@@ -64,11 +64,7 @@ impl<'g> Typed<'g> {
         for factor in self.factors.iter().flatten().filter(|factor| !factor.group.is_translation()) {
             members.push((factor.symbol, factor.group));
         }
-        for leaf in self.space.iter().flat_map(|space| &space.leaves) {
-            if let LeafSpace::Group(group) = leaf.space {
-                members.push((leaf.symbol, group));
-            }
-        }
+        members.extend(self.space.iter().flat_map(Space::members));
         Arguments {
             names,
             element_value: self.factors.as_ref().map(|all| element(all).of_each(Each::Motion, is_power)),

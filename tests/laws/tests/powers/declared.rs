@@ -193,6 +193,43 @@ twice!(molecules_of_arms, molecules, |random: &mut Random| {
     (Looped::<4> { mass, inertia, arm, stiffness }, Unrolled { mass, inertia, arm, stiffness }, q, mu)
 });
 
+macro_rules! beams {
+    ($name:ident, [$($generics:tt)*], $n:tt) => {
+        /// A rod of rigid sections: each spring is known from the position and the attitude of a section in the frame of the one before.
+        #[derive(Clebsch, Clone, Debug)]
+        #[clebsch(
+            action     = |F: [SE<3>; $n], q: [SE<3>; $n]| (0..$n).map(|i| q[i] * F[i]),
+            lagrangian = |xi| (0..$n).map(|i| xi[i].dot(&(self.inertia * xi[i])) / 2).sum(),
+            potential  = |q| (0..$n - 1).map(|i| {
+                let section = q[i].inverse() * q[i + 1];
+                self.stretch * (section.translation() - self.length * Vector3::x()).norm_squared() / 2 - self.bend * section.rotation().trace()
+            }).sum() + (0..$n).map(|i| self.weight * q[i].translation().z).sum() + self.wall * (q[0].rotation().inverse() * q[0].translation()).x,
+        )]
+        pub struct $name $($generics)* {
+            #[clebsch(symmetric)]
+            pub inertia: Matrix6<f64>,
+            pub stretch: f64,
+            pub bend: f64,
+            pub length: f64,
+            pub weight: f64,
+            pub wall: f64,
+        }
+    };
+}
+twice!(rod_of_sections, beams, |random: &mut Random| {
+    let (inertia, stretch, bend, length) = (random.inertia(), random.number(), random.number(), random.number());
+    let (weight, wall) = (random.number(), random.number());
+    let place = |random: &mut Random| {
+        let mut place = random.rotation::<3>(1.0).to_homogeneous();
+        place.fixed_view_mut::<3, 1>(0, 3).copy_from(&random.vector::<3>());
+        place
+    };
+    let q: [Matrix4<f64>; 4] = std::array::from_fn(|_| place(random));
+    let mu: [Vector6<f64>; 4] = std::array::from_fn(|_| random.vector());
+    let looped = Looped::<4> { inertia, stretch, bend, length, weight, wall };
+    (looped, Unrolled { inertia, stretch, bend, length, weight, wall }, q, mu)
+});
+
 /// The compiler says what it chose: rings and chains gather, sums over pairs add up, and each of both stands in a test of this file.
 #[test]
 fn gradients_are_gathered_where_few_terms_read_a_site() {

@@ -102,9 +102,9 @@ proptest! {
         prop_assert_eq!(F64x8::splat(x).to_f64().to_bits(), x.to_bits());
     }
 
-    /// A constant has the value of its `f64` or `f32`, which `to_f64` gives, rounded once to the scalar.
+    /// A constant has the value of its number, which `to_f64` gives, rounded once to the scalar.
     #[test]
-    fn constants_are_rounded_once(x in any::<f64>()) {
+    fn constants_are_rounded_once(x in any::<f64>(), n in any::<i32>(), size in any::<usize>(), long in -1_i64 << 53..=1 << 53) {
         let single = x as f32;
         prop_assert_eq!(private::constant::<f64>(x).to_bits(), x.to_bits());
         prop_assert_eq!(private::constant::<f32>(x).to_bits(), single.to_bits());
@@ -112,6 +112,11 @@ proptest! {
         prop_assert_eq!(private::constant::<f64>(single).to_bits(), f64::from(single).to_bits());
         prop_assert_eq!(private::Constant::to_f64(single).to_bits(), f64::from(single).to_bits());
         prop_assert_eq!(private::constant::<F64x8>(x).to_array().map(f64::to_bits), [x.to_bits(); 8]);
+        // integers of less than 54 bits are numbers of `f64`
+        prop_assert_eq!(private::constant::<f64>(n), f64::from(n));
+        prop_assert_eq!(private::Constant::to_f64(long) as i64, long);
+        let distance = (private::constant::<f64>(size) as u128).abs_diff(size as u128);
+        prop_assert!(2 * distance <= (size >> 52) as u128, "{size} is {distance} away");
     }
 
     /// Comparisons, choices and finiteness lane by lane; `one_number` for a single number.

@@ -9,6 +9,7 @@ mod tests;
 
 use clebsch_symbolic::{Graph, IntoList, Rational, Shape, Sparse, integer};
 use proc_macro2::{Ident, Span, TokenStream, TokenTree};
+use syn::Generics;
 use syn::ext::IdentExt;
 
 use super::Constant;
@@ -58,7 +59,8 @@ fn elaborate<'g, R>(
     work: impl FnOnce(&mut Elaborator<'_, '_, 'g>) -> Option<R>,
 ) -> Result<R, Diagnostics> {
     let (fields, diagnostics) = (Fields::none(), Diagnostics::new());
-    let mut context = Context::new(graph, &fields, None, &diagnostics);
+    let generics = Generics::default();
+    let mut context = Context::new(graph, &fields, &generics, None, &diagnostics);
     let value = work(&mut Elaborator::new(&mut context, key, scope));
     for Constant { path, .. } in &context.constants {
         diagnostics.push(not_literal(path.into(), key, &format!("the constant `{}`", spell_tokens(path))));

@@ -1,6 +1,6 @@
 //! Method calls: the table looked up, shapes checked, the expression made.
 
-use clebsch_symbolic::{Expr, Function, Rational, Shape, integer};
+use clebsch_symbolic::{Expr, Function, Rational, Role, Shape, integer};
 use syn::{Expr as Syntax, ExprMethodCall, Ident};
 
 use super::access::{is_self, strip};
@@ -8,6 +8,9 @@ use super::tables::{Binary, METHODS, NEEDLESS, REFUSED, Rule, SYNONYMS, Unary};
 use super::{Elaborator, Growth, Value, open_identity};
 use crate::diagnostic::{Diagnostic, LATER, error, meant, refuse};
 use crate::parse::{listed, parenthesized, shortened, spell};
+
+/// The logarithm of a group element, by the names that libraries give it.
+const LOGARITHMS: [&str; 6] = ["ln", "log", "logm", "log_map", "logarithm", "scaled_axis"];
 
 impl<'g> Elaborator<'_, '_, 'g> {
     pub(super) fn method_call(&mut self, call: &ExprMethodCall) -> Option<Value<'g>> {
@@ -18,6 +21,9 @@ impl<'g> Elaborator<'_, '_, 'g> {
             return self.refuse(error.maybe_help(self.opaque()).note(LATER));
         }
         let receiver = self.elaborate(&call.receiver);
+        if let Some(error) = receiver.as_ref().and_then(|receiver| self.function_of_matrix(call, receiver)) {
+            return self.refuse(error);
+        }
         if let Some(Value::Quaternion(q)) = receiver {
             return self.quaternion_method(call, q);
         }
@@ -37,6 +43,39 @@ impl<'g> Elaborator<'_, '_, 'g> {
                 self.plain(rule, call, a)
             }
         }
+    }
+
+    /// The error for the logarithm or the exponential of a matrix or of a quaternion.
+    fn function_of_matrix(&self, call: &ExprMethodCall, receiver: &Value<'g>) -> Option<Diagnostic> {
+        let (a, is_quaternion) = match receiver {
+            Value::Matrix(a) => (*a, false),
+            Value::Quaternion(q) => (*q, true),
+            _ => return None,
+        };
+        let (method, name) = (&call.method, call.method.to_string());
+        let is_logarithm = LOGARITHMS.contains(&name.as_str());
+        let is_square = a.shape().is_square() && !a.shape().is_scalar();
+        if !(is_square || is_quaternion) || !(is_logarithm || name == "exp") {
+            return None;
+        }
+        let (text, is) = (parenthesized(&call.receiver), receiver.describe());
+        let of = if is_quaternion { "quaternions" } else { "matrices" };
+        let error = error!(method, "`{text}` is {is}, and a closure has no `{name}` of {of}");
+        let is_fixed = |symbol: &Expr<'g>| matches!(symbol.role(), Some(Role::Parameter(_) | Role::Constant(_)));
+        Some(if a.symbols().iter().all(is_fixed) {
+            error.help("compute it once, and store the result in a field")
+        } else if !is_logarithm || self.group_of(a).is_none() {
+            error.note("functions are of scalars: an entry is `x[0]` or `a[(0, 0)]`")
+        } else if self.key == "cost" {
+            error
+                .help("write a `lagrangian` with `discretization = exponential`, as in `lagrangian = |xi| xi.norm_squared() / 2`")
+                .note("its step is F = exp(h*xi), so it is a function of the logarithm of F")
+        } else {
+            error
+                .help(format!("write a function that is smooth everywhere, as in `({text} - I).norm_squared()`"))
+                .maybe_help(self.opaque())
+                .note("a logarithm jumps, as it does where a rotation turns by half a circle")
+        })
     }
 
     fn unknown_method(&mut self, call: &ExprMethodCall, name: &str, receiver: Option<Value<'g>>) -> Option<Value<'g>> {

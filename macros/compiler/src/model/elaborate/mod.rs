@@ -19,7 +19,7 @@ mod tests;
 
 use clebsch_symbolic::{Elements, Expr, Graph, Group, Shape, Table};
 use quote::ToTokens;
-use syn::Expr as Syntax;
+use syn::{Expr as Syntax, Generics};
 
 pub(crate) use markdown::functions_as_markdown;
 
@@ -44,6 +44,8 @@ const NESTING: u32 = 512;
 pub(super) struct Context<'c, 'g> {
     pub graph: &'g Graph,
     pub fields: &'c Fields<'g>,
+    /// The generics of the struct.
+    pub generics: &'c Generics,
     pub constants: Vec<Constant<'g>>,
     /// The sites of a power; `None` where the declaration is none.
     pub power: Option<Sites<'g>>,
@@ -54,10 +56,11 @@ impl<'c, 'g> Context<'c, 'g> {
     pub fn new(
         graph: &'g Graph,
         fields: &'c Fields<'g>,
+        generics: &'c Generics,
         power: Option<Sites<'g>>,
         diagnostics: &'c Diagnostics,
     ) -> Self {
-        Context { graph, fields, constants: Vec::new(), power, diagnostics }
+        Context { graph, fields, generics, constants: Vec::new(), power, diagnostics }
     }
 
     /// The value of a closure with these names; `None` if it has an error, which was reported.

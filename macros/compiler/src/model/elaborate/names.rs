@@ -5,6 +5,7 @@ use syn::ext::IdentExt;
 use syn::{ExprLit, ExprPath, Ident, Lit, Path};
 
 use super::super::Constant;
+use super::super::shapes::const_generic;
 use super::{Elaborator, Value};
 use crate::diagnostic::{error, nearest, refuse};
 use crate::parse::{listed, spell_tokens};
@@ -42,7 +43,9 @@ impl<'g> Elaborator<'_, '_, 'g> {
             "I" => Some(Value::Identity(self.graph().integer(1))),
             "PI" => Some(Value::Matrix(self.graph().pi())),
             "self" => refuse!(self, ident, "`self` alone is no quantity"; help "read a field, as in `self.mass`"),
-            _ if is_constant_name(&name) => self.constant(&ident.clone().into()),
+            _ if is_constant_name(&name) || const_generic(&name, self.context.generics).is_some() => {
+                self.constant(&ident.clone().into())
+            }
             _ => self.unknown_name(ident, &name),
         }
     }
@@ -51,6 +54,13 @@ impl<'g> Elaborator<'_, '_, 'g> {
     fn constant(&mut self, path: &Path) -> Option<Value<'g>> {
         if path.segments.iter().any(|segment| !segment.arguments.is_empty()) {
             refuse!(self, path, "a constant has no generic arguments"; help "write the path of a scalar constant");
+        }
+        let first = path.segments.first().map(|segment| segment.ident.to_string()).unwrap_or_default();
+        let is_of_struct = first == "Self" || const_generic(&first, self.context.generics).is_some();
+        if is_of_struct && self.context.power.is_some() && self.key != "potential" {
+            let text = spell_tokens(path);
+            refuse!(self, path, "`{text}` belongs to all sites together, and the {} is that of one site", self.key;
+                help "write a constant outside of the struct, or a field, as in `self.{}`", text.to_lowercase().replace("self::", ""));
         }
         let known =
             self.context.constants.iter().position(|constant| spell_tokens(&constant.path) == spell_tokens(path));

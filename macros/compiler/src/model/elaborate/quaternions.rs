@@ -1,6 +1,6 @@
 //! Quaternions in formulas: `Quaternion::new(w, i, j, k)`, `Q * v`, `Q * Q`, `Q.imag()`, `.w`.
 
-use clebsch_symbolic::{Expr, Shape};
+use clebsch_symbolic::{Expr, Role, Shape};
 use syn::{BinOp, ExprBinary, ExprCall, ExprField, ExprMethodCall, Ident};
 
 use super::super::quaternion as algebra;
@@ -164,6 +164,25 @@ fn misfit(link: &ExprBinary, left: &Value, right: &Value) -> Diagnostic {
         (BinOp::Add(_) | BinOp::Sub(_), Value::Quaternion(_), right) if vector(right) => {
             error.help(format!("take the vector part, `{a}.imag()`"))
         }
+        (BinOp::Add(_) | BinOp::Sub(_), Value::Quaternion(_), Value::Matrix(right)) if is_four(right) => {
+            error.help(as_four(&a, &b, *right))
+        }
+        (BinOp::Add(_) | BinOp::Sub(_), Value::Matrix(left), Value::Quaternion(_)) if is_four(left) => {
+            error.help(as_four(&b, &a, *left))
+        }
         _ => error.note("a quaternion is added to a quaternion or to `I`, and multiplies a quaternion, a scalar or a vector of three components"),
+    }
+}
+
+fn is_four(vector: &Expr) -> bool {
+    vector.shape() == Shape::vector(algebra::COORDINATES)
+}
+
+/// What to write for the sum of a quaternion and a vector of four components: what shifts four numbers shifts a `Vector4`.
+fn as_four(quaternion: &str, vector: &str, value: Expr) -> String {
+    if matches!(value.role(), Some(Role::Element(_))) {
+        format!("write `Vector4` for the type of `{quaternion}`: it is the space that `Translation<4>` moves")
+    } else {
+        format!("make a quaternion of the vector, `Quaternion::new({vector}.w, {vector}.x, {vector}.y, {vector}.z)`")
     }
 }

@@ -138,7 +138,9 @@ impl<'g> Elaborator<'_, '_, 'g> {
             (_, false) if is_own => Some(own),
             (Each::Configuration, true) => {
                 let number = power.place(place);
-                Some(power.configuration_at(number))
+                let configuration = power.configuration_at(number);
+                configuration.members().for_each(|(leaf, group)| self.members.insert(leaf, group));
+                Some(configuration.value())
             }
             (Each::Field(field), true) => {
                 let parameter = &fields.parameters[field];

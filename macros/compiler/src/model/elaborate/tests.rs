@@ -59,7 +59,7 @@ fn with_value<R>(expression: &str, look: impl FnOnce(&Value) -> R) -> Result<R, 
     };
     let closure = declaration.kinetic.closure();
     let scope = arguments.scope_of(closure, COST);
-    let mut context = Context::new(&graph, &fields, None, &diagnostics);
+    let mut context = Context::new(&graph, &fields, &declaration.generics, None, &diagnostics);
     let value = Elaborator::new(&mut context, "cost", scope).elaborate(&closure.body);
     diagnostics.propagate(())?;
     Ok(look(&value.expect("a value, since there are no errors")))
@@ -367,7 +367,7 @@ fn rust_that_is_no_mathematics() {
         ("0.ln()",                      "`0.ln()` has no real value"),
         ("h.powi(h)",                   "`h` is no whole number known here"),
         ("h.powi(65)",                  "an exponent of `powi` goes from -64 to 64"),
-        ("(0..K).map(|i| i).sum()",     "cannot find `K` in the cost"),
+        ("(0..K).map(|i| i).sum()",     "`K` is no index: an index is a whole number known here"),
     ]);
 }
 
