@@ -178,9 +178,9 @@ pub(crate) fn eliminated<T: Scalar, const M: usize>(rows: [[T; M]; M], b: &SVect
 }
 
 /// x of A x = b and the sign of det A for a symmetric matrix. Where A is definite, A = L D Lᵀ needs no pivoting. This
-/// is stable (Higham, *Accuracy and Stability of Numerical Algorithms*, theorem 10.3). To leading orders it takes M³/6
-/// + 3M²/2 multiplications and M divisions. For large M this is about half the work of [`solve_dense`], and rows are
-/// not exchanged. Where the pivots differ in sign, [`solve_dense`] takes over.
+/// is stable (Higham, *Accuracy and Stability of Numerical Algorithms*, theorem 10.3). To leading orders it takes
+/// M³/6 + 3M²/2 multiplications and M divisions. For large M this is about half the work of [`solve_dense`], and rows
+/// are not exchanged. Where the pivots differ in sign, [`solve_dense`] takes over.
 #[inline]
 pub fn solve_symmetric<T: Scalar, const M: usize>(a: &SMatrix<T, M, M>, b: &SVector<T, M>) -> Solution<T, M> {
     let mut l = rows(a);
