@@ -26,8 +26,8 @@
 
 use core::convert::Infallible;
 
-/// The rotations of P-dimensional space, `SO<P>`. With a second number: the maps of P + Q dimensions that preserve x₁²
-/// + … + x_P² − x_{P+1}² − … − x_{P+Q}². The Lorentz group is `SO<1, 3>` or `SO<3, 1>`.
+/// The rotations of P-dimensional space, `SO<P>`. With a second number: the maps of P + Q dimensions that preserve
+/// x₁² + … + x_P² − x_{P+1}² − … − x_{P+Q}². The Lorentz group is `SO<1, 3>` or `SO<3, 1>`.
 ///
 /// Matrices F with FᵀηF = η and det F = 1, η = diag(1, …, 1, −1, …, −1); η = I for `SO<N>`. For Q > 0 these are two
 /// components, and steps stay in that of the identity. In the Lorentz group it is the one that preserves the direction

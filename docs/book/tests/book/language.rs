@@ -13,7 +13,7 @@ const WORDS: usize = 25;
 /// Words that have a second meaning here, and clauses in place of nouns.
 const PRIVATE: [&str; 8] = ["kept", "held", "the rest", "whole", "beside", "of which", "written out", "what"];
 
-/// What is counted together: a name, its Markdown files, the folders of its sources.
+/// The areas that are counted: a name, its Markdown files, the folders of its sources.
 fn areas() -> [(&'static str, Vec<PathBuf>); 5] {
     let root = root();
     let mut guides = files(&root.join("docs"), "md");

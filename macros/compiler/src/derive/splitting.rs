@@ -11,8 +11,7 @@ use crate::model::{Mechanics, Order};
 
 /// A step of drifts and kicks, with a force gradient where the potential is a formula.
 pub struct Splitting<'g> {
-    /// The share of a kick of the weights b and g in the discrete Lagrangian: U = −h b V + h³ g G·Σ⁻¹G with
-    /// G = J(q, ∂V).
+    /// A kick of the weights b and g adds U to the discrete Lagrangian. U = −h b V + h³ g G·Σ⁻¹G with G = J(q, ∂V).
     pub potential: Expr<'g>,
     /// J(q, ∂U) for each factor.
     pub kick: Vec<Expr<'g>>,

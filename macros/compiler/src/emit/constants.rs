@@ -18,7 +18,7 @@ impl Emitter<'_, '_> {
         let [declared, parameter] =
             both([quote!(<T: runtime::Scalar>), quote!(<T>)], |tokens| self.is_generic().then_some(tokens));
         quote! {
-            /// What no step changes: made once per stepper.
+            /// The constants of all steps of one stepper.
             #[derive(::core::clone::Clone, ::core::fmt::Debug)]
             pub struct #name #declared { #(#constants)* }
             type C = #name #parameter;

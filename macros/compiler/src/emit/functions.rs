@@ -53,7 +53,7 @@ macro_rules! functions {
 functions! {
     /// `Clebsch`, and those of `Method` among them, which are told the system.
     SYSTEM(false) {
-        /// Checks the parameters and computes what no step changes.
+        /// Checks the parameters and computes the constants.
         fn constants(Receiver, h: T) -> Result<Self::Constants, Error> { Id::Constants }
         /// The action.
         fn act(&self, f: &F, q: &Q) -> Q { Id::Action }
@@ -120,7 +120,7 @@ functions! {
         fn start_kick(&self, c: &C, t: T, q: &Q) -> Option<Mu> { Id::StartKick(0) }
         /// The kick at the end of a step.
         fn end_kick(&self, c: &C, t: T, q: &Q) -> Option<Mu> { Id::EndKick(0) }
-        /// What the cost gives at F = I, with the other sign.
+        /// The value of the cost at F = I, with the other sign.
         fn rest(&self, c: &C, t: T, q: &Q) -> Option<Mu> { Id::RestKick(0) }
         /// The impulse of the force at the start of a step.
         fn start_force(&self, c: &C, t: T, q: &Q, u: &U) -> Option<Mu> { Id::StartForce(0) => Id::Force }
@@ -146,7 +146,7 @@ functions! {
 
     /// `FreeMotion`: several steps along one motion.
     FREE_MOTION(true) {
-        /// What the free motions with this momentum keep.
+        /// The constants of the free motions with this momentum.
         fn kept(&self, c: &C, mu: &Mu) -> Self::Kept { Id::Constants }
         /// The coordinates of these motions.
         fn follow(&self, c: &C, kept: &Self::Kept, mu: &Mu) -> Result<(X, Mu), Error> { Id::Constants }
@@ -264,7 +264,7 @@ functions! {
                 adjoint: Matrix1, before: Matrix2, after: Matrix3, before_by_end: Matrix4, after_by_end: Matrix5,
             }
         }
-        /// ∂F⁻ℓd and ∂F⁺ℓd with respect to what is fixed during a step.
+        /// ∂F⁻ℓd and ∂F⁺ℓd with respect to the quantities that are fixed during a step.
         fn slopes(&self, c: &C, t: T, (q, d, next, u): Ends) -> Slopes { Id::EdgeSlopes(0) } = { Locals (Value0, Value1) }
     }
 
@@ -314,8 +314,8 @@ functions! {
         fn follow(&self, constants: &(C, T), t: T, x: &(Q, Mu), u: &Input) -> Result<(Q, Mu), Error> { Id::Increment => Id::Controls } = {
             runtime::forced_step(self, &constants.0, t, x, u)
         }
-        /// The forced step with its derivatives, and the second derivatives of ℓ + λ·(η′, N⁺): with the multipliers κ of the momentum
-        /// equation those of α·η′ + β·F⁺ℓd + κ·(F⁻ℓd − N), to which η′ contributes ± ½ α·[Ad η, ζ].
+        /// The forced step with its derivatives, and the second derivatives of ℓ + λ·(η′, N⁺). With the multipliers κ
+        /// of the momentum equation they are those of α·η′ + β·F⁺ℓd + κ·(F⁻ℓd − N). η′ contributes ± ½ α·[Ad η, ζ].
         fn expand(&self, constants: &(C, T), t: T, x: &(Q, Mu), u: &Input, costate: &Costates) -> Result<Expansion, Error> {
             Id::PriceExpanded => Id::StepExpanded
         } = {

@@ -34,7 +34,7 @@ impl<'g> Emitter<'_, 'g> {
         });
         let marker = self.is_generic().then(|| quote!(scalar: ::core::marker::PhantomData<T>,));
         quote! {
-            /// One site: what moves it while the others do nothing to it.
+            /// One site, as it moves while the other sites do not act on it.
             #[derive(::core::clone::Clone, ::core::marker::Copy, ::core::fmt::Debug)]
             pub struct #ident #parameters #predicates { #(#fields)* #marker }
         }
@@ -129,7 +129,7 @@ impl<'g> Emitter<'_, 'g> {
                 const ORDER: ::core::primitive::u32 = #order;
                 const DERIVATION: &'static ::core::primitive::str = #derivation;
 
-                /// Checks the parameters and computes what no step changes.
+                /// Checks the parameters and computes the constants.
                 fn constants(&self, h: T) -> ::core::result::Result<Self::Constants, runtime::Error> {
                     #checks
                     runtime::Power::power_constants(self, h)
