@@ -37,9 +37,14 @@ mod turn;
 
 /// The most parts that a motion is made of.
 const PARTS: u32 = 1024;
+/// The most Taylor series of a step, with those that are too long. Each part usually takes one.
+const SERIES: u32 = 8 * PARTS;
 
 /// The constants of a motion, one after the other.
 pub type KeptRotation4<T> = setup::Numbers<T>;
+
+/// The error of a motion whose end no series finds.
+const ENDLESS: Error = Error::NotFinite { name: "the free motion" };
 
 /// The constants of all free motions of a body over a given time.
 #[derive(Clone, Copy, Debug)]
@@ -93,16 +98,15 @@ impl<T: Scalar> FreeRotation4<T> {
         let constants = Constants::read(kept);
         let m = self.in_principal_axes(momentum);
         let alone = constants.parts.equals(T::one()) & constants.by_series.equals(T::zero());
-        let (increment, next) = if alone.all() {
-            let (increment, next) = turn(&constants, &(m * constants.step));
-            (increment, next * constants.step.recip())
-        } else {
-            self.lane_by_lane(kept, &m)?
+        let turned = if alone.all() { turn(&constants, &(m * constants.step)) } else { None };
+        let (increment, next) = match turned {
+            Some((increment, next)) => (increment, next * constants.step.recip()),
+            None => self.lane_by_lane(kept, &m)?,
         };
         Ok(self.in_coordinates(&increment, &next))
     }
 
-    /// The same where lanes have different numbers of parts.
+    /// The same if lanes have different numbers of parts, or if a turn has lost its digits.
     #[cold]
     #[inline(never)]
     fn lane_by_lane(&self, kept: &KeptRotation4<T>, m: &Vector<T>) -> Result<Moved<T>, Error> {
@@ -190,12 +194,13 @@ impl<T: Real> FreeRotation4<T> {
     }
 
     /// F − I and the momentum after a part of a motion. It takes one series, or some series of half the time, of a
-    /// quarter, …: each as long as possible.
-    fn series(&self, m: &Vector<T>) -> Result<Moved<T>, Error> {
+    /// quarter, …: each as long as possible. Each takes one off the number `left`.
+    fn series(&self, m: &Vector<T>, left: &mut u32) -> Result<Moved<T>, Error> {
         let (mut whole, mut m) = ([[T::zero(); 4]; 4], *m);
         // of the time, in units of 1/PARTS
         let (mut done, mut length) = (0, PARTS);
         while done < PARTS {
+            *left = left.checked_sub(1).ok_or(ENDLESS)?;
             let part = T::from_ratio(i64::from(length), i64::from(PARTS));
             match flow(|m| self.velocity(m), &(m * part)) {
                 Some((increment, end)) => {
@@ -207,7 +212,7 @@ impl<T: Real> FreeRotation4<T> {
                         length *= 2;
                     }
                 }
-                None if length == 1 => return Err(Error::NotFinite { name: "the free motion" }),
+                None if length == 1 => return Err(ENDLESS),
                 None => length /= 2,
             }
         }
@@ -223,17 +228,29 @@ impl<T: Real> FreeRotation4<T> {
 
     /// F − I and the momentum after all parts of the time.
     fn in_parts(&self, constants: &Constants<T>, m: &Vector<T>) -> Result<Moved<T>, Error> {
-        let parts = constants.parts.to_f64();
-        // no constants: the motion says why
-        let constants = if parts >= 1.0 { *constants } else { self.constants(m)? };
+        // no constants, or none that were made here: the motion says why, or gives its own
+        let constants = if constants.are_of_parts() { *constants } else { self.constants(m)? };
         let parts = constants.parts.to_f64() as u32;
-        let (mut whole, mut m) = ([[T::zero(); 4]; 4], m * constants.step);
+        let by_series = constants.by_series > T::zero();
+        // h̃ of the formulas, and the time of a series
+        let (step, part) = (constants.step, constants.parts.recip());
+        let (mut whole, mut left) = ([[T::zero(); 4]; 4], SERIES);
+        let mut m = m * if by_series { part } else { step };
         for _ in 0..parts {
-            let (increment, next) =
-                if constants.by_series > T::zero() { self.series(&m)? } else { turn(&constants, &m) };
+            let (increment, next) = if by_series {
+                self.series(&m, &mut left)?
+            } else {
+                match turn(&constants, &m) {
+                    Some(moved) => moved,
+                    None => {
+                        let (increment, next) = self.series(&(m / step * part), &mut left)?;
+                        (increment, next / part * step)
+                    }
+                }
+            };
             (whole, m) = (composed(&whole, &increment), next);
         }
-        Ok((whole, m * constants.step.recip()))
+        Ok((whole, m * if by_series { constants.parts } else { step.recip() }))
     }
 }
 

@@ -7,6 +7,9 @@ use crate::sums::accumulate;
 use crate::{Mask, Scalar, Space};
 use nalgebra::{SMatrix, SVector};
 
+/// The largest defect of a rotation or of a unit vector that is corrected, relative to its size.
+const LARGEST_DEFECT: f64 = 1.0 / 1024.0;
+
 /// The largest entry of |RᵀR − I|; +∞ for a reflection, whose determinant is negative.
 pub fn orthogonality_defect<T: Scalar, const N: usize>(r: &SMatrix<T, N, N>) -> T {
     let mut defect = T::zero();
@@ -39,6 +42,9 @@ pub fn length_defect<T: Scalar, const N: usize>(q: &SVector<T, N>) -> T {
 /// R, brought back to the next rotation where |Re|², e = (1, …, 1), is off N by more than 8Nε. It takes one step R(3I −
 /// RᵀR)/2 of Newton and Schulz. Without it, rounding of products would add up like √steps. |Re|² costs N² additions
 /// that nothing waits for; corrections are rare.
+///
+/// Starts may be off by √ε: one step of Newton and Schulz leaves round-off. A larger defect takes three steps. Beyond
+/// [`LARGEST_DEFECT`] the result is NaN, as formulas have lost their digits.
 ///
 /// Source: Higham, *Functions of Matrices*, section 8.3.
 #[inline(always)]
@@ -79,10 +85,28 @@ fn is_off_rotations<T: Scalar, const N: usize>(r: &SMatrix<T, N, N>) -> T::Mask 
     (T::from_ratio(8, 1) * T::EPSILON * expected).below((square - expected).abs())
 }
 
-/// R(I − RᵀR − Rᵀδ − δᵀR)/2, the correction from R + δ to the nearest rotation.
+/// The correction from R + δ to the nearest rotation, NaN in lanes where there is none near.
 #[cold]
 #[inline(never)]
 fn to_rotations<T: Scalar, const N: usize>(r: &SMatrix<T, N, N>, rest: &SMatrix<T, N, N>) -> SMatrix<T, N, N> {
+    let (change, missing) = newton_schulz(r, rest);
+    let is_near = missing.at_most(T::from_ratio(N as i64, 1) * T::EPSILON.sqrt());
+    if is_near.all() {
+        return change;
+    }
+    let again = (0..2).fold(change, |change, _| change + newton_schulz(&(r + change), rest).0);
+    let is_known = missing.at_most(T::from_f64(LARGEST_DEFECT));
+    change.zip_map(&again, |change, again| T::select(is_near, change, known(is_known, again)))
+}
+
+/// `value` in the lanes of the mask, NaN in the others.
+#[inline]
+fn known<T: Scalar>(mask: T::Mask, value: T) -> T {
+    T::select(mask, value, T::zero() / T::zero())
+}
+
+/// R(I − RᵀR − Rᵀδ − δᵀR)/2, and the largest entry of its second factor.
+fn newton_schulz<T: Scalar, const N: usize>(r: &SMatrix<T, N, N>, rest: &SMatrix<T, N, N>) -> (SMatrix<T, N, N>, T) {
     // of the size of the defect
     let missing = SMatrix::<T, N, N>::from_fn(|i, j| {
         let start = if i == j { T::one() } else { T::zero() };
@@ -90,7 +114,8 @@ fn to_rotations<T: Scalar, const N: usize>(r: &SMatrix<T, N, N>, rest: &SMatrix<
         let of_rests = (0..N).fold(T::zero(), |sum, k| sum + r[(k, i)] * rest[(k, j)] + rest[(k, i)] * r[(k, j)]);
         (of_sums - of_rests) * T::from_ratio(1, 2)
     });
-    SMatrix::from_fn(|i, j| (0..N).fold(T::zero(), |sum, k| sum + r[(i, k)] * missing[(k, j)]))
+    let change = SMatrix::from_fn(|i, j| (0..N).fold(T::zero(), |sum, k| sum + r[(i, k)] * missing[(k, j)]));
+    (change, missing.max_abs())
 }
 
 /// `sum` + `change` with its rounding error, in the lanes of the mask.
@@ -105,13 +130,32 @@ fn accumulate_where<T: Scalar, const R: usize, const C: usize>(
     (changed.zip_map(&sum, select), left.zip_map(&rest, select))
 }
 
-/// q, brought back to length one by q(3 − |q|²)/2 where rounding has moved |q|² off by more than 8ε. See [`orthogonal`].
+/// q, brought back to length one by q(3 − |q|²)/2 where rounding has moved |q|² off by more than 8ε. NaN where it is no
+/// unit vector. See [`orthogonal`].
 #[inline(always)]
 pub fn of_length_one<T: Scalar, const N: usize>(q: SVector<T, N>) -> SVector<T, N> {
-    let half = T::from_ratio(1, 2);
     let missing = short_of_one(&q);
     let is_off = is_off_length_one(missing);
-    if is_off.any() { q.map(|x| T::select(is_off, x + x * (half * missing), x)) } else { q }
+    if !is_off.any() {
+        return q;
+    }
+    let longer = longer(missing);
+    q.map(|x| T::select(is_off, x + x * longer, x))
+}
+
+/// λ with |q + λq| = 1, from 1 − |q|². NaN in lanes where |q|² is off one by more than [`LARGEST_DEFECT`].
+#[inline(always)]
+pub(crate) fn longer<T: Scalar>(missing: T) -> T {
+    let is_near = missing.abs().at_most(T::from_ratio(4, 1) * T::EPSILON.sqrt());
+    let longer = missing * T::from_ratio(1, 2);
+    if is_near.all() { longer } else { T::select(is_near, longer, much_longer(missing)) }
+}
+
+#[cold]
+#[inline(never)]
+fn much_longer<T: Scalar>(missing: T) -> T {
+    let is_known = missing.abs().at_most(T::from_f64(LARGEST_DEFECT));
+    known(is_known, (T::one() - missing).sqrt().recip() - T::one())
 }
 
 /// The same for q + δ, see [`orthogonal_with_rest`].
@@ -125,9 +169,9 @@ pub fn of_length_one_with_rest<T: Scalar, const N: usize>(
     if !is_off.any() {
         return (q, rest);
     }
-    // half of 1 − |q|² − 2 q·δ
+    // by half of 1 − |q|² − 2 q·δ
     let along = q.zip_fold(&rest, T::zero(), |sum, x, left| sum + x * left);
-    let scale = missing * T::from_ratio(1, 2) - along;
+    let scale = longer(missing) - along;
     accumulate_where(is_off, q, rest, q.map(|x| x * scale))
 }
 

@@ -2,9 +2,9 @@
 
 use crate::fields::copy;
 use crate::parameters::check_finite;
-use crate::scheme::{Held, Left};
-use crate::stepper::check_state;
-use crate::{Clebsch, Declared, Error, Method, State, Stepper, Time};
+use crate::scheme::{Held, Left, Scheme};
+use crate::stepper::{check_state, check_violation};
+use crate::{Clebsch, Declared, Error, Mask, Method, Scalar, State, Stepper, Time};
 use core::fmt::{self, Debug, Formatter};
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
@@ -77,8 +77,9 @@ impl<S: Clebsch, M: Method<S>> Stepper<S, M> {
     /// The state that was written, after the checks of [`state`](Self::state): the next steps have the bits that they would have had.
     ///
     /// All data that a step takes from the last one are written and read back. These are the impulse at q, the
-    /// constants of a free motion, and the rounding errors of compensated sums. It is taken as it is: make states of
-    /// *other* systems or versions anew, by [`state`](Self::state). Formats have to give back every bit of a number:
+    /// constants of a free motion, and the rounding errors of compensated sums. `resume` checks that they follow from
+    /// the time, q and N, up to √ε. If they do not, it makes them anew, as [`state`](Self::state) does. A damaged file,
+    /// another system and another step size are such cases. Formats have to give back every bit of a number:
     /// `serde_json` does with its feature `float_roundtrip`, and binary ones do.
     ///
     /// ```
@@ -103,10 +104,27 @@ impl<S: Clebsch, M: Method<S>> Stepper<S, M> {
     /// # Errors
     /// As [`state`](Self::state); [`Error::NotFinite`] for the data of the last step, and for the time.
     pub fn resume(&self, saved: SavedState<S, M>) -> Result<State<S, M>, Error> {
-        let SavedState(state) = saved;
-        check_state(&self.system, &state.configuration, &state.momentum())?;
+        let SavedState(mut state) = saved;
+        let mu = state.momentum();
+        check_state(&self.system, &state.configuration, &mu)?;
+        check_violation(M::Scheme::held_defect(&state.configuration, &state.held), &mu)?;
         check_finite("the time", &state.time.now())?;
         check_finite("what is left of the last step", &(state.left, state.h))?;
+        let now = state.time.now();
+        state.time = resumed_time(&state.time);
+        state.left = M::Scheme::resumed(self.at(now), &state.configuration, &mu, &state.left);
+        // that of a step of another size is not known before
+        (state.left, state.h) = (self.left_of(&state), self.h);
+        self.check_left(now, &state.configuration, &state.left)?;
         Ok(state)
     }
+}
+
+/// A time as it was read. A rounding error that is not below its last place is dropped.
+fn resumed_time<T: Scalar, C: Time<T>>(time: &C) -> C {
+    // a rounding error below the last place does not show
+    let is_same = time.after_step(T::zero()).now().equals(time.now());
+    let mut resumed = *time;
+    (0..T::LANES).filter(|&lane| !is_same.lane(lane)).for_each(|lane| resumed.take_lane(lane, &C::at(time.now())));
+    resumed
 }

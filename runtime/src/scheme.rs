@@ -62,9 +62,11 @@ mod unstepped;
 
 use crate::fields::copy;
 use crate::parts::{Mu, Q};
-use crate::{Clebsch, Clock, Declared, Error, Method, Space, Time};
+use crate::space::larger;
+use crate::{Clebsch, Clock, Declared, Error, Mask, Method, Scalar, Space, Time};
 use core::fmt::Debug;
 use core::marker::PhantomData;
+use num_traits::Zero;
 
 pub use composed::{Sizes, Stages, compose};
 pub use split::{Kicks, split};
@@ -152,6 +154,17 @@ pub trait Scheme<S: Clebsch, M: Method<S> = Declared>: Sized {
         Self::left(at, q, mu)
     }
 
+    /// `left` as it was read, checked against [`left`](Self::left) of the same time, q and μ. Lanes that differ by more
+    /// than √ε of the momentum get the new one.
+    fn resumed(at: AtOf<'_, S, Self, M>, q: &Q<S>, mu: &Mu<S>, left: &Self::Left) -> Self::Left {
+        as_made(left, &Self::left(at, q, mu), mu.max_abs())
+    }
+
+    /// The distance from `held` to the values that [`held`](Self::held) returns, in the units of the momentum.
+    fn held_defect(_q: &Q<S>, _held: &Self::Held) -> S::Scalar {
+        S::Scalar::zero()
+    }
+
     /// The data that a step passes on, for a step that is `ratio` times as long.
     #[inline(always)]
     fn scaled(left: Self::Left, _ratio: S::Scalar) -> Self::Left {
@@ -191,6 +204,19 @@ pub trait Scheme<S: Clebsch, M: Method<S> = Declared>: Sized {
 
     /// The group element F with `legendre(h, t, q, F)` = μ that is connected to the identity.
     fn inverse_legendre(at: AtOf<'_, S, Self, M>, q: &Q<S>, mu: &Mu<S>) -> Result<S::Element, Error>;
+}
+
+/// `found` in the lanes where it differs from `made` by at most √ε of that and of `size`. `made` in the other lanes.
+fn as_made<T: Scalar, V: Space<T>>(found: &V, made: &V, size: T) -> V {
+    let is_same = is_near(found, made, larger(made.max_abs(), size));
+    found.zip_map(made, |found, made| T::select(is_same, found, made))
+}
+
+/// The lanes in which two values differ by at most √ε of a size.
+fn is_near<T: Scalar, V: Space<T>>(found: &V, made: &V, size: T) -> T::Mask {
+    let most = T::EPSILON.sqrt() * size;
+    let difference = found.zip_map(made, |found, made| (found - made).abs());
+    made.finite() & difference.reduce(T::Mask::everywhere(), |entry| entry.at_most(most), |a, b| a & b)
 }
 
 /// Steps, one after the other.

@@ -4,6 +4,7 @@
 //! from rounding. Otherwise the errors of q·w and of |q| grow exponentially.
 
 use crate::matrices::skew_times;
+use crate::orbit::longer;
 use crate::{Error, Mask, Scalar};
 use nalgebra::SVector;
 
@@ -37,9 +38,9 @@ fn mend<T: Scalar, const N: usize>(q: &mut SVector<T, N>, w: &mut SVector<T, N>)
     let missing = T::one() - q.dot(q);
     let is_off = (T::from_ratio(8, 1) * T::EPSILON).below(missing.abs());
     if is_off.any() {
-        let half = missing * T::from_ratio(1, 2);
-        q.apply(|x| *x = T::select(is_off, *x + *x * half, *x));
-        w.apply(|x| *x = T::select(is_off, *x - *x * half, *x));
+        let longer = longer(missing);
+        q.apply(|x| *x = T::select(is_off, *x + *x * longer, *x));
+        w.apply(|x| *x = T::select(is_off, *x - *x * longer, *x));
     }
 }
 

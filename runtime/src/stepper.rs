@@ -187,9 +187,13 @@ pub fn check_on_orbit<T: Scalar, Q: Space<T>>(q: &Q, defect: T) -> Result<(), Er
 pub fn check_state<S: Clebsch>(system: &S, q: &S::Configuration, mu: &S::Momentum) -> Result<(), Error> {
     check_on_orbit(q, system.orbit_defect(q))?;
     check_finite("the momentum", mu)?;
-    let tolerance = S::Scalar::EPSILON.sqrt() * mu.max_abs();
-    let violation = system.isotropy_defect(q, mu);
-    (0..S::Scalar::LANES).try_for_each(|lane| {
+    check_violation(system.isotropy_defect(q, mu), mu)
+}
+
+/// The part of μ that is no momentum of a motion is at most √ε of the largest component.
+pub(crate) fn check_violation<T: Scalar, N: Space<T>>(violation: T, mu: &N) -> Result<(), Error> {
+    let tolerance = T::EPSILON.sqrt() * mu.max_abs();
+    (0..T::LANES).try_for_each(|lane| {
         let (violation, tolerance) = (violation.lane(lane), tolerance.lane(lane));
         // Written so that NaN is a violation.
         if violation <= tolerance {

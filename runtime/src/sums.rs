@@ -54,6 +54,10 @@ pub trait Sums {
     /// The sum and its new rest.
     fn sum<T: Scalar, V: Space<T>>(sum: &V, rest: &mut Self::Rest<T, V>, increment: &V) -> V;
 
+    /// The rounding error of a sum as it was read, in the entries where it is below the last place of the sum. The
+    /// other entries are 0.
+    fn resumed<T: Scalar, V: Space<T>>(sum: &V, rest: Self::Rest<T, V>) -> Self::Rest<T, V>;
+
     /// The sum from the result of a kernel. This is the new sum itself or, where sums are compensated, the addition.
     #[inline(always)]
     fn made<T: Scalar, V: Space<T>>(sum: &V, rest: &mut Self::Rest<T, V>, made: V) -> V {
@@ -87,6 +91,8 @@ impl Sums for Plain {
     fn sum<T: Scalar, V: Space<T>>(sum: &V, (): &mut (), increment: &V) -> V {
         sum.zip_map(increment, |a, b| a + b)
     }
+
+    fn resumed<T: Scalar, V: Space<T>>(_: &V, (): ()) {}
 }
 
 /// Compensated sums.
@@ -113,6 +119,10 @@ impl Sums for Compensated {
         let (sum, left) = accumulate(sum, rest, increment);
         *rest = left;
         sum
+    }
+
+    fn resumed<T: Scalar, V: Space<T>>(sum: &V, rest: V) -> V {
+        rest.zip_map(sum, |rest, sum| T::select(rest.abs().at_most(T::EPSILON * sum.abs()), rest, T::zero()))
     }
 }
 

@@ -1,6 +1,6 @@
 //! The constants of a motion, from its Taylor series.
 
-use super::flow::{Matrix, PLANES, Vector, at, dot, dual, entry, flow, pfaffian, product, skew};
+use super::flow::{Matrix, Moved, PLANES, Vector, at, dot, dual, entry, flow, pfaffian, product, skew};
 use crate::stumpff::stumpff;
 use crate::{Real, Scalar, Space};
 use nalgebra::SVector;
@@ -40,6 +40,14 @@ impl<T: Scalar> Constants<T> {
     }
 }
 
+impl<T: Real> Constants<T> {
+    /// Whether `parts` is a number of parts that a motion can have.
+    pub fn are_of_parts(&self) -> bool {
+        let parts = self.parts.to_f64();
+        (1..=super::PARTS).contains(&(parts as u32)) && f64::from(parts as u32) == parts
+    }
+}
+
 /// Σm², Pf² − Σ m_ij²(k_p + k_q) and Σ m_ij² k_p k_q, where p and q are the indices other than i and j. det(λ² − λm −
 /// K) depends on these.
 #[inline]
@@ -52,11 +60,11 @@ pub(super) fn integrals<T: Scalar>(k: &[T; 4], squares: &Vector<T>, pfaffian: T)
 }
 
 /// The constants of the free motion with the momentum `momentum` over the time 1 of a body with ΣΩ = DΩ + ΩD. `None` if
-/// they are not found.
+/// they are not found, or if the formulas with them give another motion.
 #[cold]
 pub(super) fn set_up<T: Real>(d: &[T; 4], momentum: &Vector<T>) -> Option<Constants<T>> {
-    let (increment, _) = flow(|m| velocity(d, m), momentum)?;
-    let mut motion = increment;
+    let exact = flow(|m| velocity(d, m), momentum)?;
+    let mut motion = exact.0;
     (0..4).for_each(|i| motion[i][i] += T::one());
     let fitted = Fit { d, momentum, motion: &motion }.fit()?;
     let [_, step, delta, kappa] = fitted.unknowns;
@@ -75,7 +83,21 @@ pub(super) fn set_up<T: Real>(d: &[T; 4], momentum: &Vector<T>) -> Option<Consta
     let casimirs = [square + two * pf, square - two * pf].map(|c| if c > least { c.recip() } else { T::zero() });
     let turn = turn([delta / step, kappa / step], square, pf);
     let constants = Constants { parts: T::one(), by_series: T::zero(), step, moments, origin, slopes, casimirs, turn };
-    Space::<T>::is_finite(&constants.write()).then_some(constants)
+    let is_right = Space::<T>::is_finite(&constants.write()) && reproduces(&constants, momentum, &exact);
+    is_right.then_some(constants)
+}
+
+/// Whether the formulas with these constants agree with the Taylor series of the motion. A small residual is not enough:
+/// if moments differ by orders of magnitude, the formulas lose the squares of small ones.
+fn reproduces<T: Real>(constants: &Constants<T>, momentum: &Vector<T>, (increment, end): &Moved<T>) -> bool {
+    let Some((turned, next)) = super::turn::turn(constants, &(momentum * constants.step)) else { return false };
+    let next = next / constants.step;
+    let error: Matrix<T> =
+        core::array::from_fn(|i| core::array::from_fn(|j| entry(&turned, i, j) - entry(increment, i, j)));
+    let tolerance = T::from_ratio(super::turn::LARGEST_LOSS, 1) * T::EPSILON;
+    Space::<T>::is_finite(&next)
+        && error.max_abs() <= tolerance * increment.max_abs()
+        && (next - end).max_abs() <= tolerance * end.max_abs()
 }
 
 /// Ω of M = DΩ + ΩD.

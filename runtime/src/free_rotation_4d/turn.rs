@@ -2,11 +2,17 @@
 
 use super::flow::{Matrix, Moved, PLANES, Vector, at, dot, dual, entry, pfaffian, place};
 use super::setup::{Constants, integrals};
-use crate::Scalar;
+use crate::{Mask, Scalar};
 
-/// F − I and the next m of a motion, from m = h̃M.
+/// The largest error of these formulas that is accepted, in units of ε. If moments differ by a factor r, it is some r²/5.
+///
+/// The correction of [`orthogonal`] then leaves a rotation, in single precision too.
+pub(super) const LARGEST_LOSS: i64 = 1 << 12;
+
+/// F − I and the next m of a motion, from m = h̃M. `None` if rounding has taken F off the rotations in some lane, by more
+/// than [`LARGEST_LOSS`].
 #[inline]
-pub(super) fn turn<T: Scalar>(constants: &Constants<T>, m: &Vector<T>) -> Moved<T> {
+pub(super) fn turn<T: Scalar>(constants: &Constants<T>, m: &Vector<T>) -> Option<Moved<T>> {
     let Powers { squares, square, pf, of_square } = Powers::of(m);
     let j = &constants.moments;
     let k = j.map(|j| j * j);
@@ -23,7 +29,7 @@ pub(super) fn turn<T: Scalar>(constants: &Constants<T>, m: &Vector<T>) -> Moved<
     let next = on_level(constants, &next.into(), square, pf);
     let turn = of_casimirs(&constants.turn, m, &of_square, square);
     (0..4).for_each(|i| motion[i][i] -= T::one());
-    (orthogonal(&composed(&turn, &motion)), next)
+    Some((orthogonal(&composed(&turn, &motion))?, next))
 }
 
 /// m², and the other quadratic terms in m.
@@ -156,9 +162,10 @@ pub(super) fn composed<T: Scalar>(a: &Matrix<T>, b: &Matrix<T>) -> Matrix<T> {
     core::array::from_fn(|i| core::array::from_fn(|j| entry(&both, i, j) + (entry(a, i, j) + entry(b, i, j))))
 }
 
-/// D − ½(I + D)S with S = D + Dᵀ + DᵀD: the correction of I + D to an orthogonal matrix, after rounding.
+/// D − ½(I + D)S with S = D + Dᵀ + DᵀD: the correction of I + D to an orthogonal matrix, after rounding. `None` if the
+/// entries of ½S on the diagonal add up to [`LARGEST_LOSS`] ε or more.
 #[inline]
-fn orthogonal<T: Scalar>(d: &Matrix<T>) -> Matrix<T> {
+fn orthogonal<T: Scalar>(d: &Matrix<T>) -> Option<Matrix<T>> {
     let half = T::from_ratio(1, 2);
     let mut defect = [[T::zero(); 4]; 4];
     for i in 0..4 {
@@ -168,7 +175,11 @@ fn orthogonal<T: Scalar>(d: &Matrix<T>) -> Matrix<T> {
             (defect[i][j], defect[j][i]) = (entry, entry);
         }
     }
+    let lost = (0..4).fold(T::zero(), |sum, i| sum + defect[i][i].abs());
+    if !lost.below(T::from_ratio(LARGEST_LOSS, 1) * T::EPSILON).all() {
+        return None;
+    }
     let carried = super::flow::product(d, &defect);
     let corrected = |i: usize, j: usize| entry(d, i, j) - (entry(&carried, i, j) + entry(&defect, i, j));
-    core::array::from_fn(|i| core::array::from_fn(|j| corrected(i, j)))
+    Some(core::array::from_fn(|i| core::array::from_fn(|j| corrected(i, j))))
 }

@@ -1,4 +1,5 @@
 use super::*;
+use crate::Real;
 use nalgebra::{Matrix2, Matrix3, Vector3};
 
 /// The polar factor of a matrix near a rotation by Newton's method for XᵀX = I, X ← (X + X⁻ᵀ)/2.
@@ -24,6 +25,38 @@ fn what_has_left_its_space_comes_back() {
     }
     assert!(orthogonal(rotation.map(|_| f64::NAN)).iter().all(|entry| entry.is_nan()));
     assert_eq!(of_length_one(Vector3::<f64>::y()), Vector3::y());
+}
+
+/// A result is on its space to round-off, or NaN where formulas must have lost their digits.
+#[test]
+fn a_result_is_on_its_space_or_none() {
+    fn check<T: Real>(defect: f64, is_known: bool) {
+        let rotation = Matrix3::new(0.36, 0.48, -0.8, -0.8, 0.6, 0.0, 0.48, 0.64, 0.6);
+        let direction = Matrix3::new(1.0, 0.5, -0.25, 0.75, 1.0, 0.5, -1.0, 0.25, 0.5);
+        let off = (rotation + direction * defect).map(T::from_f64);
+        let q = (Vector3::new(0.6, 0.0, -0.8) * (1.0 + defect)).map(T::from_f64);
+        let (zero, none) = (SMatrix::from_element(T::zero()), SVector::from_element(T::zero()));
+        for found in [orthogonal(off), orthogonal_with_rest(off, zero).0] {
+            let defect_left = orthogonality_defect(&found).to_f64();
+            assert!(!is_known || defect_left <= 32.0 * T::EPSILON.to_f64(), "{defect:e}: {defect_left:e}");
+            assert!(is_known || found.iter().all(|entry| !entry.is_finite()), "{defect:e}: {found:?}");
+        }
+        for found in [of_length_one(q), of_length_one_with_rest(q, none).0] {
+            let defect_left = length_defect(&found).to_f64();
+            assert!(!is_known || defect_left <= 32.0 * T::EPSILON.to_f64(), "{defect:e}: {defect_left:e}");
+            assert!(is_known || found.iter().all(|entry| !entry.is_finite()), "{defect:e}: {found:?}");
+        }
+    }
+    for defect in [1e-15, 1e-12, 1e-9, 1e-8, 1e-6, 1e-5, 3e-5] {
+        check::<f64>(defect, true);
+        check::<f32>(defect, true);
+    }
+    for defect in [3e-3, 0.1, -0.3, 0.5, 10.0, 1e10] {
+        check::<f64>(defect, false);
+    }
+    for defect in [3e-3, 0.2, -0.3, 0.5, 10.0, 1e10] {
+        check::<f32>(defect, false);
+    }
 }
 
 /// R + δ and q + δ come back as exactly as R and q do, though δ is counted apart. A value on its space keeps its

@@ -97,6 +97,14 @@ impl<S: Clebsch, M: Method<S>, I: Scheme<S, M>, Z: Sizes<K>, const K: usize> Sch
         I::left_after(At::new(at.system, at.constants.first(), at.t), q, mu, left)
     }
 
+    fn resumed(at: AtOf<'_, S, Self, M>, q: &Q<S>, mu: &Mu<S>, left: &I::Left) -> I::Left {
+        I::resumed(At::new(at.system, at.constants.first(), at.t), q, mu, left)
+    }
+
+    fn held_defect(q: &Q<S>, held: &I::Held) -> S::Scalar {
+        I::held_defect(q, held)
+    }
+
     #[inline]
     fn step(at: AtOf<'_, S, Self, M>, (q, held, left): Before<'_, S, Self, M>, u: &S::Input) -> Stepped<S, Self, M> {
         let step = |stage: &I::Constants, t, (q, held, left): Parted<S, Self, M>| {

@@ -1,10 +1,10 @@
 //! One exact motion, step after step.
 
-use super::At;
 use super::sequence::{Carry, From, InSequence, Sequence, To};
 use super::substep::Moving;
+use super::{At, is_near};
 use crate::parts::{FreeMotion, Mu, Q, Substep, T, U};
-use crate::{Error, Method};
+use crate::{Error, Method, Scalar, Space};
 
 /// (q, N) ↦ (q⁺, N⁺) along a free motion. The constants of the motion are computed once, and are a part of the state.
 pub type AlongFreeMotion = InSequence<Order>;
@@ -20,6 +20,19 @@ impl<S: FreeMotion<M>, M: Method<S>> Carry<S, M> for Kept {
 
     fn first(at: At<'_, S, M>, _: &Q<S>, mu: &Mu<S>) -> S::Kept {
         at.system.kept(at.constants, mu)
+    }
+
+    /// Steps are compared, not constants: those of the start of a motion may be another choice for the same motion.
+    fn resumed(at: At<'_, S, M>, q: &Q<S>, mu: &Mu<S>, kept: &S::Kept) -> S::Kept {
+        let anew = Self::first(at, q, mu);
+        let motion = |kept| {
+            let (x, mu) = at.system.follow(at.constants, kept, mu)?;
+            Ok::<_, Error>((at.system.increment(&x), mu))
+        };
+        let Ok((wanted, end)) = motion(&anew) else { return anew };
+        let Ok((found, found_end)) = motion(kept) else { return anew };
+        let is_same = is_near(&found, &wanted, wanted.max_abs()) & is_near(&found_end, &end, end.max_abs());
+        kept.zip_map(&anew, |kept, anew| T::<S>::select(is_same, kept, anew))
     }
 }
 

@@ -4,7 +4,9 @@ use super::sequence::{Apart, Shared};
 use super::substep::{inverse_legendre, plus};
 use super::{At, Before, Pair, Scheme, Stepped};
 use crate::matrices::skew_outer;
+use crate::orbit::length_defect;
 use crate::parts::{GreatCircles, T, U};
+use crate::space::larger;
 use crate::sphere::{push, tangent, turn_freely, turn_great_circle, turned_in_plane};
 use crate::{Clebsch, Error, Method, Scalar, Space};
 use core::marker::PhantomData;
@@ -33,6 +35,9 @@ pub trait Plane<T: Scalar, const N: usize>: Space<T> {
 
     /// The components of M.
     fn momentum<const D: usize>(&self, q: &SVector<T, N>) -> SVector<T, D>;
+
+    /// The distance to the values that [`of`](Self::of) returns, in the units of M.
+    fn defect(&self, q: &SVector<T, N>) -> T;
 }
 
 /// w
@@ -46,6 +51,11 @@ impl<T: Scalar, const N: usize> Plane<T, N> for SVector<T, N> {
     fn momentum<const D: usize>(&self, q: &SVector<T, N>) -> SVector<T, D> {
         skew_outer(self, q)
     }
+
+    /// |q·w|
+    fn defect(&self, q: &SVector<T, N>) -> T {
+        q.dot(self).abs()
+    }
 }
 
 /// A point of the motion, and w there.
@@ -58,6 +68,12 @@ impl<T: Scalar, const N: usize> Plane<T, N> for (SVector<T, N>, SVector<T, N>) {
     #[inline]
     fn momentum<const D: usize>(&self, _: &SVector<T, N>) -> SVector<T, D> {
         skew_outer(&self.1, &self.0)
+    }
+
+    /// The larger one of |u·v| and ||u|² − 1| |v|.
+    fn defect(&self, _: &SVector<T, N>) -> T {
+        let (u, v) = self;
+        larger(u.dot(v).abs(), length_defect(u) * v.max_abs())
     }
 }
 
@@ -202,6 +218,10 @@ where
     #[inline]
     fn left(at: At<'_, S, M>, q: &Point<S, N>, _: &S::Momentum) -> C::Gradient {
         C::gradient(at, q)
+    }
+
+    fn held_defect(q: &Point<S, N>, held: &C::Plane) -> S::Scalar {
+        held.defect(q)
     }
 
     #[inline(always)]

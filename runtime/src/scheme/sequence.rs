@@ -1,7 +1,7 @@
 //! The common part of all schemes that are sequences of the parts of a step.
 
 use super::substep::{RestsOf, inverse_legendre, symmetric};
-use super::{At, Before, Pair, Scheme, Stepped, one_by_one};
+use super::{At, Before, Pair, Scheme, Stepped, as_made, one_by_one};
 use crate::parts::{Mu, Parts, Q, Substep, T, U};
 use crate::sums::Sums;
 use crate::{Clebsch, Error, Method, Space};
@@ -57,6 +57,12 @@ impl<S: Substep<0, M>, M: Method<S>, P: Sequence<S, M>> Scheme<S, M> for InSeque
     fn left_after(at: At<'_, S, M>, q: &Q<S>, mu: &Mu<S>, left: &Self::Left) -> Self::Left {
         let (_, rests) = parted::<S, M, P::Carry>(left);
         S::Sums::joined(P::Carry::first(at, q, mu), rests)
+    }
+
+    fn resumed(at: At<'_, S, M>, q: &Q<S>, mu: &Mu<S>, left: &Self::Left) -> Self::Left {
+        let (impulse, rests) = parted::<S, M, P::Carry>(left);
+        let rests = (S::Sums::resumed(q, rests.0), S::Sums::resumed(mu, rests.1));
+        S::Sums::joined(P::Carry::resumed(at, q, mu, impulse), rests)
     }
 
     #[inline(always)]
@@ -121,6 +127,11 @@ pub trait Carry<S: Parts<M>, M: Method<S>> {
 
     /// The impulse that the first step takes.
     fn first(at: At<'_, S, M>, q: &Q<S>, mu: &Mu<S>) -> Self::Impulse;
+
+    /// The impulse as it was read, in the lanes where it agrees with [`first`](Self::first). That one in the other lanes.
+    fn resumed(at: At<'_, S, M>, q: &Q<S>, mu: &Mu<S>, impulse: &Self::Impulse) -> Self::Impulse {
+        as_made(impulse, &Self::first(at, q, mu), mu.max_abs())
+    }
 
     /// The impulse of a step that is `ratio` times as long.
     #[inline(always)]

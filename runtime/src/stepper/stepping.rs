@@ -111,13 +111,18 @@ impl<S: Clebsch, M: Method<S>> Stepper<S, M> {
     /// The state (q, N) with the data that its first step takes.
     pub(super) fn made_state(&self, t: T<S>, q: Q<S>, mu: Mu<S>) -> Result<State<S, M>, Error> {
         let left = M::Scheme::left(self.at(t), &q, &mu);
-        if !left.is_finite() {
-            let has_gradient = (0..S::Scalar::LANES).all(|lane| self.has_gradient(t, &q, lane));
-            let name = if has_gradient { "the velocity of this momentum" } else { GRADIENT };
-            return Err(Error::NotFinite { name });
-        }
+        self.check_left(t, &q, &left)?;
         let held = M::Scheme::held(&q, &mu);
         Ok(State { time: S::Time::at(t), configuration: q, held, left, h: self.h })
+    }
+
+    /// The data for the first step from q are finite.
+    pub(crate) fn check_left(&self, t: T<S>, q: &Q<S>, left: &Left<S, M>) -> Result<(), Error> {
+        if left.is_finite() {
+            return Ok(());
+        }
+        let has_gradient = (0..S::Scalar::LANES).all(|lane| self.has_gradient(t, q, lane));
+        Err(Error::NotFinite { name: if has_gradient { "the velocity of this momentum" } else { GRADIENT } })
     }
 
     /// A step before it is checked, NaN in lanes that have no solution. Where no lane has one, the error is that of the first with a finite momentum.
@@ -153,7 +158,7 @@ impl<S: Clebsch, M: Method<S>> Stepper<S, M> {
 
     /// The impulse that a state brings along, or a new one in the lanes in which a stepper of another step size has made it.
     #[inline]
-    fn left_of(&self, state: &State<S, M>) -> Left<S, M> {
+    pub(crate) fn left_of(&self, state: &State<S, M>) -> Left<S, M> {
         if self.has_left(state) {
             return state.left;
         }

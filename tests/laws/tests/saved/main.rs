@@ -2,6 +2,8 @@
 
 #![allow(missing_docs)]
 
+mod corrupted;
+
 use clebsch::__private::Scheme;
 use clebsch::{Clebsch, Error, F32x8, F64x4, SavedState, Scalar, State, Stepper};
 use clebsch_tests::fixtures::compensated_top::CompensatedTop;
