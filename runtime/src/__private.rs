@@ -32,7 +32,7 @@ pub use crate::orbit::{
 };
 pub use crate::orientation::Orientation;
 pub use crate::parameters::{
-    Constant, InertiaInverse, annihilator_defect, annihilator_projection, check_diagonal, check_finite,
+    Constant, InertiaInverse, annihilator_defect, annihilator_projection, check_diagonal, check_finite, check_limit,
     check_symmetric, check_unit, constant, distance_of_projection, invert, invert_uniform, orientation_of_inertia,
     orientation_of_uniform, projection,
 };

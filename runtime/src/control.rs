@@ -139,6 +139,8 @@ impl<S: Controlled<D, U, C, Scalar: Real>, const D: usize, const U: usize, const
     /// linear in the number of stages. Where the guess does not lead to the target, the gap is priced and inputs are
     /// varied. The result is then a local minimum, and need not be the best one.
     ///
+    /// Every bound holds up to round-off of its own terms, whatever the sizes of the others. One with a = −∞, from an infinite parameter, is none.
+    ///
     /// # Errors
     /// * [`Error::PathLength`], [`Error::NotFinite`], [`Error::OffOrbit`], [`Error::OutsideMomentumSpace`] for the
     ///   arguments;
@@ -158,7 +160,7 @@ impl<S: Controlled<D, U, C, Scalar: Real>, const D: usize, const U: usize, const
         let Self { system, step_size: h, constants, time } = self;
         let (target, lengths) = (&target, Problem::lengths(system, &target));
         let problem = Problem { system, constants, h: *h, time: *time, start, target, lengths };
-        let solved = Plan { problem, stages: plan, last: *start, sweeps: 0 }.attempt()?;
+        let solved = Plan::new(problem, plan).attempt()?;
         Ok(Optimum { stages: plan, ..solved })
     }
 
@@ -191,7 +193,7 @@ impl<S: Controlled<D, U, C, Scalar: Real>, const D: usize, const U: usize, const
             let constants = system.prepare(h)?;
             let problem =
                 Problem { system, constants: &constants, h, time: self.time, start, target: &target, lengths };
-            let mut plan = Plan { problem, stages: plan, last: *start, sweeps: 0 };
+            let mut plan = Plan::new(problem, plan);
             let answer = plan.attempt()?;
             let (slope, size) = plan.slope()?;
             Ok(Trial { sweeps: answer.iterations, answer, slope, size })
@@ -228,7 +230,10 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: usize
                 let step = T::EPSILON.powf(T::from_ratio(1, 3)) * (t.abs() + h);
                 let after = system.bounds(t + step, &stage.place, &stage.input);
                 let before = system.bounds(t - step, &stage.place, &stage.input);
-                part += k * (stage.multipliers.dot(&(after - before)) / (step + step));
+                let pushing = (0..C).filter(|i| stage.multipliers[*i] > S::Scalar::zero());
+                let change =
+                    pushing.fold(S::Scalar::zero(), |sum, i| sum + stage.multipliers[i] * (after[i] - before[i]));
+                part += k * (change / (step + step));
             }
             slope += part;
             size += part.abs();

@@ -47,6 +47,11 @@ pub fn check_finite<T: Scalar>(name: &'static str, value: &impl Space<T>) -> Res
     if value.is_finite() { Ok(()) } else { Err(Error::NotFinite { name }) }
 }
 
+/// [`Error::NotFinite`] with the name of the field if a number in it is NaN: a field that bounds alone read may be infinite, for no bound.
+pub fn check_limit<T: Scalar>(name: &'static str, value: &impl Space<T>) -> Result<(), Error> {
+    if value.all(|x| x.equals(x).all()) { Ok(()) } else { Err(Error::NotFinite { name }) }
+}
+
 /// [`Error::NotSymmetric`] if `matrix` differs from its transpose by more than the round-off of computing it, 1024 ε of its largest entry.
 pub fn check_symmetric<T: Scalar, const N: usize>(name: &'static str, matrix: &SMatrix<T, N, N>) -> Result<(), Error> {
     (0..T::LANES).try_for_each(|lane| {

@@ -52,7 +52,7 @@ pub mod dynamics {}
 /// Example: `effort = |h, torque| h * torque.norm_squared() / 2`
 pub mod effort {}
 
-/// Inequalities between scalars, with `<=` or `>=`, that hold in every step of a plan.
+/// Inequalities between scalars, with `<=` or `>=`, that hold in every step of a plan. A field that only bounds read may be infinite: plans are then those without that bound.
 ///
 /// Example: `bounds = |u| [u.x <= 1, -1 <= u.x]`
 pub mod bounds {}

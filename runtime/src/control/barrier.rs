@@ -3,6 +3,9 @@
 //! If a guess violates bounds, they are relaxed by the excess. A step of fraction α shrinks the excess exactly by 1 −
 //! α. So slacks are s = excess − a, for bounds of any form. Steps keep a two-hundredth of each slack.
 //!
+//! A bound a = −∞ is none, as from an infinite parameter. Its slack is infinite, it has no multiplier and does not
+//! count.
+//!
 //! Sources: Wächter and Biegler, *On the implementation of an interior-point filter line-search algorithm* (2006), for
 //! multipliers and the sequence of μ. Pavlov, Shames and Manzie, *Interior point differential dynamic programming*
 //! (2021), for slacks in roll-outs.
@@ -22,6 +25,17 @@ pub(super) const TO_BOUNDARY: f64 = 0.995;
 pub(super) const FIRST: f64 = 0.1;
 /// The last μ: this power of ε.
 const LAST: (i64, i64) = (3, 4);
+
+/// If the guess violates or reaches a bound, this part of its size relaxes it.
+const PART: (i64, i64) = (1, 100);
+/// The same for a bound that is 0 in all stages, as a part of its first change. Corrections without bounds go further
+/// than those within.
+const PART_OF_CHANGE: (i64, i64) = (1, 10);
+
+/// Whether a bound with this slack is none.
+pub(super) fn is_none<T: Real>(slack: T) -> bool {
+    slack > T::zero() && !slack.is_finite()
+}
 
 /// The last μ, for so many bounds and a price of this size.
 pub(super) fn last<T: Real>(bounds: T, price: T) -> T {
@@ -49,9 +63,14 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: usize
     pub(super) fn add_bounds(
         &self,
         step: &mut Expansion<S::Place, T, D, U>,
-        bounds: &BoundsExpansion<T, D, U, C>,
+        bounds: &mut BoundsExpansion<T, D, U, C>,
         settings: &Settings<T, D>,
     ) -> (T, Slopes<T, D, U>) {
+        for i in (0..C).filter(|i| is_none(self.slack[*i])) {
+            // its slopes may be infinite too
+            bounds.by_place.row_mut(i).fill(T::zero());
+            bounds.by_input.row_mut(i).fill(T::zero());
+        }
         let (force, stiffness) = self.condensed(settings.barrier);
         let force = if settings.is_last { self.multipliers } else { force };
         let by_place = SMatrix::<T, C, D>::from_fn(|i, j| stiffness[i] * bounds.by_place[(i, j)]);
@@ -70,41 +89,89 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: usize
 }
 
 impl<T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: usize, const C: usize> Plan<'_, S, D, U, C> {
-    /// The number of bounds of all stages.
-    pub fn bounds(&self) -> T {
-        T::from_f64((self.stages.len() * C) as f64)
-    }
-
-    /// The barrier of a plan with multipliers of its bounds, which it keeps: the mean of z·s. Otherwise `None`, and bounds are relaxed.
-    pub fn resume_or_relax(&mut self) -> Option<T> {
+    /// The barrier of a plan that has multipliers and satisfies its bounds: the mean of z·s. Otherwise `None`, and bounds
+    /// are relaxed.
+    ///
+    /// The least slack is a hundredth of the size of the bound, the largest |a|. A bound that is 0 in all stages has no
+    /// size yet. [`size`](Self::size) finds it.
+    pub fn resume_or_relax(&mut self) -> Result<Option<T>, Error> {
         let zero = T::zero();
-        if C == 0 {
-            return Some(zero);
-        }
+        let mut bounds: usize = 0;
         for (index, stage) in self.stages.iter_mut().enumerate() {
             stage.slack = -self.problem.system.bounds(self.problem.time_after(index), &stage.place, &stage.input);
             stage.excess = SVector::from_element(zero);
+            for i in 0..C {
+                match stage.slack[i] {
+                    slack if slack.is_finite() => bounds += 1,
+                    slack if is_none(slack) => stage.multipliers[i] = zero,
+                    _ => return Err(Error::NotFinite { name: S::BOUNDS[i] }),
+                }
+            }
+        }
+        self.bounds = T::from_f64(bounds as f64);
+        if bounds == 0 {
+            return Ok(Some(zero));
         }
         let pairs = self.stages.iter().flat_map(|stage| stage.multipliers.iter().zip(stage.slack.iter()));
+        let pairs = pairs.filter(|(_, s)| !is_none(**s));
         if pairs.clone().all(|(z, s)| *z > zero && *s > zero && z.is_finite()) {
-            return Some(pairs.fold(zero, |sum, (z, s)| sum + *z * *s) / self.bounds());
+            return Ok(Some(pairs.fold(zero, |sum, (z, s)| sum + *z * *s) / self.bounds));
         }
-        let size = |sizes: SVector<T, C>, stage: &Stage<S, D, U, C>| {
-            sizes.zip_map(&stage.slack, |size, slack| larger(size, slack.abs()))
-        };
-        let sizes = self.stages.iter().fold(SVector::from_element(zero), size);
-        let largest = sizes.max_abs();
-        let least = sizes.map(|size| {
-            let size = if size > zero { size } else { largest };
-            if size > zero { size * T::from_ratio(1, 100) } else { T::one() }
-        });
-        for stage in self.stages.iter_mut() {
-            let slack = stage.slack.zip_map(&least, larger);
-            stage.excess = slack - stage.slack;
-            stage.slack = slack;
-        }
+        let sizes = self.sizes();
+        self.relax(|i| Some(if sizes[i] > zero { sizes[i] * T::from_ratio(PART.0, PART.1) } else { T::one() }));
         self.begin(zero);
-        None
+        Ok(None)
+    }
+
+    /// The largest |a| of each bound, in all stages.
+    fn sizes(&self) -> SVector<T, C> {
+        let size = |size: T, value: T| if value.is_finite() { larger(size, value.abs()) } else { size };
+        let of_stage = |sizes: SVector<T, C>, stage: &Stage<S, D, U, C>| {
+            let values = stage.excess - stage.slack;
+            sizes.zip_map(&values, size)
+        };
+        self.stages.iter().fold(SVector::from_element(T::zero()), of_stage)
+    }
+
+    /// Relaxes bounds that have a least slack to it, each in all stages.
+    fn relax(&mut self, least: impl Fn(usize) -> Option<T>) {
+        for stage in self.stages.iter_mut() {
+            for i in 0..C {
+                if let Some(least) = least(i).filter(|_| !is_none(stage.slack[i])) {
+                    let value = stage.excess[i] - stage.slack[i];
+                    stage.slack[i] = larger(-value, least);
+                    stage.excess[i] = stage.slack[i] + value;
+                }
+            }
+        }
+    }
+
+    /// Relaxes the bounds that are 0 in all stages, each by its own size. That is its first change, by a correction
+    /// without bounds. If nothing changes it, its size is the smallest of the others. Too small a slack shortens steps,
+    /// and too large a slack switches the bound off.
+    #[cold]
+    pub fn size(&mut self, change: &SVector<T, D>) -> Result<(), Error> {
+        let zero = T::zero();
+        let sizes = self.sizes();
+        if sizes.iter().all(|size| *size > zero) {
+            return Ok(());
+        }
+        let mut moved = SVector::<T, C>::from_element(zero);
+        self.follow_correction(change, |stage, by| {
+            moved = SVector::from_fn(|i, _| match by[i].abs() {
+                by if by.is_finite() && !is_none(stage.slack[i]) => larger(moved[i], by),
+                _ => moved[i],
+            });
+        })?;
+        let known = sizes.iter().chain(moved.iter()).copied().filter(|size| *size > zero);
+        let least = known.reduce(|least, size| if size < least { size } else { least });
+        let part = |size: T, (numerator, denominator)| size * T::from_ratio(numerator, denominator);
+        self.relax(|i| match (sizes[i] > zero, moved[i] > zero) {
+            (true, _) => None,
+            (_, true) => Some(part(moved[i], PART_OF_CHANGE)),
+            _ => least.map(|least| part(least, PART)),
+        });
+        Ok(())
     }
 
     /// Multipliers μ/s for the slacks.
@@ -117,6 +184,9 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: usize
         let wide = T::EPSILON.sqrt().recip();
         for stage in self.stages.iter_mut() {
             for i in 0..C {
+                if is_none(stage.slack[i]) {
+                    continue;
+                }
                 let (z, slack, moved) = (stage.multipliers[i], stage.slack[i], stage.next_slack[i]);
                 let next = z + fraction * (barrier / slack - z) - z / slack * (moved - slack);
                 let central = barrier / moved;
@@ -135,6 +205,18 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: usize
     /// Multipliers of the bounds from the next correction. The slacks of active bounds have few digits, so μ/s has few
     /// too.
     pub fn settle(&mut self, change: &SVector<T, D>, barrier: T) -> Result<(), Error> {
+        self.follow_correction(change, |stage, moved| {
+            let (force, stiffness) = stage.condensed(barrier);
+            stage.multipliers = SVector::from_fn(|i, _| larger(T::zero(), force[i] + stiffness[i] * moved[i]));
+        })
+    }
+
+    /// Visits each stage with how far a full correction moves its bounds, to first order.
+    fn follow_correction(
+        &mut self,
+        change: &SVector<T, D>,
+        mut visit: impl FnMut(&mut Stage<S, D, U, C>, SVector<T, C>),
+    ) -> Result<(), Error> {
         let Problem { system, constants, .. } = self.problem;
         let mut displacement = SVector::<T, D>::from_element(T::zero());
         for (index, stage) in self.stages.iter_mut().enumerate().filter(|_| C > 0) {
@@ -143,8 +225,7 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: usize
             let bounds = system.bounds_expanded(t, &stage.place, &stage.input, &stage.multipliers);
             let input = stage.shift + stage.by_multiplier * change + stage.gain * displacement;
             let moved = bounds.by_place * displacement + bounds.by_input * input;
-            let (force, stiffness) = stage.condensed(barrier);
-            stage.multipliers = SVector::from_fn(|i, _| larger(T::zero(), force[i] + stiffness[i] * moved[i]));
+            visit(stage, moved);
             displacement = step.by_place * displacement + step.by_input * input;
         }
         Ok(())
@@ -155,22 +236,36 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: usize
         self.stages.iter().any(|stage| stage.excess.iter().any(|excess| *excess > T::zero()))
     }
 
-    /// Whether a bound is violated by more than round-off of its slack and of the first excess. This part of the excess
-    /// still relaxes all bounds.
-    pub fn is_violated(&self, relaxation: T) -> bool {
+    /// Whether a relaxed bound is violated by more than round-off of its own terms. These are |∂a/∂x| |x| and
+    /// |∂a/∂u| |u| of the present plan.
+    pub fn is_violated(&self) -> bool {
+        let zero = T::zero();
         let round_off = T::from_f64(16.0) * T::EPSILON;
-        let mut bounds = self.stages.iter().flat_map(|stage| stage.slack.iter().zip(stage.excess.iter()));
-        relaxation > round_off && bounds.any(|(slack, excess)| *excess - *slack > round_off * *excess)
+        self.stages.iter().enumerate().any(|(index, stage)| {
+            if stage.excess.iter().all(|excess| *excess <= zero) {
+                return false;
+            }
+            let (t, x, u) = (self.problem.time_after(index), &stage.place, &stage.input);
+            let bounds = self.problem.system.bounds_expanded(t, x, u, &stage.multipliers);
+            let place = x.max_abs();
+            // Written so that NaN is a violation.
+            !(0..C).all(|i| {
+                let by_place = (0..D).fold(zero, |sum, j| sum + bounds.by_place[(i, j)].abs() * place);
+                let terms = (0..U).fold(by_place, |sum, j| sum + (bounds.by_input[(i, j)] * u[j]).abs());
+                bounds.values[i] <= larger(zero, round_off * terms)
+            })
+        })
     }
 
     /// The bound that keeps all from being relaxed less, with the stage and by how much it is violated.
     pub fn worst_bound(&self) -> Option<(usize, usize, T)> {
-        let (mut least, mut worst) = (T::one(), None);
+        let (mut most, mut worst) = (T::zero(), None);
         for (index, stage) in self.stages.iter().enumerate() {
+            let values = self.problem.system.bounds(self.problem.time_after(index), &stage.place, &stage.input);
             for i in 0..C {
-                let (slack, excess) = (stage.slack[i], stage.excess[i]);
-                if slack / excess < least {
-                    (least, worst) = (slack / excess, Some((index, i, excess - slack)));
+                let part = values[i] / stage.excess[i];
+                if part > most && stage.excess[i] > T::zero() {
+                    (most, worst) = (part, Some((index, i, values[i])));
                 }
             }
         }

@@ -50,8 +50,6 @@ pub(super) struct Iterate<T, const D: usize> {
     is_cornered: bool,
     /// How often the price of the gap was raised.
     pub rounds: u32,
-    /// The part of the first excess by which bounds are still relaxed.
-    pub relaxation: T,
 }
 
 /// The decision after a sweep.
@@ -99,7 +97,6 @@ impl<T: Real, const D: usize> Iterate<T, D> {
             stalls: 0,
             is_cornered: false,
             rounds: 0,
-            relaxation: if barrier.is_none() { T::one() } else { zero },
         }
     }
 
@@ -177,7 +174,6 @@ impl<T: Real, const D: usize> Iterate<T, D> {
     pub fn leave_saddle(&mut self, is_below: bool) {
         self.is_cornered = !is_below;
         if is_below {
-            self.relaxation = T::zero();
             self.settings.curvature = self.mirrored();
             (self.before, self.calm, self.is_probed) = (None, 0, false);
         }

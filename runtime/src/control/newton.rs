@@ -25,11 +25,9 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: usize
     /// Corrections close the gap to the target; where `is_priced`, it is priced, and closed where little of it is left.
     pub fn newton<'p>(&mut self, is_priced: bool) -> Result<Optimum<'p, S, D, U, C>, Error> {
         let zero = T::zero();
-        let bounds = self.bounds();
         let steps = T::from_f64(self.stages.len() as f64);
         // The size of a correction that is round-off. Slacks of active bounds have few digits.
         let exact = T::from_f64(4.0) * T::EPSILON * steps.sqrt();
-        let unit = if C > 0 { T::EPSILON.powf(T::from_ratio(3, 5)) } else { exact };
         let mut now = self.start(is_priced)?;
         let (mut size, mut stirs) = (zero, 0);
         for _ in 0..SWEEPS {
@@ -56,14 +54,16 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: usize
             }
             if now.is_open {
                 let price = larger(summary.magnitude + decrement, summary.repair());
-                self.open(&mut now, is_priced, price);
+                self.open(&mut now, is_priced, price, &change)?;
                 continue;
             }
+            let bounds = self.bounds;
+            let unit = if bounds > zero { T::EPSILON.powf(T::from_ratio(3, 5)) } else { exact };
             size = if decrement == zero { zero } else { (decrement.abs() / magnitude).sqrt() };
             match now.verdict(&end, size, unit, barrier::last(bounds, magnitude)) {
                 Verdict::Done | Verdict::Tighten if now.may_be_at_saddle(summary.negative, size) => continue,
                 // Nothing pushes, but bounds are still violated.
-                Verdict::Done if self.is_violated(now.relaxation) => {}
+                Verdict::Done if self.is_violated() => {}
                 Verdict::Done => {
                     self.settle(&change, now.settings.barrier)?;
                     // Where inputs need no correction, the multipliers may.
@@ -103,7 +103,7 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: usize
                 return Err(self.failure(&end, size));
             }
             let is_central = decrement <= T::from_f64(10.0) * now.settings.barrier * bounds;
-            if C > 0 && is_whole && is_central && !now.is_priced() {
+            if bounds > zero && is_whole && is_central && !now.is_priced() {
                 now.tighten(bounds, magnitude);
             }
         }
@@ -119,26 +119,34 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: usize
         let multipliers = costate
             .filter(|costate| costate.is_finite() && costate.max_abs() > T::zero())
             .map_or(SVector::zeros(), |costate| self.multipliers(&end, &costate));
-        let mut now = Iterate::new(multipliers, self.resume_or_relax(), end.distance);
+        let mut now = Iterate::new(multipliers, self.resume_or_relax()?, end.distance);
         now.is_open |= is_priced;
         Ok(now)
     }
 
     /// Begins with bounds, or with a price of the gap, after the first sweep, which was made without and told the size of prices.
-    fn open(&mut self, now: &mut Iterate<T, D>, is_priced: bool, price: T) {
+    fn open(
+        &mut self,
+        now: &mut Iterate<T, D>,
+        is_priced: bool,
+        price: T,
+        change: &SVector<T, D>,
+    ) -> Result<(), Error> {
         now.is_open = false;
         now.settings.weight = now.stiffer;
-        if C > 0 {
+        if self.bounds > T::zero() {
+            self.size(change)?;
             // Where neither plans nor what keeps bounds have a price, any is as good.
-            let is_free = price <= T::zero() && self.is_violated(now.relaxation);
+            let is_free = price <= T::zero() && self.is_violated();
             let price = if is_free { T::one() } else { price };
             now.largest = larger(now.largest, price);
-            now.settings.barrier = T::from_f64(barrier::FIRST) * price / self.bounds();
+            now.settings.barrier = T::from_f64(barrier::FIRST) * price / self.bounds;
             self.begin(now.settings.barrier);
         }
         if is_priced {
             now.price_gap(S::MOTIONS);
         }
+        Ok(())
     }
 
     /// The multipliers ν of the target, for an end with E. Eᵀν is nearest to this costate less the price of the end.

@@ -10,7 +10,7 @@
 //!
 //! Source: Moré and Sorensen, *On the use of directions of negative curvature in a modified Newton method* (1979), for saddles.
 
-use super::barrier::TO_BOUNDARY;
+use super::barrier::{TO_BOUNDARY, is_none};
 use super::end::PlanEnd;
 use super::iterate::Iterate;
 use super::sweep::{Plan, PlanSummary, Problem, Settings};
@@ -111,7 +111,6 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: usize
                 if rolled.difference.is_finite() && is_enough {
                     self.accept(fraction, barrier, rolled.last);
                     now.settings.multipliers += change * fraction;
-                    now.relaxation *= one - fraction;
                     return Some((fraction, refused));
                 }
             }
@@ -183,6 +182,14 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: usize
                 let bounds = system.bounds(t, &x, &input);
                 for i in 0..C {
                     let (z, s) = (stage.multipliers[i], stage.slack[i]);
+                    if is_none(s) {
+                        stage.next_slack[i] = s;
+                        // Written so that NaN is refused.
+                        if bounds[i] <= zero {
+                            continue;
+                        }
+                        return Err(Error::NotFinite { name: S::BOUNDS[i] });
+                    }
                     let next = (one - fraction) * stage.excess[i] - bounds[i];
                     stage.next_slack[i] = next;
                     let ratio = next / s;

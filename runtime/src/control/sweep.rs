@@ -39,6 +39,8 @@ pub(super) struct Plan<'a, S: Controlled<D, U, C, Scalar: Real>, const D: usize,
     pub stages: &'a mut [Stage<S, D, U, C>],
     /// x_N
     pub last: S::Place,
+    /// The number of bounds of all stages, without those that are none.
+    pub bounds: S::Scalar,
     /// The backward sweeps that were made.
     pub sweeps: u32,
 }
@@ -126,7 +128,15 @@ impl<S: Controlled<D, U, C, Scalar: Real>, const D: usize, const U: usize, const
     }
 }
 
-impl<T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: usize, const C: usize> Plan<'_, S, D, U, C> {
+impl<'a, T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: usize, const C: usize>
+    Plan<'a, S, D, U, C>
+{
+    /// The guess that the stages hold.
+    pub fn new(problem: Problem<'a, S, D, U, C>, stages: &'a mut [Stage<S, D, U, C>]) -> Self {
+        let last = *problem.start;
+        Self { problem, stages, last, bounds: T::zero(), sweeps: 0 }
+    }
+
     /// Linearises and eliminates: fills costates, gains and shifts of the stages.
     pub fn eliminate(&mut self, end: &PlanEnd<T, D>, settings: &Settings<T, D>) -> Result<PlanSummary<T, D, U>, Error> {
         let Problem { system, constants, .. } = self.problem;
@@ -152,11 +162,11 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: usize
             let t = self.problem.time_after(index);
             let mut step = system.expand(constants, t, &stage.place, &stage.input, &(value.costate * settings.bend))?;
             let mut bounded = None;
-            if C > 0 {
+            if self.bounds > zero {
                 let natural = step.input_curvature.diagonal();
                 let multipliers = stage.multipliers * settings.bend;
-                let bounds = system.bounds_expanded(t, &stage.place, &stage.input, &multipliers);
-                let (violated, slopes) = stage.add_bounds(&mut step, &bounds, settings);
+                let mut bounds = system.bounds_expanded(t, &stage.place, &stage.input, &multipliers);
+                let (violated, slopes) = stage.add_bounds(&mut step, &mut bounds, settings);
                 summary.violation += violated;
                 bounded = Some((natural, slopes));
             }

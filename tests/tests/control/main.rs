@@ -1,5 +1,6 @@
 //! The choice of inputs, through the macro.
 
+mod bounds;
 mod closed_forms;
 mod derivatives;
 mod extremes;

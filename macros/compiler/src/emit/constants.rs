@@ -166,7 +166,8 @@ impl Emitter<'_, '_> {
 }
 
 impl SystemEmitter<'_, '_> {
-    /// Checks of every field that a closure reads: that it is finite, and the user's promises.
+    /// Checks of every field that a closure reads: that it is finite, and the user's promises. A field that only bounds
+    /// read may be infinite.
     pub(super) fn checks(&self) -> TokenStream {
         let system = self.receiver();
         let checks = self.model.parameters.iter().map(|parameter| {
@@ -175,8 +176,9 @@ impl SystemEmitter<'_, '_> {
             let promises = parameter.promise.iter().flat_map(|promise| {
                 parameter.leaves.iter().map(move |leaf| self.check_of(*promise, name, &of_leaf(&leaf.accessor)))
             });
+            let check = if parameter.is_limit { quote!(check_limit) } else { quote!(check_finite) };
             quote! {
-                runtime::check_finite(#name, &#system.#field)?;
+                runtime::#check(#name, &#system.#field)?;
                 #(#promises)*
             }
         });

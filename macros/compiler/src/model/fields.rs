@@ -60,8 +60,15 @@ pub(super) fn read<'g>(
     sites: Option<&syn::Ident>,
     diagnostics: &Diagnostics,
 ) -> Fields<'g> {
-    let mut used = BTreeMap::new();
-    declaration.closures().for_each(|closure| first_uses(closure.body.to_token_stream(), &mut used));
+    let bounds = declaration.control.as_ref().and_then(|control| control.bounds.as_ref());
+    let (mut used, mut used_elsewhere) = (BTreeMap::new(), BTreeMap::new());
+    for closure in declaration.closures() {
+        let body = closure.body.to_token_stream();
+        if !bounds.is_some_and(|bounds| std::ptr::eq(bounds, closure)) {
+            first_uses(body.clone(), &mut used_elsewhere);
+        }
+        first_uses(body, &mut used);
+    }
     let mut scalar = Agreement::new(declaration, diagnostics);
     spaces.iter().for_each(|ty| scalar.meet(ty, "the configuration"));
     let (mut known, mut parameters, mut leaf_count) = (BTreeMap::new(), Vec::new(), 0);
@@ -80,7 +87,8 @@ pub(super) fn read<'g>(
         }
         let parameter = ty.and_then(|ty| {
             let parameter = diagnostics.take(parameter(graph, field, ty, first_use, leaf_count))?;
-            Some(Parameter { per_site: entry.is_some(), ..parameter })
+            let is_limit = !used_elsewhere.contains_key(&name);
+            Some(Parameter { per_site: entry.is_some(), is_limit, ..parameter })
         });
         let value = parameter.as_ref().map(|parameter| {
             let leaves: Vec<Value<'g>> = parameter.leaves.each(|leaf| Value::Matrix(leaf.symbol));
@@ -177,6 +185,7 @@ fn parameter<'g>(
         first_use,
         promise: field.promise.map(|(promise, _)| promise),
         per_site: false,
+        is_limit: false,
         structure: ty.structure,
         leaves,
     })

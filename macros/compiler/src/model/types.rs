@@ -180,6 +180,8 @@ pub struct Parameter<'g> {
     pub promise: Option<Promise>,
     /// Whether it is an array with one entry for each site of a power. The other fields then describe one entry.
     pub per_site: bool,
+    /// Whether bounds alone read it, so that it may be infinite.
+    pub is_limit: bool,
     /// How arrays nest.
     pub structure: Layout,
     /// One entry for each scalar, vector or matrix in it.

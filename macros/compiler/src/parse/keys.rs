@@ -93,7 +93,7 @@ pub(super) const KEYS: [Key; 27] = [
     key("effort", Kind::Closure, "|h, torque| h * torque.norm_squared() / 2", "nothing is chosen", "`force` or `force_on` with an input",
         "The price of the input of one step. Plans make the sum of these prices least."),
     key("bounds", Kind::Closure, "|u| [u.x <= 1, -1 <= u.x]", "none", CHOICE,
-        "Inequalities between scalars, with `<=` or `>=`, that hold in every step of a plan."),
+        "Inequalities between scalars, with `<=` or `>=`, that hold in every step of a plan. A field that only bounds read may be infinite: plans are then those without that bound."),
     key("endpoint", Kind::Closure, "|q| …", "none", "`controls`, `dynamics`, `effort` or `emit = [boundary]`",
         "The price of the end of a plan, or of a path of least action with a free end. It is added to the prices of all steps."),
     dial("order", Dial(|dials, value| value.order(&mut dials.order), |dials| text(&dials.order), Order::meanings), "2", "2", MECHANICS,

@@ -74,8 +74,12 @@ proptest! {
         let is_refused = matches!(private::check_unit("e", &(e * (1.0 + off))), Err(Error::NotUnit { field: "e", length }) if (length - 1.0 - off).abs() < NEAR);
         prop_assert!(is_refused);
         prop_assert_eq!(private::check_finite("a", &a), Ok(()));
+        tilted[(j, i)] = -f64::INFINITY;
+        prop_assert_eq!(private::check_finite::<f64>("a", &tilted), Err(Error::NotFinite { name: "a" }));
+        prop_assert_eq!(private::check_limit::<f64>("a", &tilted), Ok(()));
         tilted[(j, i)] = f64::NAN;
         prop_assert_eq!(private::check_finite::<f64>("a", &tilted), Err(Error::NotFinite { name: "a" }));
+        prop_assert_eq!(private::check_limit::<f64>("a", &tilted), Err(Error::NotFinite { name: "a" }));
     }
 
     #[test]
