@@ -38,7 +38,7 @@ use num_traits::Zero;
 /// ```
 #[diagnostic::on_unimplemented(
     message = "`{Self}` has no inputs to choose",
-    note = "write `effort = |h, u| h * u.norm_squared() / 2` in the declaration beside a force with an input, or declare `controls` or `dynamics` with a `cost`"
+    note = "write `effort = |h, u| h * u.norm_squared() / 2` in a declaration with a force that has an input, or declare `controls` or `dynamics` with a `cost`"
 )]
 pub trait Controlled<const D: usize, const U: usize, const C: usize>: Sized {
     /// The scalar.

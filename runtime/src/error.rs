@@ -64,7 +64,7 @@ errors! {
         NotFinite {
             /// The quantity that is not finite: a field of the declared struct, or a part of the state.
             name: &'static str,
-        } => "{name} is not finite: look for NaN, infinity, division by zero or overflow in what it comes from";
+        } => "{name} is not finite: look for NaN, infinity, division by zero or overflow in the numbers that it comes from";
         /// The error that a step size was asked for is not above that of rounding alone.
         BelowRounding {
             /// The error that was wished.
@@ -268,7 +268,7 @@ errors! {
             /// The step size.
             step_size: f64,
         } =>
-            "the step of {step_size:.3e} has no derivative, as it is at the edge of what can be solved: reduce the \
+            "the step of {step_size:.3e} has no derivative, as it is at the edge of solvability: reduce the \
              step size";
     }
 }

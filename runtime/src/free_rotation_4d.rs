@@ -207,7 +207,7 @@ impl<T: Real> FreeRotation4<T> {
                     whole = if done == 0 { increment } else { composed(&whole, &increment) };
                     m = end * part.recip();
                     done += length;
-                    // what is left of the half that was too long
+                    // the remainder of the half that was too long
                     while done & (2 * length - 1) == 0 && done < PARTS {
                         length *= 2;
                     }

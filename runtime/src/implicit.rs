@@ -271,7 +271,7 @@ fn newton<T: Scalar, E: Equation<T, M, N>, const M: usize, const N: usize>(
         }
         let others = open & !unpredicted & !contracts;
         if made > 1 && others.any() {
-            // copies on the cold path only: what is passed by reference lies in memory in every iteration
+            // copies on the cold path only: a value that is passed by reference lies in memory in every iteration
             let (rest, linear, from, rest_before) = (residual, jacobian, old, residual_before);
             let arrived = others & is_round_off(&rest, &linear, &from);
             let strays = predicted.below(size(&(xi - start))) | !is_much_smaller::<T, M>(&rest, &rest_before);

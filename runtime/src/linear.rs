@@ -119,7 +119,8 @@ pub fn solve_dense<T: Scalar, const M: usize>(a: &SMatrix<T, M, M>, b: &SVector<
     if safe.all() {
         return Some((x, orientation));
     }
-    // Copies on the cold path only: what is passed by reference lies in memory in every solve, and a result that is returned in one piece does too.
+    // Copies on the cold path only: a value that is passed by reference lies in memory in every solve. So does a result
+    // that is returned in one piece.
     let (a, b, own) = (*a, *b, x);
     let (x, orientation) = eliminated_at_last((&a, &b), &own, orientation, safe)?;
     Some((x, orientation))

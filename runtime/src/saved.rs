@@ -109,7 +109,7 @@ impl<S: Clebsch, M: Method<S>> Stepper<S, M> {
         check_state(&self.system, &state.configuration, &mu)?;
         check_violation(M::Scheme::held_defect(&state.configuration, &state.held), &mu)?;
         check_finite("the time", &state.time.now())?;
-        check_finite("what is left of the last step", &(state.left, state.h))?;
+        check_finite("the data of the last step", &(state.left, state.h))?;
         let now = state.time.now();
         state.time = resumed_time(&state.time);
         state.left = M::Scheme::resumed(self.at(now), &state.configuration, &mu, &state.left);

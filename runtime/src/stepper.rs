@@ -116,7 +116,7 @@ impl<S: Clebsch, M: Method<S>> Stepper<S, M> {
     }
 }
 
-// a bound of the method, not of the block: its error then says what is missing
+// a bound of the method, not of the block: its error then names the missing part
 impl<S: Clebsch, M: Method<S>> Stepper<S, M> {
     /// The momenta that no step changes, with their names: those that the symmetry of cost and potential conserves.
     ///

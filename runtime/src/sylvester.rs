@@ -46,7 +46,7 @@ impl<T: Real, const N: usize> Sylvester<T, N> {
     ) -> Option<([SVector<T, M>; K], Orientation)> {
         let (mut solutions, mut orientation) = (rights, Orientation::POSITIVE);
         if T::DERIVATIVES > 0 {
-            // derivatives of what the iteration neglects are not negligible
+            // derivatives of the terms that the iteration neglects are not negligible
             let matrix = matrix_of(|x| self.times(x));
             for solution in &mut solutions {
                 (*solution, orientation) = solve_dense(&matrix, solution)?;

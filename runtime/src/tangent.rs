@@ -194,7 +194,7 @@ struct Passed<S: Clebsch, const M: usize> {
     tangent: Tangent<S::Scalar, M>,
 }
 
-// bounds of the methods, not of the block: their errors then say what to write
+// bounds of the methods, not of the block: their errors then give the text to write
 #[allow(clippy::type_complexity, reason = "the state with its two kinds of derivatives, each of a named type")]
 impl<S, B, T: Scalar, const M: usize> Stepper<S, B>
 where
@@ -324,7 +324,7 @@ where
 
     fn stepped(&self, state: &State<S, B>, q: S::Configuration, mu: SVector<T, M>) -> Result<State<S, B>, Error> {
         let time = state.time.after_step(self.step_size());
-        // of the same size, but at another configuration: what does not depend on either stays
+        // of the same size, but at another configuration: data that depends on neither stays
         let left = B::Scheme::left_after(self.at(time.now()), &q, &mu, &state.left);
         let held = B::Scheme::held(&q, &mu);
         let next = State { time, configuration: q, held, left, h: self.step_size() };

@@ -88,21 +88,21 @@ class Page:
         self.wait("it runs", lambda data: data.get("status") == "running" and float(data["steps"]) > 0)
 
     def data(self):
-        return self.browser.run("return {...document.getElementById('live').dataset}")
+        return self.browser.run("return {...document.querySelector('.live').dataset}")
 
     def message(self):
-        return self.browser.run("return document.querySelector('#live .message').textContent")
+        return self.browser.run("return document.querySelector('.live .message').textContent")
 
     def click(self, button):
-        self.browser.run("document.querySelector(`#live button[name=${arguments[0]}]`).click()", button)
+        self.browser.run("document.querySelector(`.live button[name=${arguments[0]}]`).click()", button)
 
     def picture(self):
-        return self.browser.run("return document.querySelector('#live .scene').toDataURL()")
+        return self.browser.run("return document.querySelector('.live .scene').toDataURL()")
 
     def drag(self):
         """Moves the pointer over the picture with its button down."""
-        self.browser.run("document.querySelector('#live .scene').scrollIntoView()")
-        scene = self.browser.call("POST", "/element", {"using": "css selector", "value": "#live .scene"})
+        self.browser.run("document.querySelector('.live .scene').scrollIntoView()")
+        scene = self.browser.call("POST", "/element", {"using": "css selector", "value": ".live .scene"})
         moves = [
             {"type": "pointerMove", "origin": scene, "x": 0, "y": 0},
             {"type": "pointerDown", "button": 0},
@@ -116,7 +116,7 @@ class Page:
         found = self.browser.run(
             """
             const [name, value] = arguments;
-            const input = document.querySelector(`#live input[name=${name}]`);
+            const input = document.querySelector(`.live input[name=${name}]`);
             for (let place = Number(input.min); place <= Number(input.max); place += Number(input.step)) {
                 input.value = place;
                 input.dispatchEvent(new Event("input", { bubbles: true }));
@@ -135,7 +135,7 @@ class Page:
         """The share of the pixels of a canvas that are not transparent."""
         return self.browser.run(
             """
-            const canvas = document.querySelector(`#live .${arguments[0]}`);
+            const canvas = document.querySelector(`.live .${arguments[0]}`);
             const { data } = canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height);
             let drawn = 0;
             for (let i = 3; i < data.length; i += 4) {
@@ -231,6 +231,24 @@ def check(page, check_scene):
     page.claim("the console has no error", not errors, "; ".join(errors))
 
 
+def check_print(browser, origin, scenes):
+    """Checks the page for printing, which has all chapters, and returns the number of failures."""
+    browser.open(f"{origin}/print.html")
+    end = time.monotonic() + PATIENCE
+    while browser.run("return document.readyState") != "complete" and time.monotonic() < end:
+        time.sleep(0.05)
+    elements = browser.run("return [...document.querySelectorAll('.live')].map(element => element.childElementCount)")
+    # the page waits for MathJax before it prints, and the network has it
+    errors = [error for error in browser.errors() if "MathJax is not defined" not in error]
+    claims = [
+        ("each live page has its sentence", elements == [0] * scenes, f"{elements}"),
+        ("the console has no error", not errors, "; ".join(errors)),
+    ]
+    for claim, holds, detail in claims:
+        print(f"{'ok' if holds else 'FAILED':8}{'print':10}{claim}{'' if holds else ': ' + detail}", flush=True)
+    return sum(not holds for _, holds, _ in claims)
+
+
 def take_pictures(page, folder):
     for theme in ["light", "navy"]:
         page.browser.run("localStorage.setItem('mdbook-theme', arguments[0]); location.reload()", theme)
@@ -247,12 +265,14 @@ def main(book, folder=None):
     try:
         browser = Browser(driver)
         failures = 0
-        for name, check_scene in [("top", check_top), ("body", check_body), ("pendulum", check_pendulum)]:
+        scenes = [("top", check_top), ("body", check_body), ("pendulum", check_pendulum)]
+        for name, check_scene in scenes:
             page = Page(browser, origin, name)
             if folder:
                 take_pictures(page, pathlib.Path(folder))
             check(page, check_scene)
             failures += page.failures
+        failures += check_print(browser, origin, len(scenes))
         browser.close()
     finally:
         driver.terminate()

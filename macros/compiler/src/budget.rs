@@ -61,7 +61,7 @@ fn too_large(declaration: &Declaration, stage: CompilerStage) -> Diagnostic {
     }
     error
         .help(instead)
-        .note("formulas are written out at compile time, where products of sums have a term for each pair of terms")
+        .note("formulas are expanded at compile time, and products of sums get a term for each pair of terms")
 }
 
 /// The closure that makes the declaration large, and its replacement. It is the first optional closure without which a
@@ -85,7 +85,7 @@ fn culprit(declaration: &Declaration) -> Option<(Location, String, &'static str)
     };
     rows.into_iter().find_map(|(closure, without, what, instead)| {
         let closure = closure.filter(|_| is_small(without))?;
-        Some((Location::from(&closure.body), format!("what is derived from this {what} takes"), instead))
+        Some((Location::from(&closure.body), format!("the formulas of this {what} take"), instead))
     })
 }
 

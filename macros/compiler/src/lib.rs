@@ -75,7 +75,7 @@ pub fn compile(graph: &Graph, item: TokenStream) -> Result<Program<'_>, Diagnost
 fn program<'g>(graph: &'g Graph, declaration: &Declaration, stage: &Stage) -> Result<Program<'g>, Diagnostics> {
     let mut program = match program_of_steps(graph, declaration, stage)? {
         Program::Mechanics(program) => program,
-        // what inputs move has no methods
+        // a configuration that inputs move has no methods
         steered => return Ok(steered),
     };
     let diagnostics = Diagnostics::new();

@@ -48,7 +48,7 @@ impl<'g> MethodProgram<'g> {
         if let Some(lost) = of(declared).into_iter().find(|momentum| !conserved.contains(momentum)) {
             bail!(name, "the method `{name}` does not conserve the momentum `{lost}`";
                 help "write another `discretization` for it, or declare another struct";
-                note "the steps with the declared dials do, and what is conserved is said for the system");
+                note "the steps with the declared dials do, and the conserved momenta are those of the system");
         }
         Ok(MethodProgram { name: name.clone(), program: *program })
     }

@@ -47,7 +47,7 @@ impl Images {
 
     /// The image of a part of the expression that is being mapped.
     pub(crate) fn of<'g>(&self, graph: &'g Graph, part: &Id) -> Expr<'g> {
-        // by construction: parts come before what they are part of
+        // by construction: parts come before the expressions that contain them
         graph.expr(self.get(*part).expect("the image of a part"))
     }
 }

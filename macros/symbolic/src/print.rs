@@ -51,7 +51,7 @@ impl Printer<'_> {
     /// The text of a node, in parentheses if it binds less tightly than its place asks.
     fn print(&self, id: Id, place: Binding) -> String {
         let (text, binding) = self.node(id);
-        // what stands in several places is written out in each
+        // an expression in several places is printed in each
         work::spend(1 + text.len() / 64);
         if binding < place { self.parenthesized(&text) } else { text }
     }

@@ -12,7 +12,7 @@ impl<'g> Expr<'g> {
 
     /// The nodes that this expression is made of, as far as there is a way to them over nodes that are wanted.
     pub(crate) fn reachable_where(self, wanted: impl Fn(Id) -> bool) -> Vec<Id> {
-        // children come before their parents: read off in order, a bit for each, what was reached needs no sorting
+        // children come before their parents: read off in order, a bit for each, the reached ones need no sorting
         let mut seen = vec![0_u64; self.id.0 as usize / 64 + 1];
         let (mut count, mut open) = (0, vec![self.id]);
         while let Some(id) = open.pop() {

@@ -49,7 +49,7 @@ fn add(sum: &mut Vec<Term>, term: Term) {
     match place {
         Ok(position) => sum[position].coefficient += term.coefficient,
         Err(position) => {
-            // what stands behind it moves
+            // later terms move
             work::spend((sum.len() - position) / 64);
             sum.insert(position, term);
         }

@@ -85,7 +85,7 @@ mod natural {
             assert_eq!(Natural::from(factor).times(&power(above)).ratio(&power(below)), expected, "{k}");
         }
         let least = f64::from_bits(1);
-        // halves go to even, and what is above a half goes up
+        // halves go to even, and numbers above a half go up
         let halves = [(1, 1075, 0.0), (3, 1075, 2.0 * least), (5, 1075, 2.0 * least), (11, 1076, 3.0 * least)];
         for (factor, exponent, expected) in halves {
             assert_eq!(Natural::from(factor).ratio(&Natural::from(1).shifted(exponent)), expected);

@@ -131,7 +131,7 @@ impl<T: Real, S: Variational<M, Scalar = T>, B: Differentiated<S, M>, const M: u
                 }
                 before = Some(summary);
             } else {
-                // A correction that is small beside the path was to lead to an extremal near it.
+                // A correction that is small relative to the path was to lead to an extremal near it.
                 let is_small = before.is_some_and(|before| before.size <= T::from_ratio(1, 8));
                 if before.take().is_some() {
                     self.take_back();

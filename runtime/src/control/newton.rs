@@ -136,7 +136,7 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: usize
         now.settings.weight = now.stiffer;
         if self.bounds > T::zero() {
             self.size(change)?;
-            // Where neither plans nor what keeps bounds have a price, any is as good.
+            // If neither plans nor the inputs that satisfy bounds have a price, any is as good.
             let is_free = price <= T::zero() && self.is_violated();
             let price = if is_free { T::one() } else { price };
             now.largest = larger(now.largest, price);

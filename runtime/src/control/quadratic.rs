@@ -78,10 +78,12 @@ impl<T: Real, const D: usize, const U: usize> Policy<T, D, U> {
         let mixed = step.mixed_curvature + b.tr_mul(&along);
         let input = step.input_curvature + b.tr_mul(&across);
         let input_multiplier = b.tr_mul(&next.by_multiplier);
-        // How much the price curves along each input, of which steadiness is a part. Bounds that are reached, of this step and, through P, of
-        // later places, stiffen Q_uu by Σ = z²/μ, up to 10¹² times what the price does. A part √ε of that would hold the free inputs too: each
-        // correction would go a part 10⁻⁴ of the way to a bound that is reached with the multiplier 0. So, where there are bounds, the step alone
-        // tells, as interior point methods shift the Hessian of the Lagrangian without Σ. Inputs that the step does not price are left as they are.
+        // How much the price curves along each input; the steadiness is a part of this. Bounds that are reached, of
+        // this step and, through P, of later places, stiffen Q_uu by Σ = z²/μ. This is up to 10¹² times the stiffness
+        // of the price. A part √ε of that would stop the free inputs too. Each correction would go a part 10⁻⁴ of the
+        // way to a bound that is reached with the multiplier 0. So, where there are bounds, the step alone tells, as
+        // interior point methods shift the Hessian of the Lagrangian without Σ. Inputs that the step does not price are
+        // left as they are.
         let (natural, slopes) = bounded.unwrap_or_else(|| (input.diagonal(), (SVector::zeros(), SVector::zeros())));
         let violation = slopes.1 + b.tr_mul(&next.violation);
         let pivot = Pivot::of(&input, &natural, curvature);

@@ -56,7 +56,7 @@ fn elementary_functions() {
     for (name, function, x, large, small) in EXACT.into_iter().step_by(if cfg!(miri) { 3 } else { 1 }) {
         let (found, exact) = (function(x.into()), DoubleDouble::new(large, small));
         let error = (found - exact).to_f64().abs();
-        // what multiples of π/2 cost grows with the argument
+        // the error of multiples of π/2 grows with the argument
         let scale = large.abs().max(if large.abs() < 0.9 { 0.25 * x.abs().min(1.0) } else { 1.0 }).max(x.abs() * 1e-2);
         assert!(error < 4e-31 * scale, "{name} {x}: {found} is not {exact}, by {error:e}");
     }

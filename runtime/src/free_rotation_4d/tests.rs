@@ -106,7 +106,7 @@ fn long_motions_are_series_after_series() {
     assert!(flow(|m| free.velocity(m), &m).is_none());
     let (increment, end) = free.series(&m, &mut SERIES.clone()).expect("parts that end");
     let (increment, end) = free.in_coordinates(&increment, &end);
-    // what is interpreted is compared with short steps of its own, which are those of Runge and Kutta elsewhere
+    // interpreted runs are compared with short steps of their own; others with those of Runge and Kutta
     let (wanted, last) =
         if cfg!(miri) { stepped(&inertia, &mu, time / 12.0, 12) } else { followed(&inertia, &mu, time, 30_000) };
     let error = (increment + Matrix4::identity() - wanted).amax().max((end - last).amax());

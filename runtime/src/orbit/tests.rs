@@ -66,7 +66,7 @@ fn rests_are_brought_back_too() {
     let rotation = Matrix3::new(0.36, 0.48, -0.8, -0.8, 0.6, 0.0, 0.48, 0.64, 0.6);
     let direction = Matrix3::new(1.0, 0.5, -0.25, 0.75, 1.0, 0.5, -1.0, 0.25, 0.5);
     for defect in [1e-13, 1e-8, 1e-4] {
-        // a rest of the size of the defect: what rounding leaves is too small to be seen
+        // a rounding error of the size of the defect: true rounding is too small to be seen
         let (r, rest) = (rotation + direction * defect, direction.transpose() * defect);
         let nearest = nearest_rotation(r + rest);
         let (r, rest) = orthogonal_with_rest(r, rest);

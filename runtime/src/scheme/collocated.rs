@@ -24,7 +24,8 @@ impl<S: Substep<0, M> + HamiltonEquations<N, M>, M: Method<S>, const N: usize> S
     fn step(at: At<'_, S, M>, (q, mu, left): From<'_, S, M, Apart>, _: &S::Input) -> To<S, M, Apart> {
         let (mut state, ()) = Moving::<S, M>::start::<Apart>(q, mu, left);
         let system = at.system;
-        // If rounding has moved q off its orbit, J(q, p) of a covector of μ misses μ by as much: the covector of the difference is added, or N would drift.
+        // If rounding has moved q off its orbit, J(q, p) of a covector of μ misses μ by as much. The covector of the
+        // difference is added, or N would drift.
         let p = system.covector(at.constants, q, mu);
         let p = plus(&p, &system.covector(at.constants, q, &minus(mu, &system.momentum(q, &p))));
         let (dq, dp) = change(at, q, &p, mu)?;

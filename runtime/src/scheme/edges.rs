@@ -80,7 +80,7 @@ asked! {
     "An edge with its second derivatives." SecondDerivatives: Clebsch, edge -> Edge<S::Scalar, M>;
     "An edge with its first derivatives." FirstDerivatives: Clebsch, momenta -> Momenta<S::Scalar, M>;
     "The derivatives of an edge along motions that leave F as it is." AtFixedElement: Clebsch, carried -> Carried<S::Scalar, M>;
-    "The derivatives of an edge with respect to what is fixed during a step." ByQuantities: Varied<M>, slopes -> S::Slopes;
+    "The derivatives of an edge with respect to the quantities that are fixed during a step." ByQuantities: Varied<M>, slopes -> S::Slopes;
 }
 
 /// Schemes with one edge.

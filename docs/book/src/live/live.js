@@ -1,6 +1,6 @@
 // Shows a scene: its sliders, its numbers, its picture and the chart of its energy. The scenes are in top.js, body.js and pendulum.js.
 //
-// Tests read the data attributes of the element with the id `live`: status, steps, energyError and momentumError.
+// Tests read the data attributes of the element of the class `live`: status, steps, energyError and momentumError.
 
 import { View, drawChart, scientific } from "./view.js";
 
@@ -41,7 +41,7 @@ const SPACING = 0.02;
 const MOST_POINTS = 1500;
 
 /**
- * Shows a scene in the element with the id `live`:
+ * Shows a scene in the element of the class `live`:
  *
  * - `start(module, values)` begins a run and returns 0 or the number of a refusal;
  * - `sliders` have a name, a label, a unit, a value, and either `values` or `min`, `max` and `step`;
@@ -51,7 +51,7 @@ const MOST_POINTS = 1500;
  * - `draw(view, configuration, values, conserved)` draws the body.
  */
 export async function show(scene) {
-    const root = document.getElementById("live");
+    const root = document.querySelector(".live");
     root.replaceChildren();
     const canvas = append(root, "canvas", { className: "scene" });
     const controls = append(root, "div");

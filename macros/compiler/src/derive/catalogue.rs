@@ -252,7 +252,7 @@ catalogue! {
     HamiltonEquations = listed("Hamilton's equations", Hot).by(MechanicsAndSymmetry);
     /// The start of its sweeps.
     Guess = unlisted("predictor", Hot);
-    // what follows has kernels, and is no row of a table
+    // the following ids have kernels, and no row in a table
     /// The values that a stepper computes once.
     Constants = unlisted("", Hot);
     /// The coefficients of ξ_i ξ_j, i ≤ j, in the kinetic energy.

@@ -55,7 +55,7 @@ pub(super) fn collocation<'g>(
     }
     check_linear(sources, &general)?;
     let lift = lift(sources)?;
-    // stages lie off the orbit of q, where what simplifies on it does not hold
+    // stages lie off the orbit of q, where simplifications on the orbit do not hold
     let everywhere = |expr: &Expr<'g>| expr.substitute(&general);
     let momentum: Vec<_> = sources.momentum_map.each(everywhere);
     let slope = symbols.slope(everywhere(&energy.gyroscopic));

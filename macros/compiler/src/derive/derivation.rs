@@ -84,7 +84,7 @@ fn sites(formulas: &MechanicsFormulas<'_>, lowered: &Lowered) -> String {
     let added = if lowered.is_gathered {
         "the gradient of a site is gathered from the terms that read it"
     } else {
-        "what a term has for its sites is added there"
+        "the share of a term is added at each of its sites"
     };
     let (summed, each) = match power.terms.len() {
         1 => ("a sum of one formula".to_string(), "it"),
@@ -97,7 +97,7 @@ fn sites(formulas: &MechanicsFormulas<'_>, lowered: &Lowered) -> String {
             "They are tied to each other by the potential, {summed}; {each} is differentiated once, and {added}, in loops: the code does not grow with {length}."
         )
     };
-    format!("A power: {length} sites, {equal}. What follows is said of one site.\n{terms}\n")
+    format!("A power: {length} sites, {equal}. The following is about one site.\n{terms}\n")
 }
 
 fn inputs(model: &System<'_>) -> String {

@@ -181,7 +181,8 @@ fn is_quadratic<'g>(model: &System<'g>, derivatives: &[Expr<'g>]) -> bool {
     !(survives(3) || survives(4))
 }
 
-/// Refuses velocities of which ½ ξ·Σξ + A(t, q)·ξ has the linear part alone: their momentum is A, which determines no velocity.
+/// Refuses velocities that ½ ξ·Σξ + A(t, q)·ξ contains linearly only: their momentum is A, which determines no
+/// velocity.
 fn check_order<'g>(
     model: &Mechanics<'g>,
     algebra: &[Expr<'g>],

@@ -93,7 +93,7 @@ fn residual<'g>(sources: &Sources<'_, 'g>, momentum: &Momentum<'g>, k: usize) ->
     let (model, symbols) = (sources.model, &sources.symbols);
     let Momentum { before, coupling, rest, .. } = momentum;
     let group = model.factors[k].group;
-    // F = I + D in a chart with roots: what cancels in F − I does so before D(x) is put in
+    // F = I + D in a chart with roots: terms that cancel in F − I do so before the substitution of D(x)
     let is_late = |j: &usize| is_kept(symbols.charts[*j], coupling.is_some());
     let late = (0..model.factors.len()).filter(is_late).map(|j| (symbols.increments[j], sources.chart_increment(j)));
     let late: Vec<(Expr<'g>, Expr<'g>)> = late.into_list();

@@ -185,5 +185,5 @@ fn check_offers(model: &Mechanics<'_>, symmetries: &Symmetries<'_>) -> Result<()
     };
     bail!(offered.written.place, "`{}` is not a symmetry of {what}", offered.written.text;
         help "leave it out, or offer the part of the group that {unchanged}";
-        note "it has to leave them unchanged for all values of the configuration, the group element and the parameters, and to move the configuration as some motion of the declared group does");
+        note "it has to leave them unchanged for all configurations, group elements and parameters, and move the configuration as a motion of the declared group does");
 }

@@ -169,7 +169,7 @@ impl<'g> MechanicsFormulas<'g> {
     /// Whether x_Q(x_Q(q)) = −|x|² q, because x is a multiple of a momentum J(q, p): on a sphere, turned about an axis perpendicular to q.
     fn is_perpendicular(&self, k: usize, leaf: usize, twice: Expr<'g>) -> bool {
         let (model, symbols) = (&self.model, &self.symbols);
-        // forces in 𝔤*, and what a cost gives at rest, need not be momenta of that kind
+        // forces in 𝔤*, and the momentum of a cost at rest, need not be momenta of that kind
         let is_momentum = symbols.charts[k] == Chart::Sine
             && model.isotropy == Isotropy::Fixed
             && model.force.is_none()

@@ -134,7 +134,7 @@ impl<'g> MechanicsFormulas<'g> {
         rows.extend(self.rows_of_conserved());
         for index in 0..self.substeps.len() {
             for mut row in self.rows_of_substep(&names, index) {
-                // what serves the inverse Legendre transform alone is not listed
+                // formulas for the inverse Legendre transform alone are not listed
                 row.is_listed &= index < self.stepped;
                 rows.push(row);
             }

@@ -120,7 +120,7 @@ impl<'a, 'b, 'g> Reduced<'a, 'b, 'g> {
         let first = self.slope(*positions.first()?);
         let (sources, graph, whole) = (self.sources, self.sources.model.graph, &self.equation);
         let gone: Vec<usize> = positions.each(|&i| whole.components[i]);
-        // what others a leaf has in its formula cancels
+        // if leaves are alone, the other leaves in their formulas cancel
         let absent = if positions.iter().all(|&i| self.pattern.is_alone(i)) { &whole.components } else { &gone };
         let rest = self.with(absent, graph.zero(Shape::vector(absent.len())), rows_at(whole.residual, positions));
         let rest = identity::without_vanishing_terms(rest.expand());

@@ -53,7 +53,7 @@ impl<'g> Substep<'g> {
         let model = sources.model;
         let (before, after) = trivialisation::of_all(model, lagrangian.kinetic);
         let coupling = lagrangian.couples.then(|| sources.coupling(lagrangian.kinetic));
-        // the part of the force that depends on the velocity joins the equation, at the time at which the whole step starts
+        // the part of the force that depends on the velocity joins the equation, at the time at which the step starts
         let moving = force
             .as_ref()
             .and_then(|force| force.start_moving.as_ref())
@@ -63,7 +63,7 @@ impl<'g> Substep<'g> {
         let rest = at_rest(model, &before, coupling.as_deref());
         let unchanged: Vec<bool> = indexed(model.factors.len(), |k| agree(model, (&before, &after), k));
         let momentum = Momentum { before, coupling, rest: rest.clone(), is_forced };
-        // impulses are functions of the time of the configuration, K of the time at which the whole step starts
+        // impulses are functions of the time of the configuration, K of the time at which the step starts
         let earlier = |rest: &Vec<Expr<'g>>| rest.each(|part| sources.later(*part, -begins));
         let changes = rest.iter().flatten().any(|part| part.depends_on(model.time));
         let other = lagrangian.couples || changes;
@@ -77,7 +77,7 @@ impl<'g> Substep<'g> {
             ends,
             divisor: sources.divisor,
             start: if model.is_compensated() {
-                // what comes back after the move is added for the solve alone, and stays out of the sums
+                // a term that comes back after the move is added for the solve alone, and stays out of the sums
                 sources.impulse(lagrangian.start)
             } else {
                 total(sources.impulse(lagrangian.start), rest.as_ref().map(earlier))

@@ -41,7 +41,7 @@ impl<'g> MechanicsFormulas<'g> {
     /// M⁺ = Ad*_{F⁻¹} M for a left action, Ad*_F M for a right one, of M = μ + r(I) for each factor; `None` where it is μ.
     pub(super) fn carried_on(&self, substep: &Substep<'g>) -> Option<Vec<Expr<'g>>> {
         let carried = |(k, mu): (usize, &Expr<'g>)| {
-            // what is solved for is M − r(I)
+            // the equation is solved for M − r(I)
             let m = substep.rest.as_ref().map_or(*mu, |rest| *mu - rest[k]);
             if substep.unchanged[k] { m } else { self.carried(k, m) }
         };

@@ -35,7 +35,7 @@ impl Emitter<'_, '_> {
         let orientations = self.solves().filter(|solve| self.has_orientation(solve)).map(|solve| {
             let name = self.constant_of(solve);
             let whole = self.orientation_of_inertia(&[solve.components.as_slice(), &solve.coupled].concat());
-            // det Σ is the product of those of what was put in and of what that leaves
+            // det Σ is the product of the determinant of the substituted block and of that of the others
             let coupled = (!solve.coupled.is_empty()).then(|| self.orientation_of_inertia(&solve.coupled));
             let coupled = coupled.map(|coupled| quote!(* #coupled));
             [quote!(#name), quote!(runtime::Orientation), quote!(: #whole #coupled)]

@@ -118,7 +118,7 @@ impl<'e, 'a, 'g> EquationType<'e, 'a, 'g> {
     fn function(&self, function: &Function, kernel: Option<&'e Kernel>, words: &Words<'_>) -> Option<Body<'e>> {
         let EquationType { emitter, solve, scope, .. } = self;
         let is_newton = solve.solution == Solution::Newton;
-        // with whole matrices the terms hold the momenta
+        // in matrix code the terms contain the momenta
         let target = (is_newton && emitter.keeps_matrices).then(|| quote!(let mu = &terms.0;));
         Some(match function.name {
             "closed_form" => function.written(scope, kernel, words)?,

@@ -178,7 +178,7 @@ impl Block<'_> {
 
     /// The tokens of a text, with its words replaced.
     fn parsed(&self, text: &str, words: &Words<'_>) -> TokenStream {
-        // by construction: what the table of functions holds was tokens
+        // by construction: the texts in the table of functions were tokens
         put_in(text.parse().unwrap_or_default(), &|name, _| words(name).or_else(|| self.word(name)))
     }
 

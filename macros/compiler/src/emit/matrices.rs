@@ -173,7 +173,7 @@ impl Scope<'_, '_> {
                 let constants = &self.constants;
                 Reached::Reference(quote!(#constants.inertia_inverse.matrix()))
             }
-            // by construction: the other roles are numbers, or of systems that are written out
+            // by construction: the other roles are numbers, or belong to unrolled systems
             _ => Reached::Value(quote!()),
         }
     }
@@ -184,7 +184,7 @@ impl Scope<'_, '_> {
         if held.iter().copied().eq(first..first + shape.rows) {
             return Reached::Reference(quote!(#name));
         }
-        // by construction: kernels read what their vectors hold
+        // by construction: kernels read entries that their vectors have
         let of = |component: usize| held.iter().position(|&other| other == component).unwrap_or(0);
         let positions: Vec<usize> = (first..first + shape.rows).map(of).into_list();
         let start = positions.first().copied().unwrap_or(0);

@@ -97,7 +97,7 @@ pub fn generated(program: &Program<'_>) -> String {
 fn pretty(items: &TokenStream) -> String {
     match syn::parse2(items.clone()) {
         Ok(file) => prettyplease::unparse(&file),
-        // by construction: what is emitted parses; if not, the raw tokens show where
+        // by construction: emitted tokens parse; if not, the raw tokens show where
         Err(_) => items.to_string(),
     }
 }
@@ -158,7 +158,7 @@ impl<'a, 'g> Emitter<'a, 'g> {
 
     fn items(&self) -> TokenStream {
         let (power, constants, system) = (self.power(), self.constants_type(), self.system());
-        // what is conserved of a power is a sum over its sites
+        // a conserved quantity of a power is a sum over its sites
         let conserves = self.power.is_none().then(|| self.conserves());
         let (variational, sensitive, controlled) = (self.variational(), self.sensitive(), self.controlled());
         let (check, parts, equations) = (self.potential_check(), self.parts(), self.equations());

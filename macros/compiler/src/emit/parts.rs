@@ -188,11 +188,12 @@ impl Emitter<'_, '_> {
             "start_gradient" | "end_gradient" | "coupled_gradient" if !has_covectors || steps_otherwise => None,
             "solve" => {
                 let body = Body::from(self.solve(&self.program.steps[index]));
-                // what a call returns lies in memory in pieces, and reading it as vectors waits for them: a tenth of a short step
+                // the result of a call lies in memory in pieces, and reading it as vectors waits for them: a tenth of a
+                // short step
                 Some(if self.is_short() { body.inlined(quote!(#[inline(always)])) } else { body })
             }
             "update" if self.formulas.is_compensated() => {
-                let title = "What the move, F = I + D, adds to the momentum: M⁺ − μ, in which μ has cancelled.";
+                let title = "The increment of the momentum by the move, F = I + D: M⁺ − μ, in which μ has cancelled.";
                 Some(computed()?.titled(title))
             }
             _ => computed(),

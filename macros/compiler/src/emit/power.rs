@@ -143,7 +143,7 @@ impl<'g> Emitter<'_, 'g> {
     fn checks_of_terms(&self, power: &Power<'g>) -> TokenStream {
         let mut checked: Vec<&str> = Vec::new();
         let mut checks = TokenStream::new();
-        // sites check what they have copies of, but for what differs from site to site
+        // sites check their copies of fields, but not fields that differ from site to site
         let of_sites = self.model.parameters.iter().zip(&power.copied).filter(|(parameter, _)| parameter.per_site);
         let of_terms = power.parameters.iter().map(|parameter| (parameter, &parameter.field));
         for (parameter, field) in of_terms.chain(of_sites) {

@@ -129,7 +129,7 @@ impl Scope<'_, '_> {
             }
             Some(Place::Vector(name, held, first)) => {
                 let wanted = first + input.row;
-                // by construction: kernels read what their vectors hold
+                // by construction: kernels read entries that their vectors have
                 let position = held.iter().position(|&component| component == wanted).unwrap_or(wanted);
                 let (name, position) = (format_ident!("{name}"), size(position));
                 return quote!(#name[#position]);
@@ -138,7 +138,7 @@ impl Scope<'_, '_> {
         }
         match input.role {
             Role::StepSize => match &self.constants {
-                // what is written out has taken all that depends on h into its constants
+                // unrolled code has all terms that depend on h in its constants
                 Some(constants) => quote!(#constants.step_size),
                 None => quote!(h),
             },

@@ -17,7 +17,7 @@ impl<'g> Emitter<'_, 'g> {
     /// The impl block.
     pub(super) fn system(&self) -> TokenStream {
         let name = &self.target.name;
-        // what a person reads in the documentation is spelled
+        // types that a person reads in the documentation are spelled
         let types = types_of_system(
             &self.types.clone().map(|ty| self.spelled(&ty)),
             &self.input,
@@ -60,7 +60,7 @@ impl<'g> Emitter<'_, 'g> {
         Some(match function.name {
             "constants" => Body::new(kernel?, self.constants(kernel?)),
             "legendre" | "legendre_next" => function.computes(&scope, kernel?).after(self.free_momenta()),
-            // the trait says what these are of other systems
+            // the trait documents these for other systems
             "potential" if self.formulas.potential_energy.is_zero() => return None,
             "orbit_defect" if self.model.configurations.iter().all(|leaf| leaf.space == LeafSpace::Vectors) => {
                 return None;

@@ -61,7 +61,7 @@ impl Emitter<'_, '_> {
                 let (ahead, back) = (scope.element(kernel?, 0), scope.element(kernel?, middle));
                 quote!(#coordinates #locals [#ahead, #back])
             }
-            // where sums keep their rests, the kernel has what is added
+            // with compensated sums the kernel has the increment
             "advance" if self.formulas.is_compensated() => {
                 let (locals, added) = (scope.locals(kernel?), scope.configuration(kernel?));
                 let sum = self.combined(&quote!(q), quote!(+), &quote!(added));
@@ -112,7 +112,7 @@ impl Emitter<'_, '_> {
             let slope = scope.number(&clebsch_symbolic::rational(numerator, denominator));
             if (numerator, denominator) == (1, 1) { quote!(eta[#i]) } else { quote!(#slope * eta[#i]) }
         });
-        // operations on whole matrices take references
+        // operations on matrices take references
         let reference = self.keeps_matrices.then(|| quote!(&));
         quote!(let x = #reference runtime::vector([#(#entries),*]);)
     }

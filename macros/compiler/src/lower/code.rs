@@ -189,7 +189,7 @@ impl Kernel {
     /// The same with each shared term that is used once in its place, where its type is known without a name.
     pub(super) fn nested(self) -> Kernel {
         let uses = self.uses(&self.outputs);
-        // the type of what is returned is known
+        // the type of a returned value is known
         let outputs = self.outputs.iter().filter(|(_, entries)| entries.len() == 1);
         let returned: Vec<usize> = outputs.flat_map(|(_, entries)| entries[0].as_local()).into_list();
         let mut depths: Vec<usize> = Vec::new();

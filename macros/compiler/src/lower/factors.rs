@@ -147,7 +147,7 @@ impl Factored<'_> {
         }
         inner.retain(|(coefficient, _)| !coefficient.is_zero());
         let sum = match inner.as_slice() {
-            // what is left of them cancels
+            // the other terms cancel
             [] => return rest.into_each(|(_, term)| term),
             [(coefficient, only)] if *coefficient == integer(1) => *only,
             _ => self.made(Operation::Sum(integer(0), inner)),

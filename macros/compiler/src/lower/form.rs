@@ -104,7 +104,7 @@ fn check_unknowns(model: &System<'_>, missing: Option<Feature>) -> Result<(), Di
     if dimension <= MOST_UNKNOWNS {
         return Ok(());
     }
-    let size = format!("{dimension} unknowns, {MOST_UNKNOWNS} is the most that is written out");
+    let size = format!("{dimension} unknowns, {MOST_UNKNOWNS} is the most for unrolled code");
     Err(written_out_too_large(model, missing, size))
 }
 

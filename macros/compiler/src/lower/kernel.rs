@@ -335,7 +335,7 @@ impl Builder<'_, '_> {
         work::spend(1);
         uses[id] += 1;
         let is_first = uses[id] == 1;
-        // what has no name of its own is written out at each use
+        // an operation without a name of its own is repeated at each use
         if is_first || !self.is_shared(id) {
             for operand in self.operands(id) {
                 self.count(operand, uses, order);

@@ -58,7 +58,7 @@ impl<'a, 'g> Maker<'a, 'g> {
                 _ => matrices::short_kernel(value),
             };
         }
-        // what a method of the constants computes
+        // the kernels of methods of the constants
         let is_of_step = match id {
             Id::MomentumAfter(_) => self.of_steps.contains(&id),
             Id::SplittingKick | Id::SplittingGradient | Id::Guess => true,

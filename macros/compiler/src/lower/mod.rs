@@ -62,7 +62,7 @@ pub fn lower(formulas: Formulas<'_>) -> Result<Program<'_>, Diagnostics> {
 fn steered(formulas: SteeredFormulas<'_>) -> Result<SteeredProgram<'_>, Diagnostics> {
     form::check_steered(&formulas.model)?;
     let mut maker = Maker::new(&formulas, formulas.table());
-    // rounding decides where plans go that start from a saddle: what they are made of is computed as it is written
+    // rounding decides where plans go that start from a saddle: their sums are computed as they are written
     maker.scalars.keeps_sums = true;
     formulas.choice().iter().for_each(|choice| maker.choice(choice));
     maker.price_of_end();
@@ -115,7 +115,7 @@ fn check_size(
     let (whole, kernel) = (lengths.iter().sum(), lengths.iter().copied().max().unwrap_or(0));
     for (operations, most, of) in [(whole, LARGEST_PROGRAM, ""), (kernel, LARGEST_KERNEL, " in one function")] {
         if operations > most {
-            let size = format!("{operations} scalar operations{of} when it is written out, {most} is the most");
+            let size = format!("{operations} scalar operations{of} when it is unrolled, {most} is the most");
             return Err(written_out_too_large(model, missing, size));
         }
     }
@@ -128,7 +128,7 @@ fn written_out_too_large(model: &System<'_>, missing: Option<Feature>, size: Str
     match missing {
         None => error.help("or write `code = matrices`, whose code grows less with the size"),
         Some(what) => {
-            error.note(format!("{} has no code with whole matrices yet, which grows less with the size", what.words()))
+            error.note(format!("{} has no matrix code yet, which grows less with the size", what.words()))
         }
     }
     .into()
@@ -173,7 +173,7 @@ impl<'g> Maker<'_, 'g> {
         let stencil = derive::stencil(&formulas.model, &formulas.links);
         let gathered = stencil.as_ref().map_or(Vec::new(), |stencil| self.gathered(formulas, stencil));
         let total = |kernels: &[(Id, Kernel)]| kernels.iter().map(|(_, kernel)| kernel.cost().total()).sum::<usize>();
-        // what is added up is read and written once more for each place of a term
+        // each addition is read and written once more for each place of a term
         let entries = |kernel: &Kernel| kernel.outputs.iter().map(|(_, entries)| entries.len()).sum::<usize>();
         let moved = gradients.iter().map(|(_, kernel)| 2 * entries(kernel)).sum::<usize>();
         let serves = !gradients.is_empty() && total(&gathered) <= total(&gradients) + moved;

@@ -22,7 +22,7 @@ pub fn constants(scalars: &Scalars, hoisted: &Hoisted) -> Vec<String> {
 }
 
 fn is_short(name: &str) -> bool {
-    // what cancels has no name: a − a is nothing
+    // terms that cancel have no name: a − a is nothing
     !name.is_empty() && name.len() <= LONGEST_NAME && name.chars().all(|c| c.is_ascii_alphanumeric() || c == '_')
 }
 

@@ -207,13 +207,13 @@ impl Form {
     fn sentence(&self) -> String {
         let Form { code, estimate, is_asked, is_body_or_point, missing } = *self;
         let written = match code {
-            CodeForm::Unrolled => "Code is written out, entry by entry",
-            CodeForm::Matrices => "Code keeps whole matrices, in loops",
+            CodeForm::Unrolled => "Code is unrolled, entry by entry",
+            CodeForm::Matrices => "Code is matrix code, in loops",
         };
         let why = match (is_asked, code) {
             (true, _) => "as the declaration asks".to_string(),
             (false, CodeForm::Unrolled) if estimate > LARGEST_UNROLLED => match missing {
-                Some(why) => format!("and {why} has no code with whole matrices"),
+                Some(why) => format!("and {why} has no matrix code"),
                 None => "of few unknowns".to_string(),
             },
             (false, CodeForm::Unrolled) => format!("up to {LARGEST_UNROLLED}"),

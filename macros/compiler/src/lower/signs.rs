@@ -73,7 +73,7 @@ fn negative_sum(constant: Rational, mut terms: Vec<(Rational, Code)>) -> Code {
     if is_second {
         terms.swap(0, 1);
     }
-    // a constant and what is subtracted from it
+    // a constant and the terms that are subtracted from it
     if !constant.is_zero() && terms[0].0.is_negative() {
         terms.iter_mut().for_each(flip);
         terms.insert(1, (integer(-1), Code::Number(constant)));

@@ -194,7 +194,7 @@ impl<'g> Maker<'_, 'g> {
             })
         });
         let prepare = terms.kernel(&mut self.scalars, Hoisting::Constants(&mut self.hoisted));
-        // what is there already needs no preparation
+        // a term that is there already needs no preparation
         match prepare.reads() {
             Some(reads) => {
                 (Kernel::default(), linearize.with_terms(&reads), residual.map(|alone| alone.with_terms(&reads)))
@@ -228,15 +228,15 @@ impl Solve {
 impl MechanicsProgram<'_> {
     /// Whether an entry of the Jacobian of an equation is zero, whatever the numbers are.
     pub fn is_zero(&self, solve: &Solve, i: usize, j: usize) -> bool {
-        // of a matrix that is kept as a whole no entry is known
+        // the entries of a matrix in matrix code are not known
         let entry = self.linearization(solve).outputs[1].1.get(i * solve.dimension + j);
         matches!(entry, Some(Code::Number(value)) if value.is_zero())
     }
 }
 
-// Some momentum equations are solved by x ← x − s·h·Σ⁻¹ρ(x), a step of Newton's method with the Jacobian at the identity. The iteration contracts like
-// h|ω|: for h|ω| from 0.001 to 0.05 it takes five to eight residuals where Newton's method takes two linearisations with their linear systems,
-// whose code is long.
+// Some momentum equations are solved by x ← x − s·h·Σ⁻¹ρ(x), a step of Newton's method with the Jacobian at the
+// identity. The iteration contracts like h|ω|. For h|ω| from 0.001 to 0.05 it takes five to eight residuals. Newton's
+// method takes two linearisations with their linear systems, whose code is long.
 
 /// A linearisation with its linear system has to cost as many residuals, or Newton's method is taken.
 const RESIDUALS: usize = 3;

@@ -39,19 +39,19 @@ fn shortest(
             holders.entry(*term).push(position);
         }
     }
-    // of equals the shortest: what others are made of as well
+    // of equals the shortest, which is a part of others too
     let is_part = |position: &usize| sums[*position].1 && sums[*position].2.len() > 1;
     let mut parts: Vec<usize> = (0..sums.len()).filter(is_part).into_list();
     parts.sort_by_key(|&position| sums[position].2.len());
     let mut found: Table<usize, Vec<(Rational, Id)>> = Table::default();
     for part in parts {
         let (name, _, terms) = &sums[part];
-        // what holds all terms holds the rarest
+        // a sum with all terms has the rarest one
         let held = terms.iter().filter_map(|(_, term)| holders.get(term)).min_by_key(|held| held.len());
         for &position in held.into_iter().flatten() {
             let (id, has_no_constant, whole) = &sums[position];
-            // a longer one has a shorter one in it, and of two with the same terms the one that is less work, or the first, gives the other:
-            // no two have each other
+            // a longer sum has a shorter one in it. Of two with the same terms, the one with less work, or the first,
+            // gives the other: no two have each other
             let comes_after = whole.len() > terms.len()
                 || whole.len() == terms.len() && (!has_no_constant || (work(whole), id) > (work(terms), name));
             if comes_after
@@ -79,7 +79,7 @@ fn replaced(whole: &[(Rational, Id)], part: &[(Rational, Id)], name: Id) -> Opti
         found.next().filter(|_| found.next().is_none())
     };
     let sign = integer(if weight_in(whole, part[0].1)?.is_negative() == part[0].0.is_negative() { 1 } else { -1 });
-    // what is taken is a part of each term: a + b + c + d as (a + b + c − d) + 2 d would cancel digits
+    // the part is a part of each term: a + b + c + d as (a + b + c − d) + 2 d would cancel digits
     let is_within = |(taken, term): &(Rational, Id)| {
         let taken = taken.clone() * &sign;
         weight_in(whole, *term).is_some_and(|weight| {

@@ -57,7 +57,7 @@ impl<'g> Closures<'_, '_, 'g> {
         match &self.declaration.kinetic {
             parse::Kinetic::Cost(closure) => self.cost(closure).map(Kinetic::Cost),
             parse::Kinetic::Lagrangian(closure) => self.lagrangian(closure),
-            // what inputs move is read with them
+            // closures of inputs that move the configuration are read with them
             parse::Kinetic::Controls(_) | parse::Kinetic::Dynamics(_) => None,
         }
     }
@@ -123,7 +123,7 @@ impl<'g> Closures<'_, '_, 'g> {
         if value.terms().is_none() {
             let is = value.describe();
             report!(self.context.diagnostics, tail(&closure.body), "the potential is {is}, but an energy is a scalar";
-                help "add what sites have, as in `(0..N).map(|i| …).sum()`");
+                help "add the values of sites, as in `(0..N).map(|i| …).sum()`");
         }
         (None, value.terms().unwrap_or_default())
     }
@@ -164,8 +164,8 @@ pub(super) fn scalar<'g>(
             Ok(sum) => return Some(sum),
             Err(reason) => {
                 refuse!(context.diagnostics, tail, "the {key} of a power is a sum over its sites, and {reason}";
-                help "write `(0..{count}).map(|i| …).sum()` with what site `i` has alone";
-                note "the equation of a step is solved site by site; what ties sites to each other belongs to the potential")
+                help "write `(0..{count}).map(|i| …).sum()` with a value of site `i` alone";
+                note "the equation of a step is solved site by site; terms that tie sites to each other belong to the potential")
             }
         }
     }

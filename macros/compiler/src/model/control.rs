@@ -73,12 +73,12 @@ impl<'g> ActedSystem<'_, '_, 'g> {
     pub fn choice(&mut self, control: &parse::Choice, input: &Space<'g>) -> Option<InputChoice<'g>> {
         let diagnostics = self.context.diagnostics;
         let [leaf] = input.leaves.as_slice() else {
-            refuse!(diagnostics, control.price.head, "what is chosen has to be one vector";
+            refuse!(diagnostics, control.price.head, "the input has to be one vector";
                 help "write `u: Vector3`, with all inputs in one vector");
         };
         if !leaf.shape.is_column() && !leaf.shape.is_scalar() {
             let (name, shape) = (&leaf.name, leaf.shape);
-            refuse!(diagnostics, control.price.head, "what is chosen has to be a vector, and `{name}` is {shape}";
+            refuse!(diagnostics, control.price.head, "the input has to be a vector, and `{name}` is {shape}";
                 help "write `u: Vector3`");
         }
         let matched = self.arguments.matched(&control.price, PRICE);

@@ -90,7 +90,7 @@ pub(crate) fn refusal(refused: (Feature, Found), beside: (Feature, Found)) -> Di
     let is_pair = |(_, one, other): &Combination| (*one, *other) == (refused.0, beside.0);
     match combinations().find(is_pair) {
         Some((row, ..)) => row.diagnostic(refused, beside),
-        // by construction: a stage refuses what is in the table
+        // by construction: a stage refuses combinations that are in the table
         None => error!(refused.1.place, "{} does not go with {}", refused.0.words(), beside.0.words()),
     }
 }

@@ -32,7 +32,7 @@ impl<'g> ActedSystem<'_, '_, 'g> {
             && takes_input(&on_leaves)
         {
             refuse!(self.context.diagnostics, closure.head, "both `force` and `force_on` take an input";
-                help "let one of the two take the whole input, as a tuple where it has parts";
+                help "let one of the two take all of the input, as a tuple if it has parts";
                 note "a step has one input, `stepper.step_with(&state, &input)`");
         }
         let (of_group, on_leaves) = of_group.zip(on_leaves)?;

@@ -96,7 +96,7 @@ pub fn model<'g>(graph: &'g Graph, declaration: &Declaration) -> Result<Model<'g
     declared.check_used(&diagnostics);
     groups::check_chart(graph, &declaration.dials, typed.factors.as_deref().unwrap_or_default(), &diagnostics);
     diagnostics.propagate(())?;
-    // by construction: what is missing has an error, and there were none
+    // by construction: a missing value has an error, and there were none
     let (Some(formulas), Some(mut factors), Some(space)) = (formulas, typed.factors, typed.space) else {
         return Err(Diagnostics::new());
     };
@@ -204,7 +204,7 @@ impl<'g> ClosureValues<'g> {
         let forces = system.forces(declaration);
         let (mover, (force, input)) = match system.motion(declaration) {
             Some((motion, input)) => (Some(Mover::Inputs(motion)), (None, input)),
-            // what moves has an error, and without it nothing is known of the input
+            // the moving closure has an error, and without it nothing is known of the input
             None if declaration.kinetic.is_steered() => return None,
             None => (kinetic.map(Mover::Momenta), forces?),
         };

@@ -17,7 +17,7 @@ pub(super) const ENTRIES: usize = 16_384;
 pub(super) const TERMS: usize = 4096;
 
 /// Why sizes have limits.
-pub(super) const GROWS: &str = "the code of a step is written out at compile time and grows with the size";
+pub(super) const GROWS: &str = "the code of a step is unrolled at compile time and grows with the size";
 
 /// The size that a generic argument stands for.
 pub(super) fn size_argument(argument: &GenericArgument, generics: &Generics) -> Result<usize, Diagnostic> {

@@ -71,7 +71,7 @@ impl<'t, L: Clone> Product<'t, L> {
             let count = product.leaves.len();
             refuse!(diagnostics, ty, "`{}` has {count} factors, more than {LEAVES}", spell_type(ty);
                 help "{IN_LOOPS}";
-                note "the code of a step is written out at compile time and grows with the number of factors");
+                note "the code of a step is unrolled at compile time and grows with the number of factors");
         }
         Some(product)
     }

@@ -10,7 +10,7 @@ use crate::parse::parse;
 fn sides(action: &str) -> Result<String, Diagnostics> {
     let typed = action.split('|').nth(1).unwrap_or_default();
     let element = typed.split(':').next().unwrap_or_default().trim();
-    // a kinetic energy of every factor; what it is does not matter here
+    // a kinetic energy of every factor; its form does not matter here
     let names: Vec<&str> = element.split(|c: char| !c.is_alphanumeric()).filter(|name| !name.is_empty()).collect();
     let velocities: Vec<String> = names.iter().map(|name| format!("v{name}")).collect();
     let energy: Vec<String> = velocities.iter().map(|velocity| format!("{velocity}.norm_squared()")).collect();
@@ -74,7 +74,7 @@ fn every_group_acts_on_itself() {
             ("F.inverse() * q", "right"),
             ("q * F.inverse()", "left"),
             ("F * q * F.inverse()", "left"),
-            // what does not commute in a Heisenberg group is its centre's, which conjugation does not move: both laws hold
+            // in a Heisenberg group commutators lie in the centre, which conjugation does not move: both laws hold
             ("F.inverse() * q * F", if group.starts_with("Heisenberg") { "left" } else { "right" }),
         ] {
             acts(&[(&format!("|F: {group}, q: {group}| {action}"), side)]);
@@ -153,7 +153,8 @@ fn what_is_no_action() {
     ]);
 }
 
-/// The configuration of a site lies on the group that the action names: closures of a power read the same parts as those of a single system.
+/// The configuration of a site lies on the group that the action names. Closures of a power read the same parts as
+/// those of a single system.
 #[test]
 fn sites_are_on_their_group() {
     for (group, read) in [

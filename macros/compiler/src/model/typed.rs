@@ -168,7 +168,7 @@ impl<'g> Velocity<'_, 'g> {
                 let leaves = layout.numbers();
                 let symbols: Vec<Expr<'g>> =
                     leaves.iter().zip(&names).map(|(k, name)| self.symbol(*k, name)).into_list();
-                // the leaves of a part of a product are numbered as in the whole
+                // the leaves of a part of a product are numbered as in the product
                 let mut values = vec![Value::Tuple(Vec::new()); self.factors.len()];
                 leaves.iter().zip(&symbols).for_each(|(k, symbol)| values[*k] = Value::Matrix(*symbol));
                 Some((Value::nested(layout, &values), symbols))

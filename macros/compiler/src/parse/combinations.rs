@@ -15,7 +15,7 @@ pub(super) fn check(keys: &Keys) {
         keys.diagnostics.extend(features::refusals(|feature| Some(Found::at(place(feature)?).named(&order))));
         keys.diagnostics.is_empty()
     };
-    // what is wrong with the system is said once
+    // a mistake of the system is reported once
     if refuse(keys, |_| false) {
         for (_, of_method) in &keys.methods {
             refuse(of_method, is_declared_alone);

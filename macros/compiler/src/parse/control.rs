@@ -63,7 +63,7 @@ pub(super) fn check_endpoint(keys: &Keys, control: Option<&Choice>) {
 /// The translations that `dynamics` are made of: the action is x ↦ x + a, and the closure loses the type of x.
 fn moved(keys: &mut Keys, mut dynamics: Closure) -> Option<Kinetic> {
     if keys.closures.remove("action").is_some() {
-        // it has been refused beside them
+        // it has been refused with them
         return None;
     }
     let example = "|h, x: Vector2, u: Vector1| x + h * vector![x.y, u.x]";
@@ -78,7 +78,7 @@ fn moved(keys: &mut Keys, mut dynamics: Closure) -> Option<Kinetic> {
         refuse!(keys.diagnostics, &ty, "dynamics move one vector";
             help "write `dynamics = {example}`, with all of the configuration in one vector");
     };
-    // what is wrong with the size is so where it was written
+    // an error of the size is shown where the size was written
     size.set_span(Location::from(&ty).start);
     let span = name.span();
     // a name for the translation that the closure does not use

@@ -25,7 +25,7 @@ pub struct DeclaredMethod {
 pub(super) fn read(word: &Ident, stream: ParseStream, keys: &mut Keys) -> Result<(), Diagnostic> {
     let Ok(name) = stream.call(Ident::parse_any) else {
         bail!(word, "a method has a name, that of a unit struct";
-            help "write `struct Fine;` beside the system, and `method Fine = (order = 6)`");
+            help "write `struct Fine;` next to the system, and `method Fine = (order = 6)`");
     };
     if keys.methods.iter().any(|(other, _)| other.unraw() == name.unraw()) {
         bail!(&name, "the method `{name}` is declared twice";
@@ -63,7 +63,7 @@ fn read_dial(stream: ParseStream, keys: &mut Keys) -> Result<(), Diagnostic> {
             bail!(&key, "unknown dial `{key}`"; help "{help}")
         }
         _ => bail!(&key, "`{key}` is of the system, not of a method";
-            help "write it beside the method, which takes {}", listed(dials())),
+            help "write it outside of the method, which takes {}", listed(dials())),
     }
 }
 
@@ -75,7 +75,7 @@ fn dials() -> impl Iterator<Item = &'static str> {
 pub(super) fn checked(system: &Ident, keys: Vec<(Ident, Keys)>, diagnostics: &Diagnostics) -> Vec<DeclaredMethod> {
     for (name, _) in keys.iter().filter(|(name, _)| name.unraw() == system.unraw()) {
         report!(diagnostics, name.span(), "the method `{system}` is the system itself";
-            help "write a unit struct beside it, as in `struct Fine;` and `method Fine = (…)`");
+            help "write another unit struct, as in `struct Fine;` and `method Fine = (…)`");
     }
     keys.into_each(|(name, keys)| DeclaredMethod { name, dials: keys.dials })
 }
@@ -86,7 +86,7 @@ impl Declaration {
         let system = &self.dials;
         let dials = Dials {
             isotropy: system.isotropy.clone(),
-            // what says which system is stepped, and derivatives of its steps
+            // words that concern the system, and derivatives of its steps
             emit: Emit { generated: false, latex: false, ..system.emit },
             scalar: system.scalar.clone(),
             krate: system.krate.clone(),

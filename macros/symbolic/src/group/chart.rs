@@ -287,7 +287,7 @@ fn turn_increment<'g>(n: usize, x: Expr<'g>, z: Expr<'g>) -> Expr<'g> {
     let square = x.norm_squared();
     match n {
         2 | 3 => {
-            // each entry then is a sum of products, with the scale in what they share
+            // each entry then is a sum of products, with the scale in their common factor
             let scale = one / ((one + square) / 2);
             scale * z + scale * (z * z)
         }

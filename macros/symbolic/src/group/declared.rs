@@ -46,7 +46,7 @@ impl Group {
             let index = definitions.len() as u32 - 1;
             Group::Declared(Declared { index, size: shape.rows, dimension: algebra.dimension })
         };
-        // the chart is found for the group with the general one, and then kept with it
+        // the chart is found for the group with the general one, and then stored with it
         let general = declared(Chart::Exponential);
         let span = graph.span(algebra);
         let is_in_algebra = |(i, j): (usize, usize)| span.holds(&graph.basis_product(algebra, i, j));

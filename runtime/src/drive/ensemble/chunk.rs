@@ -46,7 +46,7 @@ impl<S: Clebsch, M: Method<S>> Chunk<State<S, M>> {
     /// One step of each body; `step` have been made.
     #[inline(always)]
     pub fn step(&mut self, stepper: &Stepper<S, M>, step: u64) {
-        // what the last step has left has been made by this stepper
+        // this stepper has made the data of the last step
         if let Ok(next) = stepper.attempt_with(&self.state, &self.state.left, &S::Input::origin()) {
             // quicker than to look at each number; where the sum overflows, `part` looks at each
             let finite = (next.configuration.sum() + next.held.sum() + next.time.now()).finite();

@@ -140,7 +140,7 @@ fn what_is_read_is_checked() -> Result<(), Error> {
     let last = bytes.len() - 8;
     bytes[last..].copy_from_slice(&f64::NAN.to_le_bytes());
     let broken: SavedState<Top> = postcard::from_bytes(&bytes).expect("numbers");
-    assert_eq!(stepper.resume(broken).err(), Some(Error::NotFinite { name: "what is left of the last step" }));
+    assert_eq!(stepper.resume(broken).err(), Some(Error::NotFinite { name: "the data of the last step" }));
     assert!(format!("{broken:?}").starts_with("SavedState(State {"));
     Ok(())
 }

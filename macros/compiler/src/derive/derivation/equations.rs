@@ -57,7 +57,7 @@ pub(super) fn how(formulas: &MechanicsFormulas<'_>, equation: &MomentumEquation<
             "is solved by the free motion itself: F̃J̃ − J̃F̃ᵀ = m = h̃μ with J̃² = D² + β, F = exp(δm + κ⋆m) F̃; the constants of a motion are found once, from its Taylor series, and travel along with the state; then NF̃ = G with N and G polynomials of m, one division a step, no iteration, and no error in h".to_string()
         }
         Solution::FreeRotation => {
-            "is solved by the free motion itself: d x − m × x = m for the Gibbs vector x, m = h μ/2, with d = diag(d_i) in principal axes, power series in h² |μ|² and h² μ·Σ⁻¹μ that are made once for the body; no iteration, and no error in h".to_string()
+            "is solved by the free motion itself: d x − m × x = m for the Gibbs vector x, m = h μ/2, with d = diag(d_i) in principal axes; the d_i are power series in h² |μ|² and h² μ·Σ⁻¹μ, made once for the body; no iteration, and no error in h".to_string()
         }
         Solution::Newton if iteration.tries_fixed_point => format!(
             "is solved by the fixed-point iteration x ← x − s h Σ⁻¹ρ(x) in {chart}, s = dx/dξ, which contracts like h|ω|; by Newton's method \

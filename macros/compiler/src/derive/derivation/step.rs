@@ -7,7 +7,7 @@ use super::equations::{how, part};
 use crate::derive::{Collocation, MechanicsFormulas, Solution};
 use crate::model::{LeafSpace, Order};
 
-const COMPENSATED: &str = "Sums are compensated: what rounding takes off q and N is kept beside them, and added in the next step, so that errors of rounding are those of the increments q⁺ − q and N⁺ − N.\n";
+const COMPENSATED: &str = "Sums are compensated: the rounding errors of q and N are stored, and added in the next step. Only the increments q⁺ − q and N⁺ − N are rounded.\n";
 
 pub(super) fn scheme(formulas: &MechanicsFormulas<'_>, lowered: &Lowered) -> String {
     let model = &formulas.model;
@@ -112,7 +112,7 @@ fn spaces(formulas: &MechanicsFormulas<'_>) -> String {
         how.push("by R(3I − RᵀR)/2 once |R(1, …, 1)|² is off N by 8Nε");
     }
     if is(|space| matches!(space, LeafSpace::Unit | LeafSpace::Group(Group::UnitQuaternions))) {
-        what.push("what has length one");
+        what.push("vectors of length one");
         how.push("by q(3 − |q|²)/2 once |q|² is off by 8ε");
     }
     if what.is_empty() {
@@ -146,8 +146,8 @@ fn tolerance(formulas: &MechanicsFormulas<'_>) -> String {
 
 fn collocated(formulas: &MechanicsFormulas<'_>, collocation: &Collocation<'_>) -> String {
     let mut text = String::from(
-        "Hamilton's equations on T*Q, those of the continuous Clebsch problem, are collocated at the eight nodes of Gauss and Legendre: order 16, symplectic, and \
-         what is quadratic in (q, p) is kept, the momenta of symmetries and the orbit of q among it. A step starts from a covector p with J(q, p) = N; N⁺ − N = J(q⁺, p⁺) − J(q, p).\n",
+        "Hamilton's equations on T*Q, those of the continuous Clebsch problem, are collocated at the eight nodes of Gauss and Legendre: order 16, symplectic. \
+         Quantities that are quadratic in (q, p) are conserved, such as the momenta of symmetries and the orbit of q. A step starts from a covector p with J(q, p) = N; N⁺ − N = J(q⁺, p⁺) − J(q, p).\n",
     );
     if collocation.is_affine {
         text += "The action moves the origin: J is affine in q.\n";
@@ -176,6 +176,6 @@ fn split(order: Order, has_gradient: bool) -> String {
         (_, false) => (6, "without force gradients, as the potential is opaque (Blanes and Moan)"),
     };
     format!(
-        "The drift is exact, so drifts and kicks in turn make a step of order {order}: {kicks} kicks {kind}, the same forwards and backwards. A part a of the drift with the momentum μ is the whole drift with the momentum a μ.\n"
+        "The drift is exact, so drifts and kicks in turn make a step of order {order}: {kicks} kicks {kind}, the same forwards and backwards. A part a of the drift with the momentum μ is the full drift with the momentum a μ.\n"
     )
 }

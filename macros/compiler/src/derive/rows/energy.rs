@@ -68,7 +68,7 @@ impl<'g> MechanicsFormulas<'g> {
             let is_timed = kick.iter().any(|part| part.depends_on(self.model.time));
             let place = if is_timed { format!("(t⁺, {q}⁺)") } else { format!("{q}⁺") };
             legendre_next.wording = Wording::AndKick(place, kick.clone());
-            // what is computed has its last kick at q⁺ = Φ_F(q)
+            // the computed expression has its last kick at q⁺ = Φ_F(q)
             let end = moved_on(&self.model);
             after.iter_mut().zip(kick).for_each(|(after, kick)| *after = *after + kick.substitute(&end));
         }

@@ -40,7 +40,7 @@ impl<'g> MechanicsFormulas<'g> {
             Formula::shorter(Id::CoupledGradient(index), format!("∂K/∂{q}"), self.coupled_kick(substep)),
         ]);
         if let Some(force) = &substep.force {
-            // what depends on the velocity, in the chart
+            // the part that depends on the velocity, in the chart
             let moving = force.start_moving.as_deref().filter(|_| substep.other.is_none()).unwrap_or_default();
             let start = at(substep.begins, &force.start);
             let moving = self.in_chart(&self.as_of_start(substep.begins, moving));

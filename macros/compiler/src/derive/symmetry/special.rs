@@ -19,7 +19,7 @@ impl<'g> Finder<'_, 'g> {
         if turns.len() > 1 {
             choices.push(turns);
         }
-        // what a site and the terms both read is one
+        // a parameter that both a site and the terms read is listed once
         let mut read: Vec<&Parameter<'g>> = model.parameters.iter().into_list();
         for parameter in model.power.iter().flat_map(|power| &power.parameters) {
             if read.iter().all(|other| other.name != parameter.name) {

@@ -199,7 +199,7 @@ impl<'e, 'a, 'g> Terms<'e, 'a, 'g> {
         let statement = self.reading((&self.power.places, None), &places, kernel, quote!(continue), body);
         let ranges = link.term.ranges.iter().enumerate();
         if link.term.ranges.is_empty() {
-            // what is read is asked for in a loop
+            // the statement says `continue`, which needs a loop
             return quote!(for _ in 0..1 { #statement });
         }
         ranges.rev().fold(statement, |statement, (depth, (from, to))| {
@@ -217,7 +217,7 @@ fn site(place: usize) -> Ident {
 
 /// A linear expression in the indices and N, as a signed number.
 fn linear(expr: Expr<'_>, length: &Option<TokenStream>) -> TokenStream {
-    // by construction: what is not linear is refused where it is declared
+    // by construction: an expression that is not linear is refused where it is declared
     let Some(Linear { constant, sites, indices }) = Linear::of(expr) else { return quote!(0) };
     let names = indices.into_iter().enumerate().map(|(depth, weight)| (weight, format!("i{depth}")));
     let names = names.chain([(sites, format!("({} as ::core::primitive::isize)", quote!(#length)))]);

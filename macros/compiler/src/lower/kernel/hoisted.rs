@@ -54,7 +54,7 @@ impl Hoisted {
 
     /// Computes the stored values, one output each.
     pub(in crate::lower) fn kernel(&self, scalars: &mut Scalars, hoisting: Hoisting<'_>) -> Kernel {
-        // with those that are not kept: what they share with others decides how these are rounded
+        // with those that are not stored: terms that they share with others decide how these are rounded
         let outputs: Vec<Grid> = self.met.each(|met| Grid::scalar(met.scalar));
         let Kernel { locals, outputs } = kernel(scalars, &outputs, hoisting);
         let signed = |(number, met): (usize, &Met)| {

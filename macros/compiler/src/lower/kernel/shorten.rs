@@ -111,7 +111,7 @@ impl Builder<'_, '_> {
             }
             _ => None,
         });
-        // where the chain is what takes the time, no sum may wait longer than before
+        // if the longest chain determines the time, no sum may wait longer than before
         let delays = self.delays_in(&self.uses().1);
         let waits = self.waits(&delays);
         let delay = |terms: &[(Rational, Id)]| balance::delay(terms.iter().map(|term| delay_of_term(&delays, term)));

@@ -36,7 +36,7 @@ impl<'g> Weighted<'g> {
 pub(super) fn common_letter<'g>(shape: Shape, terms: &[Weighted<'g>]) -> Option<(Expr<'g>, bool)> {
     let mut best: Option<(usize, Expr<'g>, bool)> = None;
     for first in [false, true] {
-        // a common vector would make a matrix of what is left
+        // a common vector would make a matrix of the other letters
         if (!first && shape.columns == 1) || (first && shape.rows == 1) {
             continue;
         }

@@ -66,7 +66,7 @@ fn elaborate<'g, R>(
         diagnostics.push(not_literal(path.into(), key, &format!("the constant `{}`", spell_tokens(path))));
     }
     diagnostics.propagate(())?;
-    // by construction: what has no value has an error
+    // by construction: a closure without a value has an error
     value.ok_or_else(Diagnostics::new)
 }
 

@@ -143,7 +143,7 @@ impl<'e, 'c, 'g> Elaborator<'e, 'c, 'g> {
         self.work += 1;
         if self.work == WORK + 1 {
             refuse!(self, syntax, "the {} has more than {WORK} operations", self.key;
-                note "ranges are written out at compile time");
+                note "ranges are expanded at compile time");
         }
         if self.work > WORK {
             // one message is enough
@@ -267,7 +267,7 @@ impl<'e, 'c, 'g> Elaborator<'e, 'c, 'g> {
         };
         if size.weight > WEIGHT || size.nesting > NESTING {
             refuse!(self, at, "this expression grows too large";
-                note "written out, it has more terms, factors or digits than a formula should have");
+                note "its expansion has more terms, factors or digits than a formula should have");
         }
         Some(size)
     }
@@ -283,7 +283,7 @@ fn open_identity(syntax: &Syntax) -> Diagnostic {
 /// The error for a sum over sites within another function.
 fn open_sum(syntax: &Syntax) -> Diagnostic {
     error!(syntax, "`{}` is a sum over sites: it can be added and scaled alone", shortened(syntax);
-        note "each term is differentiated once, for all sites, and a function of the whole sum would tie all of them to each other")
+        note "each term is differentiated once, for all sites, and a function of the sum would tie all of them to each other")
 }
 
 /// How a part of a tuple or an array is reached.

@@ -21,7 +21,7 @@ impl<'g> Elaborator<'_, '_, 'g> {
         let needs_vector = part.starts == [false; 2];
         if shape.rows > all.rows || shape.columns > all.columns || (needs_vector && all.columns > 1) {
             refuse!(self, name, "`{}` is {all}: `{name}` is {shape}", spell(&call.receiver);
-                note "a part lies inside of the whole");
+                note "a part lies inside of the matrix");
         }
         let of = format!("the starts of `{name}` in `{}`", spell(&call.receiver));
         let mut start = |syntax: Option<&Syntax>, last: usize| {

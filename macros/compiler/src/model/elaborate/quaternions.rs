@@ -178,7 +178,8 @@ fn is_four(vector: &Expr) -> bool {
     vector.shape() == Shape::vector(algebra::COORDINATES)
 }
 
-/// What to write for the sum of a quaternion and a vector of four components: what shifts four numbers shifts a `Vector4`.
+/// The replacement of the sum of a quaternion and a vector of four components: shifts of four numbers act on a
+/// `Vector4`.
 fn as_four(quaternion: &str, vector: &str, value: Expr) -> String {
     if matches!(value.role(), Some(Role::Element(_))) {
         format!("write `Vector4` for the type of `{quaternion}`: it is the space that `Translation<4>` moves")

@@ -44,7 +44,7 @@ impl<'g> Elaborator<'_, '_, 'g> {
         if count > TERMS {
             let text = spell(&Syntax::Range(range.clone()));
             refuse!(self, range, "the range `{text}` has {count} terms, more than {TERMS}";
-                note "ranges are written out at compile time");
+                note "ranges are expanded at compile time");
         }
         let graph = self.graph();
         Some(Value::Array((start..end).map(|i| Value::Matrix(graph.integer(i as i64))).into_list()))
@@ -53,7 +53,7 @@ impl<'g> Elaborator<'_, '_, 'g> {
     /// `.map(|i| …)`.
     pub(super) fn map(&mut self, call: &ExprMethodCall, parts: Vec<Value<'g>>) -> Option<Value<'g>> {
         let (pattern, closure) = self.closure_of_map(call)?;
-        // what is wrong in one term is wrong in all
+        // a mistake in one term is a mistake in all
         let values = parts.into_iter().map(|part| self.applied(&pattern, closure, part));
         values.collect::<Option<_>>().map(Value::Array)
     }

@@ -150,7 +150,7 @@ impl<'g> Elaborator<'_, '_, 'g> {
             }
             _ => refuse!(self, index, "the {} of a site depends on that site alone", self.key;
                 help "write `(0..{name}).map(|i| …)` with the index `i` alone";
-                note "the equation of a step is solved site by site; what ties sites to each other belongs to the potential"),
+                note "the equation of a step is solved site by site; terms that tie sites to each other belong to the potential"),
         }
     }
 }

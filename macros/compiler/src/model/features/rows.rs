@@ -4,7 +4,7 @@ use super::Feature::{self, *};
 use super::Row;
 use crate::diagnostic::LATER;
 
-const ALL_SITES: &str = "write a number in place of the const generic: then all sites are written out";
+const ALL_SITES: &str = "write a number in place of the const generic: then all sites are unrolled";
 const NO_EXACT: &str = "leave the key out, or write `discretization = moser_veselov`";
 const NO_SUM: &str = "leave out `summation`";
 const ORDER_8: &str = "write `order = 8`";
@@ -29,7 +29,7 @@ pub(super) const ROWS: [Row; 48] = [
         "write `cost = |h, u| h * u.norm_squared() / 2`"),
     row(&[Tangent, Boundary], &[Controls, Dynamics],
         "{refused} is for steps in time, and a system with {beside} has none", "",
-        "leave out the word: what solving for the inputs needs is always there"),
+        "leave out the word: the derivatives for solving for the inputs are always there"),
     row(&[Action], &[Dynamics],
         "a system with `dynamics` has no action", "",
         "leave it out: the typed argument of `dynamics` is the configuration, and any map moves it"),
@@ -101,7 +101,7 @@ pub(super) const ROWS: [Row; 48] = [
     // groups
     row(&[Symmetry], &[LargeGroup],
         "a symmetry is offered, but `{name}` has more than 64 dimensions",
-        "in larger groups single components are looked at, not what combines them",
+        "in larger groups the macro tests single components, not their combinations",
         "leave out `symmetry`: which components of the momentum are conserved is found without it"),
     row(&[CayleyChart], &[NoCayleyMap],
         "the Cayley map leaves {name}",
@@ -130,7 +130,7 @@ pub(super) const ROWS: [Row; 48] = [
         "write a kinetic energy, as in `{name}.dot(&(self.inertia * {name})) / 2`, or leave the key out"),
     row(&[ExactDiscretization], &[NoDistributionOfMass],
         "`discretization = exact` needs the kinetic energy of a mass distribution on `SO<4>`",
-        "other quadratic forms of the velocity have no integrals beside the energy and those of the group: their motions are chaotic",
+        "other quadratic forms of the velocity conserve only the energy and the invariants of the group: their motions are chaotic",
         "write `(self.mass * {name}.matrix() * {name}.matrix().transpose()).trace() / 2` with a symmetric matrix `mass`, or leave the key out"),
     row(&[MoserVeselov], &[CoupledVelocities],
         "the Lagrangian is not a quadratic form of the velocity of each factor",
@@ -138,7 +138,7 @@ pub(super) const ROWS: [Row; 48] = [
         "leave out `discretization = moser_veselov`, or write a kinetic energy, as in `{name}.dot(&(self.inertia * {name})) / 2`"),
     row(&[MoserVeselov], &[NoMassMatrix],
         "this Lagrangian has no Moser–Veselov form on `{name}`",
-        "that form is ½ tr(ξ 𝕄 ξᵀ) with a symmetric matrix 𝕄; the inertia of this Lagrangian is of that form for no 𝕄 that holds for all values of its parameters",
+        "that form is ½ tr(ξ 𝕄 ξᵀ) with a symmetric matrix 𝕄, and no 𝕄 has the inertia of this Lagrangian for all parameters",
         "leave out `discretization`: the default exists for every Lagrangian"),
     // collocation
     row(&[Collocation], &[Momentum],
@@ -151,27 +151,27 @@ pub(super) const ROWS: [Row; 48] = [
         ORDER_2),
     row(&[Collocation], &[Tangent],
         "a step of order 16 cannot be differentiated by `emit`",
-        "derivatives are derived for steps of a discrete Lagrangian and for what is composed of them",
+        "derivatives are derived for steps of a discrete Lagrangian and for their compositions",
         "write `order = 8`; a struct that is generic over its scalar can be stepped with dual numbers"),
     row(&[Collocation], &[GeneralLagrangian, MovingInertia],
         "`order = 16` needs a kinetic energy with a constant inertia",
         "its equations are those of ½ (J − A)·Σ⁻¹(J − A) + V, with Σ⁻¹ made once",
         ORDER_8),
     row(&[Collocation], &[UnmovedFactor],
-        "`order = 16` moves what a momentum is made of, and `{name}` moves nothing",
+        "`order = 16` moves the configuration of a momentum, and `{name}` moves nothing",
         "its stages are pairs (q, p), and J(q, p) has no part for this factor",
         ORDER_8),
     row(&[Collocation], &[FreeIsotropy],
         "with `isotropy = free` momenta are not those of a covector, which `order = 16` moves",
         "its stages are pairs (q, p), and no p has a momentum J(q, p) about an axis that q does not show",
-        "write `order = 8`, or declare the whole attitude"),
+        "write `order = 8`, or declare the full attitude"),
     row(&[Collocation], &[BentAction],
         "`order = 16` needs an action that is linear in the configuration, or affine",
-        "collocation keeps what is quadratic in (q, p), as the momentum of a linear action is",
+        "collocation conserves quantities that are quadratic in (q, p), as the momentum of a linear action is",
         ORDER_8),
     row(&[Collocation], &[UnliftedMomentum],
         "`order = 16` knows no covector of a momentum for this action of `{name}`",
-        "it knows p = λ μ_Q(q), for rotations and translations of what each factor moves by itself",
+        "it knows p = λ μ_Q(q), for rotations and translations of configurations that one factor alone moves",
         ORDER_8),
     // sums
     row(&[Summation], &[FreeMotionOfFourSpace],
@@ -189,7 +189,7 @@ pub(super) const ROWS: [Row; 48] = [
     // equations
     row(&[ExponentialChart], &[Poles],
         "the momentum equation of this step has poles in the exponential chart",
-        "it divides by what vanishes where F turns by π, and beside that what is computed has lost its digits",
+        "it divides by a number that vanishes where F turns by π, and close to that angle results lose their digits",
         "leave out `chart`: then Cayley's is chosen, in which it has none"),
     row(&[Iterations], &[ExplicitEquation],
         "the momentum equation of this step is solved without iteration", "",
@@ -203,7 +203,7 @@ pub(super) const ROWS: [Row; 48] = [
         "a tolerance says where an iteration ends",
         "leave out `tolerance`"),
     // code
-    row(&[Matrices], WITHOUT_MATRICES, "{beside} has no code with whole matrices yet", "", UNROLLED),
+    row(&[Matrices], WITHOUT_MATRICES, "{beside} has no matrix code yet", "", UNROLLED),
 ];
 
 type Features = &'static [Feature];
