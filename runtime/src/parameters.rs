@@ -47,7 +47,8 @@ pub fn check_finite<T: Scalar>(name: &'static str, value: &impl Space<T>) -> Res
     if value.is_finite() { Ok(()) } else { Err(Error::NotFinite { name }) }
 }
 
-/// [`Error::NotFinite`] with the name of the field if a number in it is NaN: a field that bounds alone read may be infinite, for no bound.
+/// [`Error::NotFinite`] with the name of the field if a number in it is NaN. A field that bounds alone read may be
+/// infinite, for no bound.
 pub fn check_limit<T: Scalar>(name: &'static str, value: &impl Space<T>) -> Result<(), Error> {
     if value.all(|x| x.equals(x).all()) { Ok(()) } else { Err(Error::NotFinite { name }) }
 }

@@ -29,7 +29,7 @@ fn areas() -> [(&'static str, Vec<PathBuf>); 5] {
     ]
 }
 
-/// The prose of a Markdown file, or of the doc comments of a source.
+/// The prose of a Markdown file, or of the comments of a source.
 fn prose(path: &Path) -> String {
     let text = read(path);
     if path.extension().is_some_and(|extension| extension == "md") {
@@ -37,7 +37,8 @@ fn prose(path: &Path) -> String {
     }
     let comment = |line: &str| {
         let line = line.trim_start();
-        line.strip_prefix("/// ").or(line.strip_prefix("//! ")).unwrap_or_default().to_owned()
+        let prefixes = ["/// ", "//! ", "// "];
+        prefixes.into_iter().find_map(|prefix| line.strip_prefix(prefix)).unwrap_or_default().to_owned()
     };
     text.lines().map(comment).collect::<Vec<_>>().join("\n")
 }

@@ -127,9 +127,7 @@ fn written_out_too_large(model: &System<'_>, missing: Option<Feature>, size: Str
     let error = too_large(model, size);
     match missing {
         None => error.help("or write `code = matrices`, whose code grows less with the size"),
-        Some(what) => {
-            error.note(format!("{} has no matrix code yet, which grows less with the size", what.words()))
-        }
+        Some(what) => error.note(format!("{} has no matrix code yet, which grows less with the size", what.words())),
     }
     .into()
 }
