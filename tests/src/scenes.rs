@@ -64,6 +64,7 @@ macro_rules! scenes_of_each_kind {
             a_compensated_top: compensated_top::CompensatedTop { mass_matrix: inertia(), weight: 1.3, center: centre() }, turned(), 0.05;
             a_damped_body: damped_body::DampedBody { inertia: inertia(), damping: 0.1 }, turned(), 0.1;
             an_exact_body: exact_body::ExactBody { moments: principal() }, turned(), 0.1;
+            an_exact_body_in_four_dimensions: exact_body4::ExactBody4 { mass: four() }, Matrix4::identity(), 0.1;
             a_first_order_top: first_order_top::FirstOrderTop { mass_matrix: inertia(), weight: 1.3, center: centre() }, turned(), 0.05;
             a_flying_body: flying_body::FlyingBody { mass: 1.2, mass_matrix: inertia().cast(), hook: centre().cast(), stiffness: 2.0 },
                 (Vector3::new(0.5, 0.2, -0.3), turned().cast()), 0.05;
@@ -105,7 +106,6 @@ macro_rules! every_scene {
             two_bodies: two_bodies::TwoBodies { mass: [1.0, 2.0], gravitation: 1.1 }, [Vector3::x(), -Vector3::y()], 0.05;
             a_watched_top: watched_top::WatchedTop { mass: principal(), weight: 1.3 }, turned(), 0.05;
             a_centred_body: centred_body::CentredBody { mass: 1.2, inertia: inertia(), gravity: 9.81 }, placed(), 0.05;
-            an_exact_body_in_four_dimensions: exact_body4::ExactBody4 { mass: four() }, Matrix4::identity(), 0.1;
             a_fluid_ellipsoid: fluid_ellipsoid::FluidEllipsoid { mass: 1.2 }, Matrix3::identity(), 0.05;
             a_free_rigid_body: free_rigid_body::FreeRigidBody { inertia: inertia() }, turned(), 0.1;
             a_generic_body: generic_body::GenericBody<f64> { mass_matrix: inertia(), weight: 1.3, center: centre() }, turned(), 0.05;

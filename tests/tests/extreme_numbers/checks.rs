@@ -1,4 +1,4 @@
-//! Every entry point of a system, with numbers replaced: an error that names what is wrong, or results that are finite.
+//! Every entry point of a system, with numbers replaced: an error that names what is wrong, or results that are finite and on the space of configurations.
 //!
 //! The walk over places and numbers knows systems as a `dyn Trial` and is compiled once.
 
@@ -7,6 +7,7 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use crate::slots::Part;
 use crate::trial::{FORMULAS, Size, Trial};
 use clebsch::Error;
+use clebsch_tests::oracle::random::Random;
 
 /// What no computation can go on with.
 pub const BROKEN: [f64; 3] = [f64::NAN, f64::INFINITY, f64::NEG_INFINITY];
@@ -28,6 +29,11 @@ pub const EXTREME: [f64; 14] = [
     0.0,
     -0.0,
 ];
+
+/// Powers of ten by which ordinary numbers are multiplied where many are replaced at once, at most: ratios are up to 10¹⁵ within one part.
+const RATIOS: f64 = 7.5;
+/// How often many numbers are replaced at once.
+const TOGETHER: usize = if cfg!(feature = "heavy") { 4000 } else { 40 };
 
 const GRADIENT: &str = "the gradient of the potential at the configuration";
 
@@ -51,7 +57,7 @@ impl Report {
         }
     }
 
-    /// A call whose result has to be finite; whether it gave one to go on with.
+    /// A call whose result has to be finite and on its space; whether it gave one to go on with.
     fn call(&mut self, (place, entry): (&str, &str), call: &mut dyn FnMut() -> Result<bool, Error>) -> bool {
         match outcome(call) {
             Outcome::Panicked => self.fail(place, &format!("`{entry}` panicked")),
@@ -62,12 +68,12 @@ impl Report {
                     self.fail(place, &format!("`{entry}` says {text}"));
                 }
             }
-            Outcome::Returned { is_finite: true } => {
+            Outcome::Returned { is_sound: true } => {
                 self.counts[0] += 1;
                 return true;
             }
-            Outcome::Returned { is_finite: false } => {
-                self.fail(place, &format!("`{entry}` gave a result that is not finite"));
+            Outcome::Returned { is_sound: false } => {
+                self.fail(place, &format!("`{entry}` gave a result that is not finite, or off its space"));
             }
         }
         false
@@ -115,14 +121,14 @@ impl Report {
 enum Outcome {
     Panicked,
     Refused(Error),
-    Returned { is_finite: bool },
+    Returned { is_sound: bool },
 }
 
 fn outcome(call: &mut dyn FnMut() -> Result<bool, Error>) -> Outcome {
     match catch_unwind(AssertUnwindSafe(call)) {
         Err(_) => Outcome::Panicked,
         Ok(Err(error)) => Outcome::Refused(error),
-        Ok(Ok(is_finite)) => Outcome::Returned { is_finite },
+        Ok(Ok(is_sound)) => Outcome::Returned { is_sound },
     }
 }
 
@@ -177,6 +183,7 @@ pub fn check(trial: &mut dyn Trial) -> Report {
         inputs(&mut report, trial, value);
         step_sizes(&mut report, trial, value);
     }
+    together(&mut report, trial);
     report
 }
 
@@ -193,7 +200,7 @@ fn parameters(report: &mut Report, trial: &mut dyn Trial) {
             // what methods read is not known
             let is_opaque = report.scene == "Harmonics" && field == "coefficients";
             let mut call = || {
-                trial.stepper(Some((field, entry, value)), Size::Ordinary)?;
+                trial.stepper(&[(field, entry, value)], Size::Ordinary)?;
                 if is_opaque { trial.call("state") } else { Ok(true) }
             };
             match is_opaque {
@@ -203,7 +210,7 @@ fn parameters(report: &mut Report, trial: &mut dyn Trial) {
         }
         for (entry, value) in (0..count).flat_map(|entry| EXTREME.map(|value| (entry, value))) {
             let place = format!("{field}[{entry}] = {value:e}");
-            let mut stepper = || trial.stepper(Some((field, entry, value)), Size::Ordinary);
+            let mut stepper = || trial.stepper(&[(field, entry, value)], Size::Ordinary);
             if report.call((&place, "stepper"), &mut stepper) {
                 steps(report, &place, trial);
             }
@@ -273,10 +280,59 @@ fn inputs(report: &mut Report, trial: &mut dyn Trial, value: f64) {
 
 fn step_sizes(report: &mut Report, trial: &mut dyn Trial, value: f64) {
     let place = format!("h = {value:e}");
-    let mut stepper = || trial.stepper(None, Size::Of(value));
+    let mut stepper = || trial.stepper(&[], Size::Of(value));
     if !value.is_finite() || value == 0.0 {
         report.refused((&place, "stepper"), &mut stepper, "the step size");
     } else if report.call((&place, "stepper"), &mut stepper) {
         steps(report, &place, trial);
+    }
+}
+
+/// Many numbers of the scene at once: parameters, configuration, momentum, input and step size of sizes that have nothing to do with each other. Nothing is
+/// refused for being so; what is, is refused by an error that is checked as all others are.
+fn together(report: &mut Report, trial: &mut dyn Trial) {
+    let random = &mut Random::new(9_001);
+    let fields = trial.fields();
+    for case in 0..TOGETHER {
+        trial.restore();
+        // one number in four, or all of them
+        let share = [0.25, 1.0][case % 2];
+        let mut replaced = Vec::new();
+        for &(field, count) in &fields {
+            for entry in 0..count {
+                if random.between(0.0, 1.0) < share {
+                    replaced.push((field, entry, hostile(random)));
+                }
+            }
+        }
+        // rotations and unit vectors are where they are: another number is no configuration
+        for part in [Part::Configuration, Part::Momentum, Part::Input] {
+            let share = if matches!(part, Part::Configuration) { share / 8.0 } else { share };
+            for slot in trial.slots(part) {
+                if random.between(0.0, 1.0) < share {
+                    slot.put(hostile(random));
+                }
+            }
+        }
+        let h = if case % 3 == 0 { Size::Ordinary } else { Size::Of(hostile(random)) };
+        let place = format!("case {case}");
+        if report.call((&place, "stepper"), &mut || trial.stepper(&replaced, h)) {
+            if trial.call("projected").is_err() {
+                continue;
+            }
+            steps(report, &place, trial);
+        }
+    }
+    trial.restore();
+}
+
+/// A number of any size and sign, and now and then one that few expect.
+fn hostile(random: &mut Random) -> f64 {
+    let choice = random.between(0.0, 24.0) as usize;
+    let size = 10.0_f64.powf(random.between(-RATIOS, RATIOS));
+    match EXTREME.get(choice) {
+        Some(&extreme) if choice % 3 == 0 => extreme,
+        _ if choice % 2 == 0 => size,
+        _ => -size,
     }
 }

@@ -17,7 +17,7 @@ fn longest_steps_of(trial: &mut dyn Trial, h: Size) -> [usize; 2] {
     let [mut refused, mut bent] = [0, 0];
     for size in [1.0, 3.0, 10.0, 30.0, 100.0, 300.0, 1e4, 1e7] {
         trial.restore();
-        trial.stepper(None, h).expect("an ordinary system");
+        trial.stepper(&[], h).expect("an ordinary system");
         trial.slots(Part::Momentum).into_iter().for_each(|slot| slot.put(size * random.number()));
         trial.call("projected").expect("a projection");
         trial.call("state").expect("a state");
@@ -29,7 +29,7 @@ fn longest_steps_of(trial: &mut dyn Trial, h: Size) -> [usize; 2] {
             continue;
         };
         let mut step_of = |h: f64| {
-            trial.stepper(None, Size::Of(h))?;
+            trial.stepper(&[], Size::Of(h))?;
             trial.call("state")?;
             trial.call("step")
         };

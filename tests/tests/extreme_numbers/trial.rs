@@ -21,6 +21,9 @@ pub trait Scene: Clebsch<Scalar: Real, Configuration: Slots, Momentum: Slots, In
 /// What is evaluated as it stands.
 pub const FORMULAS: [&str; 6] = ["momentum_map", "momentum_matrix", "potential", "legendre", "legendre_next", "act"];
 
+/// Round-off of a configuration after some steps, in units of ε.
+const ROUNDING: f64 = 1024.0;
+
 /// A step size.
 #[derive(Clone, Copy)]
 pub enum Size {
@@ -40,8 +43,8 @@ pub trait Trial {
     fn fields(&self) -> Vec<(&'static str, usize)>;
     /// The ordinary numbers everywhere, and the ordinary stepper.
     fn restore(&mut self);
-    /// Another stepper, with a number replaced at a place of a field.
-    fn stepper(&mut self, replaced: Option<(&str, usize, f64)>, h: Size) -> Result<bool, Error>;
+    /// Another stepper, with numbers replaced at places of fields.
+    fn stepper(&mut self, replaced: &[(&str, usize, f64)], h: Size) -> Result<bool, Error>;
     /// The numbers of a part.
     fn slots(&mut self, part: Part) -> Vec<Slot<'_>>;
     /// One number of a part, the others being ordinary.
@@ -49,7 +52,7 @@ pub trait Trial {
         self.restore();
         self.slots(part).into_iter().nth(place).expect("a place").put(value);
     }
-    /// Calls an entry point with the numbers as they are; whether its result is finite.
+    /// Calls an entry point with the numbers as they are; whether its result is finite and on the space of configurations.
     fn call(&mut self, entry: &str) -> Result<bool, Error>;
     /// Whether all bodies of the ensemble are finite, and whether those whose first step failed are where they were.
     fn bodies(&self) -> [bool; 2];
@@ -87,13 +90,26 @@ impl<S: Scene> Of<S> {
 
     /// The step, compiled once.
     #[inline(never)]
-    fn step(stepper: &Stepper<S>, start: &State<S>) -> Result<bool, Error> {
-        stepper.step(start).map(|next| is_finite(&next))
+    fn step(&self, stepper: &Stepper<S>) -> Result<bool, Error> {
+        stepper.step(&self.start()).map(|next| self.is_sound(&next))
     }
-}
 
-fn is_finite<S: Clebsch>(state: &State<S>) -> bool {
-    state.configuration().is_finite() && state.momentum().is_finite()
+    /// Whether a state is finite, and a configuration on its space.
+    fn is_sound(&self, state: &State<S>) -> bool {
+        state.momentum().is_finite() && self.is_on_space(state.configuration())
+    }
+
+    /// Whether a configuration is finite and where configurations lie, up to the round-off of its entries and to the defect of the start.
+    fn is_on_space(&self, q: &S::Configuration) -> bool {
+        self.is_on_space_from(&self.q, q)
+    }
+
+    fn is_on_space_from(&self, start: &S::Configuration, q: &S::Configuration) -> bool {
+        let defect = |q: &S::Configuration| self.stepper.system().orbit_defect(q).to_f64();
+        let size = q.max_abs().to_f64().max(1.0);
+        let rounding = ROUNDING * S::Scalar::EPSILON.to_f64();
+        q.is_finite() && defect(q) <= (rounding + 4.0 * defect(start)) * size * size
+    }
 }
 
 impl<S: Scene> Trial for Of<S> {
@@ -110,7 +126,7 @@ impl<S: Scene> Trial for Of<S> {
         (self.q, self.input) = (S::configuration(), S::Input::filled(S::Scalar::from_f64(0.1)));
     }
 
-    fn stepper(&mut self, replaced: Option<(&str, usize, f64)>, h: Size) -> Result<bool, Error> {
+    fn stepper(&mut self, replaced: &[(&str, usize, f64)], h: Size) -> Result<bool, Error> {
         let h = match h {
             Size::Ordinary => S::step_size(),
             Size::Times(times) => S::step_size() * S::Scalar::from_ratio(times, 1),
@@ -122,7 +138,7 @@ impl<S: Scene> Trial for Of<S> {
             },
         };
         let mut system = S::ordinary();
-        if let Some((field, place, value)) = replaced {
+        for &(field, place, value) in replaced {
             system = system.with_field(field, place, value);
         }
         self.stepper = system.stepper(h)?;
@@ -150,7 +166,11 @@ impl<S: Scene> Trial for Of<S> {
             "act" => drop((stepper.act(&broken(), &q), stepper.coadjoint(&broken(), &mu))),
             "project" => return Ok(stepper.project(&q, &mu)?.is_finite()),
             "projected" => self.mu = stepper.project(&q, &mu)?,
-            "inverse_legendre" => return Ok(stepper.inverse_legendre_at(zero, &q, &mu)?.is_finite()),
+            "inverse_legendre" => {
+                let f = stepper.inverse_legendre_at(zero, &q, &mu)?;
+                let is_of_group = self.is_on_space_from(&S::configuration(), &stepper.act(&f, &S::configuration()));
+                return Ok(f.is_finite() && is_of_group);
+            }
             "cotangent_state" => self.cotangent = Some(stepper.cotangent_state(q, q)?),
             "covector" => self.cotangent = Some(stepper.cotangent_state(S::configuration(), q)?),
             "step_symmetric" | "step_symmetric of a covector" => {
@@ -163,27 +183,27 @@ impl<S: Scene> Trial for Of<S> {
                     next.covector().is_finite() && (entry != "step_symmetric" || next.configuration().is_finite())
                 );
             }
-            "staggered_state" => return Ok(is_finite(&stepper.staggered_state(q, mu)?)),
+            "staggered_state" => return Ok(self.is_sound(&stepper.staggered_state(q, mu)?)),
             "state" => {
                 let start = stepper.state(q, mu)?;
                 self.start = Some(start);
-                return Ok(is_finite(&start));
+                return Ok(self.is_sound(&start));
             }
-            "step" => return Self::step(stepper, &self.start()),
+            "step" => return self.step(stepper),
             "another step size" => {
                 let other = stepper.system().stepper(S::Scalar::from_f64(0.1))?;
-                return Self::step(&other, &self.start());
+                return self.step(&other);
             }
-            "step_with" => return Ok(is_finite(&stepper.step_with(&self.start(), &self.input)?)),
-            "advance" => return Ok(is_finite(&stepper.advance(&self.start(), 3)?)),
+            "step_with" => return Ok(self.is_sound(&stepper.step_with(&self.start(), &self.input)?)),
+            "advance" => return Ok(self.is_sound(&stepper.advance(&self.start(), 3)?)),
             "trajectory" => {
                 let start = self.start();
-                return Ok(is_finite(&stepper.trajectory(start).take(4).last().unwrap_or(Ok(start))?));
+                return Ok(self.is_sound(&stepper.trajectory(start).take(4).last().unwrap_or(Ok(start))?));
             }
             "energy" => drop((stepper.energy(&self.start()), stepper.synchronized_energy(&self.start()))),
             "synchronized" => drop(stepper.synchronized(&self.start())),
             "failure" => drop(stepper.failure(&self.start(), 0)),
-            "step_each" => return Ok(is_finite(&stepper.step_each(&self.start()).0)),
+            "step_each" => return Ok(self.is_sound(&stepper.step_each(&self.start()).0)),
             "Ensemble" => {
                 let body = self.start().lane(0);
                 self.ensemble = Some(stepper.clone().ensemble([body, body]).map_err(|failure| failure.error)?);
