@@ -1,8 +1,8 @@
-//! A cloud of free rigid bodies, all spun about their intermediate axis, each with a tilt of its own: they turn over, each in its own time,
-//! and what they had in common is lost, while each keeps its energy and its momentum.
+//! A cloud of free rigid bodies, all spun about their intermediate axis, each with a tilt of its own. Each turns over
+//! in its own time, so the cloud loses its order. Each body conserves its energy and its momentum.
 //!
-//! All are stepped side by side, eight in the lanes of each register and on all cores, and each with the bits that it has alone.
-//! Source of the exact motion: Landau and Lifshitz, *Mechanics*, §37.
+//! All are stepped side by side, eight in the lanes of each register and on all cores. Each has the bits that it has
+//! alone. Source of the exact motion: Landau and Lifshitz, *Mechanics*, §37.
 
 mod euler;
 mod figure;
@@ -42,7 +42,8 @@ const SCENE: Scene = Scene {
     columns_note: "mean, least and greatest pi2 of the cloud and the exact mean, as parts of the momentum",
 };
 
-/// A cloud of tumbling bodies, stepped side by side: each conserves what it should, and has the bits that it has alone
+/// A cloud of tumbling bodies, stepped side by side: each conserves energy and momentum, and has the bits that it has
+/// alone
 #[derive(Parser, Debug)]
 struct Flags {
     /// Number of bodies
@@ -74,7 +75,7 @@ impl Flags {
     }
 }
 
-/// Moments of inertia, the second of which is the intermediate one.
+/// Moments of inertia; the second is the intermediate one.
 fn increasing(text: &str) -> Result<[f64; 3], String> {
     let [a, b, c] = moments_of_inertia(text)?;
     if a < b && b < c {

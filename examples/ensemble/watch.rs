@@ -1,4 +1,4 @@
-//! What is kept of the cloud while it tumbles, and what is claimed of it.
+//! The record of the cloud while it tumbles, and the claims about it.
 
 use crate::euler::Euler;
 use crate::{Flags, Rock};
@@ -16,7 +16,7 @@ const POINTS: u64 = 1500;
 const ROWS: u64 = 10;
 /// Bodies whose curves are drawn: those that share one register.
 pub const DRAWN: usize = 8;
-/// Bodies that are stepped alone beside the others, at most.
+/// The most bodies that are also stepped alone.
 const ALONE: usize = 200;
 
 /// The cloud at one time. Spins are π₂/|π|.
@@ -100,7 +100,7 @@ impl Watch {
         [mean, least, greatest, exact]
     }
 
-    /// Claims what each body keeps, where it ends, and that it ends there alone too.
+    /// Claims the conserved quantities of each body, its end, and that it ends there alone too.
     pub fn claim(
         &self,
         rocks: &Ensemble<Rock<F64x8>>,

@@ -45,7 +45,7 @@ pub struct SolvedToTolerance;
 pub struct SolvedInFour;
 pub struct SolvedInExponentials;
 
-/// A body that nothing acts on, of which nothing but its own rotation is known.
+/// A body that nothing acts on; only its own rotation is known.
 #[derive(Clebsch, Clone, Debug)]
 #[clebsch(
     action     = |F: SO<3>, R: SO<3>| R * F,
@@ -260,7 +260,7 @@ pub fn pendulums() -> Vec<Dial> {
     ]
 }
 
-/// What is let run for long, in the order of the scenes.
+/// The scenes that run for long, in order.
 pub fn long_runs() -> Vec<LongRun> {
     vec![
         long_run!("moser_veselov", "free body", Body, BodyMoserVeselov),

@@ -1,7 +1,7 @@
 //! Units of mass, length and time from one end of the range of numbers to the other.
 //!
-//! Units of powers of two change no digit: as long as nothing overflows or leaves the normal numbers, rotations have the same bits and momenta the same
-//! digits.
+//! Units of powers of two change no digit. As long as nothing overflows or leaves the normal numbers, rotations have
+//! the same bits and momenta the same digits.
 
 use crate::declarations::{bodies, pendulums, tops};
 use crate::map::{Map, SCALARS, refusal};
@@ -52,7 +52,7 @@ impl Unit {
         }
     }
 
-    /// By what the momentum grows.
+    /// The factor by which the momentum grows.
     fn of_momentum(self, k: i32) -> f64 {
         2.0_f64.powi(
             k * match self {
@@ -79,7 +79,7 @@ struct Reach {
     same: i32,
     /// That up to which they are the same but for rounding.
     near: i32,
-    /// What happens at the next one.
+    /// The outcome at the next one.
     beyond: String,
 }
 

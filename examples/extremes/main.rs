@@ -1,7 +1,8 @@
-//! The map of the edge: what happens where step sizes, bodies, units, starts and potentials are extreme, in both number types.
+//! The map of the edge: the outcome of extreme step sizes, bodies, units, starts and potentials, in both number types.
 //!
-//! Each section runs scenes with their dials over one quantity and prints a table. What must never happen is claimed: a result that is not finite, work
-//! beyond its bound, a momentum or a constraint that leaves rounding, a bound that is not where the docs say.
+//! Each section runs scenes with their dials over one quantity and prints a table. The scene claims that certain
+//! outcomes never occur. These are a result that is not finite, work beyond its bound, a momentum or a constraint that
+//! leaves rounding, and a false bound.
 
 mod declarations;
 mod inertia;
@@ -79,7 +80,7 @@ impl Flags {
         self.states.unwrap_or(self.chosen([100_000, 100_000_000, 1_000_000_000]))
     }
 
-    /// What is for `quick`, for neither, for `full`.
+    /// The number for `quick`, for neither, for `full`.
     fn chosen(&self, of: [u64; 3]) -> u64 {
         of[if self.quick { 0 } else { 1 + usize::from(self.full) }]
     }

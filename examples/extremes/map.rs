@@ -10,7 +10,7 @@ use std::path::{Path, PathBuf};
 /// The scalar types, in the order of [`Dial::begin`].
 pub const SCALARS: [&str; 2] = ["f64", "f32"];
 
-/// What has been run so far.
+/// The runs so far.
 pub struct Map<'a> {
     csv: Option<(BufWriter<File>, &'a Path)>,
     /// Runs.
@@ -39,7 +39,7 @@ impl<'a> Map<'a> {
         Ok(map)
     }
 
-    /// Adds a cell: the section, what was run, and where the dial of the section stood.
+    /// Adds a cell: the section, the dial, and the value of the section's quantity.
     ///
     /// # Errors
     /// [`Failure::File`]
@@ -108,7 +108,7 @@ pub fn refusal(error: Error) -> String {
     }
 }
 
-/// A number of which only the size matters.
+/// A number; only its size matters.
 pub fn size(x: f64) -> String {
     if x == 0.0 { "0".to_owned() } else { format!("{x:.0e}") }
 }

@@ -1,4 +1,4 @@
-//! A scene that moves: what differs between methods and number types, and no more.
+//! A scene that moves: the part that differs between methods and number types.
 //!
 //! All else of a probe is compiled once, and takes a motion as an object.
 
@@ -43,7 +43,7 @@ pub trait Watched: Motion {
     /// Those of [`Stepper::state`].
     fn restart(&mut self, setup: &Setup) -> Result<(), Error>;
 
-    /// What a state shows.
+    /// The observation of a state.
     fn observe(&self) -> Observation;
 
     /// Whether a step is that of one equation F⁻ℓd(q, F) = N.
@@ -65,7 +65,7 @@ pub trait Advancing: Watched {
     fn advance(&mut self, steps: usize) -> Result<(), Error>;
 }
 
-/// What is followed of a state.
+/// The quantities of a state that are followed.
 #[derive(Clone, Copy, Debug)]
 pub struct Observation {
     /// The energy.

@@ -82,8 +82,8 @@ pub fn explore(map: &mut Map<'_>, claims: &mut Claims) -> Result<(), Failure> {
     driven(map, claims)
 }
 
-/// Two revolutions in 2000 steps on an ellipse that comes as near to the centre as `1 − e`: the largest relative error of the energy, and of the
-/// angular momentum.
+/// Two revolutions in 2000 steps on an ellipse that comes as near to the centre as `1 − e`. Returns the largest
+/// relative errors of the energy and of the angular momentum.
 fn revolve<M: Method<Planet>>(nearest: f64) -> Result<[f64; 2], Error> {
     let stepper = Planet { attraction: 1.0 }.into_stepper_by::<M>(TAU / 1000.0)?;
     let speed = (nearest / (2.0 - nearest)).sqrt();
@@ -171,7 +171,8 @@ fn stiff(map: &mut Map<'_>, claims: &mut Claims) -> Result<(), Failure> {
         let (bound, why) = stable(half_trace);
         rows.push(vec![name.to_owned(), format!("{bound:.3}"), why]);
         map.add_run("stiff potential", ("spring", name), "f64", &format!("{bound:.3}"), &Cell::of(Ok(()), 1))?;
-        // half the trace is cos hω but for the error of the step: it leaves [−1, 1] first beside hω = π, unless the step is as Gauss's, stable for every h
+        // half the trace is cos hω but for the error of the step. It leaves [−1, 1] first near hω = π, unless the step
+        // is as Gauss's, stable for every h
         let (expected, why) = match name {
             "order 1" | "order 2" => (2.0..=2.002, "the bound of Störmer and Verlet is 2"),
             "order 16" => (PI + 0.1..=f64::INFINITY, "collocation at Gauss's nodes is stable beyond π; its sweeps end"),

@@ -5,7 +5,7 @@ use crate::setup::Setup;
 use clebsch::Error;
 use clebsch_examples::counted::iterations;
 
-/// What became of a run.
+/// The outcome of a run.
 #[derive(Clone, Debug)]
 pub struct Cell {
     /// Whether it came to its end, and why not.
@@ -14,7 +14,8 @@ pub struct Cell {
     pub steps: u64,
     /// The most iterations of one step.
     pub iterations: u32,
-    /// The largest |F⁻ℓd(q, F) − N|, over momenta, by how much the equation of a step is missed; NaN where steps are composed or collocated, and have none.
+    /// The largest |F⁻ℓd(q, F) − N|, over momenta: the error in the equation of a step. NaN where steps are composed or
+    /// collocated, and have none.
     pub residual: f64,
     /// Largest relative change of the energy.
     pub energy: f64,
@@ -29,12 +30,12 @@ pub struct Cell {
 }
 
 impl Cell {
-    /// What is not measured, of a run that ended like this.
+    /// The entries that are not measured, of a run that ended like this.
     pub fn of(outcome: Result<(), Error>, steps: u64) -> Self {
         Self { steps, ..Self::new(outcome, f64::NAN) }
     }
 
-    /// Before any step: `measured` stands for what is measured in steps.
+    /// Before any step: `measured` stands for the quantities that are measured in steps.
     fn new(outcome: Result<(), Error>, measured: f64) -> Self {
         Self {
             outcome,
@@ -63,7 +64,7 @@ type Begin<W> = fn(&Setup) -> Result<Box<W>, Error>;
 pub struct Dial {
     /// The scene.
     pub scene: &'static str,
-    /// What is declared.
+    /// The declaration.
     pub name: &'static str,
     /// In `f64` and in `f32`.
     pub begin: [Begin<dyn Watched>; 2],
@@ -76,7 +77,7 @@ pub struct Dial {
 pub struct LongRun {
     /// The scene.
     pub scene: &'static str,
-    /// What is declared.
+    /// The declaration.
     pub name: &'static str,
     /// In `f64` and in `f32`.
     pub begin: [Begin<dyn Advancing>; 2],
@@ -114,7 +115,7 @@ macro_rules! long_run {
 pub(crate) use long_run;
 
 impl Dial {
-    /// `steps` steps in a type, watched, and beside them as many in 31 digits where they are to be compared.
+    /// `steps` steps in a type, watched. If they are to be compared, as many steps in 31 digits run with them.
     pub fn run(&self, scalar: usize, setup: &Setup, steps: u64, is_compared: bool) -> Cell {
         let mut cell = match (self.begin[scalar])(setup) {
             Ok(motion) => watch(motion, steps),
@@ -170,10 +171,10 @@ fn end(mut motion: Box<dyn Motion>, steps: u64) -> Result<Vec<f64>, Error> {
     Ok(motion.numbers())
 }
 
-/// What is followed during a run.
+/// The quantities that are followed during a run.
 #[derive(Clone)]
 pub struct Watch {
-    /// What has been found so far.
+    /// The results so far.
     pub cell: Cell,
     energy: f64,
     conserved: [f64; 3],
@@ -193,7 +194,7 @@ impl Watch {
     /// Takes the next state.
     pub fn observe(&mut self, motion: &dyn Watched) {
         let raise = |largest: &mut f64, value: f64| {
-            // NaN is kept
+            // NaN stays
             if value > *largest || value.is_nan() {
                 *largest = value;
             }

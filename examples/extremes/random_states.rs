@@ -15,12 +15,13 @@ use rayon::prelude::*;
 
 /// States of one body.
 const STATES: u64 = 10_000;
-/// Most iterations of a solve: 12 by Newton's method, then those along the path, of which the last point may take 4 more. A step of order 16 makes at
-/// most 64 sweeps.
+/// Most iterations of a solve: 12 by Newton's method, then those along the path. The last point of the path may take 4
+/// more. A step of order 16 makes at most 64 sweeps.
 const ITERATIONS: u32 = 12 + LINEARIZATIONS + 4;
 
-/// How far F⁻ℓd(q, F) may be from N, in ε: a solution is taken where ρ is within 8ε|Dρ||ξ|, and |Dρ||ξ| is up to a thousand times |N| with needles of that ratio. Fixed
-/// points end at rounding of Σ⁻¹ρ, which is further off where Dρ is nearly singular, next to the end of `projection`: a ceiling, not derived.
+/// How far F⁻ℓd(q, F) may be from N, in ε. A solution is accepted where ρ is within 8ε|Dρ||ξ|. |Dρ||ξ| is up to a
+/// thousand times |N| with needles of that ratio. Fixed points end at rounding of Σ⁻¹ρ. This is further off where Dρ is
+/// nearly singular, next to the end of `projection`: a ceiling, not derived.
 const MISSED: [f64; 2] = [8000.0, 200_000.0];
 
 /// Steps that are tried to tell the longest one that has a solution.
@@ -43,7 +44,7 @@ fn body(random: &mut Random) -> Setup {
     setup.with_velocity(velocity)
 }
 
-/// What many steps took.
+/// The work of many steps.
 #[derive(Clone, Debug, Default)]
 struct Sample {
     /// Steps that were made.

@@ -44,7 +44,7 @@ impl Setup {
         self
     }
 
-    /// The same with each number rounded to `f32`, so that a run of that type and one beside it start alike.
+    /// The same with each number rounded to `f32`, so that a run of that type and its companion start alike.
     pub fn rounded(&self) -> Self {
         let to = |x: f64| f64::from(x as f32);
         Self {

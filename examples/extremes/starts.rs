@@ -17,7 +17,7 @@ fn turned(angle: f64) -> Matrix3<f64> {
     Matrix3::new(1.0, 0.0, 0.0, 0.0, cosine, -sine, 0.0, sine, cosine)
 }
 
-/// What a place is called, and the setup there.
+/// The name of a place, and the setup there.
 fn of_bodies() -> Vec<(String, Setup)> {
     let about = |axis: Vector3<f64>| Setup { attitude: Matrix3::identity(), ..Setup::ordinary() }.with_velocity(axis);
     let mut starts = vec![

@@ -1,4 +1,4 @@
-//! Exact drifts and what is conserved: a rigid body, with weight or without, against a method that knows no groups.
+//! Exact drifts and conserved quantities: a rigid body, with weight or without, against a method that knows no groups.
 
 use crate::Pictures;
 use clebsch::{Clebsch, Declared, Method, State};

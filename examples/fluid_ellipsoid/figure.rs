@@ -1,4 +1,4 @@
-//! The shape of the drop, what it keeps, and the spheroid that swirl turns back.
+//! The shape of the drop, its conserved quantities, and the spheroid that swirl turns back.
 
 use crate::exact::Swirl;
 use crate::watch::Watch;

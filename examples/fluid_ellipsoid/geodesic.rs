@@ -39,7 +39,7 @@ pub fn momentum(mass: f64, q: &Matrix3<f64>, velocity: &Matrix3<f64>) -> SVector
     SVector::from([p.m11 - p.m22, p.m22 - p.m33, p.m12, p.m13, p.m21, p.m23, p.m31, p.m32])
 }
 
-/// ε m |q| |q̇|: what rounding does to the momentum in a step.
+/// ε m |q| |q̇|: the rounding error of the momentum in a step.
 pub fn rounding(mass: f64, q: &Matrix3<f64>, velocity: &Matrix3<f64>) -> f64 {
     f64::EPSILON * mass * q.norm() * velocity.norm()
 }
@@ -54,7 +54,7 @@ pub fn velocity(mass: f64, q: &Matrix3<f64>, n: &SVector<f64, 8>) -> Matrix3<f64
     (deviator - Matrix3::identity() * shift) * inverse.transpose()
 }
 
-/// m (q̇qᵀ)_ij − m (q̇qᵀ)_ji, the angular momentum, and m (qᵀq̇)_ij − m (qᵀq̇)_ji, the circulation, for (i, j) = (2, 1),
+/// m (q̇qᵀ)_ij − m (q̇qᵀ)_ji, the angular momentum, and m (qᵀq̇)_ij − m (qᵀq̇)_ji, the circulation. (i, j) = (2, 1),
 /// (3, 1), (3, 2): about e₃, −e₂ and e₁.
 pub fn momenta(mass: f64, q: &Matrix3<f64>, velocity: &Matrix3<f64>) -> [f64; 6] {
     let skew = |p: Matrix3<f64>| [p.m21 - p.m12, p.m31 - p.m13, p.m32 - p.m23].map(|entry| mass * entry);

@@ -1,8 +1,8 @@
 //! Dirichlet's fluid ellipsoid without gravity: a drop whose flow is linear follows a geodesic of SL(3) in the flat metric.
 //!
-//! Sources: Dirichlet (1860) and Riemann (1861) as in Chandrasekhar, *Ellipsoidal Figures of Equilibrium*, chapter 4; Sideris,
-//! *Global existence and asymptotic behavior of affine motion of 3D ideal fluids surrounded by vacuum*, Archive for Rational
-//! Mechanics and Analysis 225 (2017) 141–176.
+//! Sources: Dirichlet (1860) and Riemann (1861) as in Chandrasekhar, *Ellipsoidal Figures of Equilibrium*, chapter 4.
+//! Sideris, *Global existence and asymptotic behavior of affine motion of 3D ideal fluids surrounded by vacuum*,
+//! Archive for Rational Mechanics and Analysis 225 (2017) 141–176.
 
 mod exact;
 mod figure;
@@ -41,8 +41,8 @@ const SCENE: Scene = Scene {
     columns_note: "deformation q11..q33 (in units of the radius of the sphere of equal volume), momentum N1..N8 (kg m2/s; basis E11-E22, E22-E33, E12, E13, E21, E23, E31, E32)",
 };
 
-/// A drop of ideal fluid in the shape of an ellipsoid, without gravity: angular momentum, circulation and incompressibility
-/// kept, against an independent integration, a quadrature and an exact flow
+/// A drop of ideal fluid in the shape of an ellipsoid, without gravity, against an independent integration, a
+/// quadrature and an exact flow
 #[derive(Parser, Debug)]
 struct Flags {
     /// Semi-axes at the start, along the axes of space; only their ratios count, the volume is that of the unit ball

@@ -54,8 +54,9 @@ impl Spheroid {
 
     /// q at a time.
     ///
-    /// With a² = ℓ²/e + s² the time is t = e^{−1/2} ∫ √(1 + 2a⁻⁶) ds, smooth through the turning point s = 0, and
-    /// φ = ℓ e^{−1/2} ∫ √(1 + 2a⁻⁶) a⁻² ds. None at rest, and without swirl while it contracts, where s never reaches 0.
+    /// With a² = ℓ²/e + s² the time is t = e^{−1/2} ∫ √(1 + 2a⁻⁶) ds, and φ = ℓ e^{−1/2} ∫ √(1 + 2a⁻⁶) a⁻² ds. Both are
+    /// smooth through the turning point s = 0. None at rest, and without swirl while it contracts, where s never
+    /// reaches 0.
     pub fn at(&self, time: f64) -> Option<Matrix3<f64>> {
         let (least, root) = (self.least_radius()?, self.energy().sqrt());
         let first = (self.radius.powi(2) - least.powi(2)).max(0.0).sqrt().copysign(self.rate);

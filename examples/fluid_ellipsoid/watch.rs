@@ -1,4 +1,4 @@
-//! What is kept of the motion while it runs, and what is claimed of it.
+//! The record of the motion while it runs, and the claims about it.
 
 use crate::{Flags, geodesic};
 use clebsch::Conserved;

@@ -1,4 +1,4 @@
-//! Nutation: the path of the axis, its tilt, and what is conserved.
+//! Nutation: the path of the axis, its tilt, and the conserved quantities.
 
 use crate::watch::{Sample, Watch};
 use crate::{Flags, SCENE};

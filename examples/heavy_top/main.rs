@@ -1,4 +1,4 @@
-//! A heavy top on a fixed point: it nutates, and what gravity leaves alone is kept.
+//! A heavy top on a fixed point: it nutates, and conserves the momenta on which gravity does not act.
 
 mod figure;
 mod watch;

@@ -1,4 +1,4 @@
-//! What is kept of the motion while it runs, and what is claimed of it.
+//! The record of the motion while it runs, and the claims about it.
 
 use crate::Flags;
 use clebsch_examples::claims::Claims;
@@ -108,7 +108,7 @@ impl Watch {
         }
     }
 
-    /// Claims what gravity leaves alone, and the band of the energy.
+    /// Claims the momenta on which gravity does not act, and the band of the energy.
     pub fn claim(&self, flags: &Flags, claims: &mut Claims) {
         let steps = self.run.steps;
         // The kick is horizontal in space only as far as R is a rotation: its defect, itself rounding, works through all kicks.
@@ -129,7 +129,8 @@ impl Watch {
 /// The terms of the modified energy, with T = ½ π·J⁻¹π and V = Γ·m, Γ = Rᵀe₃ and m the moment.
 ///
 /// Free motion: Γ̇ = Γ×ω and J ω̇ = π×ω. The force is τ = Γ×m. The Moser–Veselov drift is the free motion of T + h² D,
-/// D = (e₃C² − e₂CT + e₁T²)/6 with C = ½|π|² and e_i the elementary symmetric functions of the 1/J_j (Hairer and Vilmart 2006).
+/// D = (e₃C² − e₂CT + e₁T²)/6. Here C = ½|π|², and e_i are the elementary symmetric functions of the 1/J_j (Hairer and
+/// Vilmart 2006).
 fn terms(inertia: &Vector3<f64>, moment: &Vector3<f64>, attitude: &Matrix3<f64>, momentum: &Vector3<f64>) -> Terms {
     let x = inertia.map(f64::recip);
     let (e1, e2, e3) = (x.sum(), x.x * x.y + x.y * x.z + x.z * x.x, x.product());

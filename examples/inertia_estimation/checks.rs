@@ -1,4 +1,4 @@
-//! What is claimed of the sensitivities: they are differences, and they know what no data can tell.
+//! The claims about the sensitivities: they are differences, and they know the direction that no data can tell.
 
 use crate::Spacecraft;
 use crate::estimator::{Estimator, Predicted};
@@ -61,7 +61,7 @@ fn differences<M: Differentiated<Spacecraft, 3>>(
     Some(slopes)
 }
 
-/// (J, π) ↦ (1 + s)(J, π) moves nothing: what the inertia does to the attitudes, the momentum undoes.
+/// (J, π) ↦ (1 + s)(J, π) moves nothing: the momentum cancels the effect of the inertia on the attitudes.
 fn claim_scale(predicted: &Predicted, schedule: &Schedule, claims: &mut Claims) {
     let scaling = &predicted.scaling;
     let moved = scaling.iter().map(|scaling| scaling.moved.norm()).fold(0.0, f64::max);
@@ -72,7 +72,7 @@ fn claim_scale(predicted: &Predicted, schedule: &Schedule, claims: &mut Claims) 
 /// Nanoseconds of a step, alone and with its derivatives.
 ///
 /// # Errors
-/// What a step returns.
+/// The errors of a step.
 pub fn cost<M: Differentiated<Spacecraft, 3>>(
     estimator: &Estimator<M>,
     truth: &Unknowns,

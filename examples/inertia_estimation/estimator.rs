@@ -11,22 +11,23 @@ use std::marker::PhantomData;
 
 /// Standard deviation of the first guess of an entry of the inertia, over the trace.
 ///
-/// It keeps the first arcs, too short to determine the inertia, near to bodies that exist; the whole data say more by orders of magnitude.
+/// It holds the first arcs, too short to determine the inertia, near bodies that exist. All data together say more by
+/// orders of magnitude.
 pub const PRIOR: f64 = 0.1;
 
 /// A stepper of the spacecraft, and the state that it starts from.
 pub type Begun<M> = (Stepper<Spacecraft, M>, State<Spacecraft, M>);
 
-/// What turns unknowns into predicted attitudes.
+/// The map from unknowns to predicted attitudes.
 #[derive(Clone, Copy, Debug)]
 pub struct Estimator<M> {
-    /// What the unknowns mean.
+    /// The meaning of the unknowns.
     pub chart: Chart,
     /// Mean motion of the orbit, rad/s; known.
     pub mean_motion: f64,
     /// Standard deviation of a measured angle, radians.
     pub sigma: f64,
-    /// What is known before anything is measured: the ratios of its inertia, with the standard deviation [`PRIOR`].
+    /// The knowledge before any measurement: the ratios of its inertia, with the standard deviation [`PRIOR`].
     guess: Unknowns,
     method: PhantomData<M>,
 }
@@ -37,7 +38,7 @@ pub struct Predicted {
     pub attitudes: Vec<Matrix3<f64>>,
     /// ∂η, δR = R η̂.
     pub slopes: Vec<Slopes>,
-    /// What a change of scale does to them.
+    /// The effect of a change of scale on them.
     pub scaling: Vec<Scaling>,
 }
 
@@ -49,7 +50,7 @@ pub struct Scaling {
     pub parts: f64,
 }
 
-/// The tangent map of a whole run, and its sensitivity to all quantities of the declaration.
+/// The tangent map of a run, and its sensitivity to all quantities of the declaration.
 type Chained = (Tangent<f64, 3>, Sensitivity<f64, 3, 9>);
 
 impl<M: Differentiated<Spacecraft, 3>> Estimator<M> {
@@ -66,7 +67,7 @@ impl<M: Differentiated<Spacecraft, 3>> Estimator<M> {
     /// The stepper of the unknowns, and the first state.
     ///
     /// # Errors
-    /// What the stepper and the state refuse.
+    /// The refusals of the stepper and of the state.
     pub fn start(&self, x: &Unknowns, step_size: f64) -> Result<Begun<M>, Error> {
         let start = self.chart.start(x);
         let stepper =

@@ -10,7 +10,7 @@ use nalgebra::{Matrix3, SMatrix, Vector3};
 
 const ARCSECONDS: f64 = 3600.0 * 180.0 / std::f64::consts::PI;
 
-/// What is drawn.
+/// The contents of the figure.
 pub struct Drawing<'a> {
     /// When.
     pub schedule: &'a Schedule,

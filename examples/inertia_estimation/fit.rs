@@ -15,7 +15,7 @@ use std::f64::consts::PI;
 
 /// Measurements of the first arc.
 const FIRST_ARC: usize = 8;
-/// Relative reduction of χ², and change of the unknowns, at which an arc is done: far below what the noise leaves open.
+/// Relative reduction of χ², and change of the unknowns, at which an arc is done: far below the uncertainty by noise.
 const TOLERANCE: f64 = 1e-10;
 
 /// Where the fit ended.
@@ -34,8 +34,9 @@ pub struct Fit {
 
 /// Fits the first measurements, then twice as many from there, and so on.
 ///
-/// A wrong inertia turns the predicted body away from the measured one as time goes by, and residuals know angles only up to whole
-/// turns; so an arc may only be as long as the estimate is good, and each makes it better for the next.
+/// A wrong inertia turns the predicted body away from the measured one as time goes by, and residuals know angles only
+/// up to full turns. So the length of an arc is limited by the quality of the estimate. Each arc makes it better for
+/// the next.
 pub fn fit<M: Differentiated<Spacecraft, 3>>(
     estimator: &Estimator<M>,
     measured: &[Matrix3<f64>],
@@ -60,7 +61,7 @@ pub fn fit<M: Differentiated<Spacecraft, 3>>(
         fit.unknowns = problem.x;
         fit.chi_square =
             2.0 * report.objective_function - estimator.departure(&fit.unknowns).iter().map(|r| r * r).sum::<f64>();
-        // what cannot be improved by more than rounding has converged too
+        // a fit that cannot be improved by more than rounding has converged too
         fit.has_converged = report.termination.was_successful()
             || matches!(report.termination, TerminationReason::NoImprovementPossible(_));
         fit.linearisations += linearisations;

@@ -1,18 +1,19 @@
 //! The inertia of a tumbling spacecraft from its attitudes: nonlinear least squares with the exact sensitivities of the steps.
 //!
-//! Envisat has been out of control since 2012. Before it can be seized, its inertia has to be known, and there is only its motion
-//! to tell. It turned in 134.74 s in September 2013 (Kucharski and others, *Attitude and spin period of space debris Envisat measured
-//! by satellite laser ranging*, IEEE Transactions on Geoscience and Remote Sensing 52 (2014) 7651–7657) and tumbles (Sommer and others,
-//! *Temporal analysis of Envisat's rotational motion*, JBIS 70 (2017) 45–51). The inertia that the data are made with is that of
-//! Bastida Virgili, Lemmens and Krag, *Investigation on Envisat attitude motion*, e.Deorbit Workshop, ESA (2014).
+//! Envisat has been out of control since 2012. Before it can be seized, its inertia has to be known, and there is only
+//! its motion to tell. It turned in 134.74 s in September 2013, and it tumbles. Rotation: Kucharski and others,
+//! *Attitude and spin period of space debris Envisat measured by satellite laser ranging*, IEEE TGRS 52 (2014)
+//! 7651–7657. Tumbling: Sommer and others, *Temporal analysis of Envisat's
+//! rotational motion*, JBIS 70 (2017) 45–51. The inertia that the data are made with is that of Bastida Virgili,
+//! Lemmens and Krag, *Investigation on Envisat attitude motion*, e.Deorbit Workshop, ESA (2014).
 //!
-//! **What is observable.** The equations J ω̇ + ω × Jω = 3n² ŷ × Jŷ are homogeneous in J: neither free tumbling nor the gradient of
-//! gravity tells the scale of the inertia, only its ratios. (A torque that is known and not proportional to J would: thrusters, a
-//! wheel.) So the trace is taken as known and five of the six entries are estimated, with attitude and angular velocity at the
-//! start; the scene claims that the sixth direction moves no attitude. The first guess of the ratios counts as known to a tenth of
-//! the trace, which settles what the shortest arcs leave open. In a steady rotation about a principal axis less is observable.
-//! Source: Sheinfeld and Rock, *Rigid body inertia estimation with applications to the capture of a tumbling satellite*,
-//! AAS 09-123 (2009).
+//! **Observability.** The equations J ω̇ + ω × Jω = 3n² ŷ × Jŷ are homogeneous in J. So neither free tumbling nor the
+//! gradient of gravity tells the scale of the inertia, only its ratios. (A torque that is known and not proportional to
+//! J would: thrusters, a wheel.) So the trace is taken as known. Five of the six entries are estimated, with attitude
+//! and angular velocity at the start. The scene claims that the sixth direction moves no attitude. The first guess of
+//! the ratios counts as known to a tenth of the trace. This settles the directions that the shortest arcs do not
+//! determine. In a steady rotation about a principal axis less is observable. Source: Sheinfeld and Rock, *Rigid body
+//! inertia estimation with applications to the capture of a tumbling satellite*, AAS 09-123 (2009).
 
 mod checks;
 mod estimator;

@@ -76,8 +76,8 @@ impl Measurements {
     }
 }
 
-/// π̇ = π × ω + 3n² ŷ × Jŷ, Ṙ = R ω̂, with ŷ = Rᵀ(cos nt, sin nt, 0) and π = Jω: the equations as the literature writes them, for
-/// y = (R by columns, π over tr J, t).
+/// π̇ = π × ω + 3n² ŷ × Jŷ, Ṙ = R ω̂, with ŷ = Rᵀ(cos nt, sin nt, 0) and π = Jω. These are the equations of the
+/// literature, for y = (R by columns, π over tr J, t).
 ///
 /// Source: Hughes, *Spacecraft Attitude Dynamics* (1986), §8.1.
 fn motion(start: &Start, rate: f64, schedule: &Schedule) -> (Vec<Matrix3<f64>>, f64) {

@@ -1,4 +1,4 @@
-//! Estimates beside the truth, with what the covariance says of them.
+//! Estimates next to the truth, with their uncertainty by the covariance.
 
 use crate::Spacecraft;
 use crate::estimator::{Estimator, normal_equations};
@@ -18,7 +18,7 @@ const LARGEST_BIAS: f64 = 0.5;
 const UNDETERMINED: f64 = 0.01;
 const ARCSECONDS: f64 = 3600.0 * 180.0 / std::f64::consts::PI;
 
-/// What the fit knows.
+/// The results of the fit.
 pub struct Report {
     fit: Fit,
     truth: Unknowns,
@@ -26,7 +26,7 @@ pub struct Report {
     information: SMatrix<f64, COUNT, COUNT>,
     /// (JᵀJ)⁻¹; `None` where that is singular.
     pub covariance: Option<SMatrix<f64, COUNT, COUNT>>,
-    /// What the fit makes of exact attitudes, to first order: only the steps' error.
+    /// The fit of exact attitudes, to first order: only the steps' error.
     bias: Unknowns,
     degrees_of_freedom: usize,
     trace: f64,

@@ -1,4 +1,4 @@
-//! What is estimated, and how the start of the motion depends on it.
+//! The unknowns that are estimated, and how the start of the motion depends on them.
 
 use crate::rotation::{exponential, logarithm, right_jacobian};
 use clebsch::Sensitivity;
@@ -10,8 +10,8 @@ pub const COUNT: usize = 11;
 /// How many of them are of the inertia; these come first.
 pub const OF_INERTIA: usize = 5;
 
-/// J₁₁, J₂₂, J₁₂, J₁₃, J₂₃ over the trace; the rotation vector a of the attitude R̄ exp(â) at the start, radians; the angular velocity
-/// there, body frame, rad/s.
+/// J₁₁, J₂₂, J₁₂, J₁₃, J₂₃ over the trace. Then the rotation vector a of the attitude R̄ exp(â) at the start, radians,
+/// and the angular velocity there, body frame, rad/s.
 pub type Unknowns = SVector<f64, COUNT>;
 
 /// A row of derivatives of something with three components with respect to the unknowns.
@@ -31,7 +31,7 @@ pub struct Start {
     pub spin: Vector3<f64>,
 }
 
-/// What is not estimated.
+/// The quantities that are not estimated.
 #[derive(Clone, Copy, Debug)]
 pub struct Chart {
     /// tr J, kg·m²: attitudes do not tell it.

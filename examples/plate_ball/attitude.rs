@@ -23,7 +23,8 @@ pub fn turned(rotation: &Matrix3<f64>) -> Vector3<f64> {
     twice_sine / half.max(1e-3)
 }
 
-/// The rotation by which a ball of this radius rolls a way on the table: about the horizontal axis to the left of it, by |way|/radius.
+/// The rotation by which a ball of this radius rolls a way on the table. Its axis is horizontal and to the left of the
+/// way, and its angle is |way|/radius.
 pub fn rolled(way: &nalgebra::Vector2<f64>, radius: f64) -> Matrix3<f64> {
     *Rotation3::from_scaled_axis(Vector3::new(-way.y, way.x, 0.0) / radius).matrix()
 }

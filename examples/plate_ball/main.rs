@@ -1,7 +1,8 @@
 //! A ball rolled between a table and a plate that moves: it comes back to where it was, and shows another side.
 //!
-//! Jurdjevic, *The geometry of the plate-ball problem* (1993): of all ways to do so those of least ½∫|u|²dt, u the velocity of the centre,
-//! let the point of contact run along an elastica. Radius r, no slipping, no spinning about the vertical.
+//! Jurdjevic, *The geometry of the plate-ball problem* (1993): of all such ways, those of least ½∫|u|²dt let the point
+//! of contact run along an elastica. Here u is the velocity of the centre. Radius r, no slipping, no spinning about the
+//! vertical.
 
 mod attitude;
 mod census;
@@ -54,7 +55,7 @@ pub struct Flags {
     #[arg(long, value_name = "X,Y", value_parser = finite_list::<2>, allow_hyphen_values = true)]
     #[arg(default_value = "0,0")]
     goal: [f64; 2],
-    /// By what it is turned there: axis, and angle in degrees
+    /// The rotation there: axis, and angle in degrees
     #[arg(long, value_name = "X,Y,Z,ANGLE", value_parser = attitude::parse, allow_hyphen_values = true)]
     #[arg(default_value = "0.48,0.6,0.64,90")]
     turn: Matrix3<f64>,
@@ -62,7 +63,7 @@ pub struct Flags {
     run: Run,
 }
 
-/// What is asked for.
+/// The task.
 #[derive(Clone, Copy, Debug)]
 pub struct Problem {
     /// r, m.

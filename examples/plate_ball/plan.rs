@@ -39,11 +39,11 @@ pub struct Plan {
     pub index: usize,
     /// Linearisations.
     pub iterations: u32,
-    /// What is left of the way to the goal.
+    /// The remaining way to the goal.
     pub gap: f64,
 }
 
-/// What is exact along a plan, and how far it is off; all relative.
+/// The exact properties of a plan, and how far it is off; all relative.
 #[derive(Clone, Copy, Debug)]
 pub struct Defects {
     /// Rolling without slipping or spinning, rad.
@@ -60,7 +60,7 @@ impl Problem {
     /// The plan of N steps near the inputs `guess`(t/T), t in the middle of a step.
     ///
     /// # Errors
-    /// What solving returns.
+    /// The errors of the solver.
     pub fn solve(&self, steps: u64, guess: impl Fn(f64) -> Vector2<f64>) -> Result<Plan, Error> {
         let control = Ball { radius: self.radius }.control(self.duration / steps as f64)?;
         let stage = |k: u64| control.stage(&self.start).with_input(guess((k as f64 + 0.5) / steps as f64));
@@ -98,7 +98,7 @@ impl Plan {
         self.path.len() - 1
     }
 
-    /// The input at a part of the whole time.
+    /// The input at a part of the time.
     pub fn input(&self, part: f64) -> Vector2<f64> {
         self.path[((part * self.steps() as f64) as usize).min(self.steps() - 1)].input
     }
@@ -108,7 +108,7 @@ impl Plan {
         self.path[..self.steps()].iter().map(|moment| moment.input.norm() * self.h).sum()
     }
 
-    /// What is exact.
+    /// The exact properties.
     pub fn defects(&self) -> Defects {
         let first = self.path[0];
         let size = first.costate.norm() + first.momentum.norm() / self.radius;
@@ -127,7 +127,7 @@ impl Plan {
         }
     }
 
-    /// How far u turns at each vertex from what the elastica's law h m₃/r² says, as a part of its largest turning.
+    /// How far the turning of u at each vertex is from the elastica's law h m₃/r², as a part of its largest turning.
     pub fn bending(&self) -> f64 {
         let law = |moment: &Moment| -moment.momentum.z / (self.radius * self.radius);
         let off = |pair: &[Moment]| {
@@ -138,8 +138,8 @@ impl Plan {
         largest(steps.windows(2).map(off)) / largest(steps.iter().map(|moment| law(moment).abs()))
     }
 
-    /// How far the plan is from what shooting with its costates at the start gives, as in [`apart`], and by how much a relative change of
-    /// those grows.
+    /// How far the plan is from shooting with its costates at the start, as in [`apart`]. The second number is the
+    /// growth of a relative change of these.
     pub fn off_shooting(&self) -> Option<(f64, f64)> {
         let first = self.path[0];
         let shoot = |start: &Moment| steps::shoot(start, self.radius, self.h, self.steps());

@@ -1,10 +1,12 @@
 //! The continuous extremals, which know nothing of steps or groups, by shooting.
 //!
-//! With the costates λ of the position and m of the attitude, in space, Pontryagin's principle gives u = λ + (m₂, −m₁)/r, and
+//! The costates in space are λ of the position and m of the attitude. Pontryagin's principle gives these equations, with
+//! u = λ + (m₂, −m₁)/r.
 //! ```text
 //! ẋ = u,   Ṙ = ω × R,   ṁ = ω × m   with   ω = (−u₂, u₁, 0)/r,   λ constant
 //! ```
-//! So u̇ = m₃/r² (u₂, −u₁) and ṁ₃ = λ × u: the speed is constant, and the curvature is an affine function of the position: an elastica.
+//! So u̇ = m₃/r² (u₂, −u₁) and ṁ₃ = λ × u. The speed is constant, and the curvature is an affine function of the position:
+//! an elastica.
 //! Source: Jurdjevic, *The geometry of the plate-ball problem*, Archive for Rational Mechanics and Analysis 124 (1993), 305–328.
 
 use crate::Problem;
@@ -33,8 +35,8 @@ pub struct Shot {
     pub price: f64,
     /// How far the way may be off, in radii and rad.
     pub error: f64,
-    /// Whether no others are as near as one likes: those of a goal above the start that is turned about the vertical can be turned, those of
-    /// a goal that is not turned can be shifted along their tracks, which are periodic.
+    /// Whether no others are arbitrarily near. Those of a goal above the start that is turned about the vertical can be
+    /// turned. Those of a goal that is not turned can be shifted along their tracks, which are periodic.
     pub is_isolated: bool,
 }
 
@@ -89,7 +91,7 @@ fn input(costate: &Costate, momentum: &Vector3<f64>) -> Vector2<f64> {
     Vector2::new(costate[0] + momentum.y, costate[1] - momentum.x)
 }
 
-/// The motion later by a part of the time, and what integration has made wrong.
+/// The motion later by a part of the time, and the error of integration.
 fn after(costate: &Costate, motion: &Motion, part: f64) -> (Motion, f64) {
     let field = |y: &SVector<f64, 14>| {
         let motion = unpack(y);
@@ -103,7 +105,7 @@ fn after(costate: &Costate, motion: &Motion, part: f64) -> (Motion, f64) {
     (unpack(&end), error)
 }
 
-/// What is left to the goal, in radii and rad.
+/// The distance to the goal, in radii and rad.
 fn left(problem: &Problem, costate: &Costate) -> (SVector<f64, 5>, f64) {
     let (end, error) = after(costate, &start(problem, costate), 1.0);
     let way = end.position - problem.goal.0 / problem.radius;

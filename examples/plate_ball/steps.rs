@@ -1,13 +1,13 @@
-//! The equations of first order of the steps, derived by hand: shooting with them is compared with what was solved.
+//! The equations of first order of the steps, derived by hand: shooting with them is compared with the solution.
 //!
-//! In a step of constant input the ball rolls straight, the costate m turns with it, and that the price does not change to first order
-//! means u = λ + (m̄₂, −m̄₁)/r, m̄ the mean of m over the step.
+//! In a step of constant input the ball rolls straight, and the costate m turns with it. The price does not change to
+//! first order if u = λ + (m̄₂, −m̄₁)/r, with the mean m̄ of m over the step.
 
 use crate::attitude::rolled;
 use crate::plan::Moment;
 use nalgebra::{Vector2, Vector3};
 
-/// Sweeps for the input of a step, each of which divides the error by some 1/h.
+/// Sweeps for the input of a step; each divides the error by some 1/h.
 const SWEEPS: usize = 200;
 
 /// The places, costates and inputs of N steps; `None` where the sweeps do not end: too long a step.

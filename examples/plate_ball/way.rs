@@ -1,4 +1,4 @@
-//! Ways to roll the ball to the goal: plans from many guesses, each beside the continuous extremal.
+//! Ways to roll the ball to the goal: plans from many guesses, each next to the continuous extremal.
 
 use crate::Problem;
 use crate::plan::{Moment, Plan};
@@ -15,11 +15,11 @@ use std::f64::consts::TAU;
 
 /// Directions in which guesses set out.
 const DIRECTIONS: u32 = 8;
-/// Turns that they make, with the speed in radii in the whole time.
+/// Turns that they make, with the speed in radii per duration.
 const CIRCLES: [(f64, f64); 4] = [(1.0, 4.0), (-1.0, 4.0), (0.5, 6.0), (-0.5, 6.0)];
 /// Prices that differ by less, relative, are those of the same way or of its mirror image.
 const SAME: f64 = 1e-7;
-/// What may be left of conditions of first order where extremals form a family, relative.
+/// The tolerance of conditions of first order where extremals form a family, relative.
 const FAMILY: f64 = 1e-6;
 /// Ways that are looked at more closely.
 pub const SHOWN: usize = 4;

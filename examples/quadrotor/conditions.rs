@@ -1,7 +1,8 @@
-//! First-order conditions of the plan by differences of whole flights: no derivative of the macro, no costate.
+//! First-order conditions of the plan by differences of complete flights: no derivative of the macro, no costate.
 //!
-//! A plan is critical where the slope g of the effort along thrusts that are not held back is a combination −Aᵀλ of the slopes A of the
-//! end, and at a bound g + Aᵀλ is against leaving it; its size is the multiplier of the bound.
+//! The slope g of the effort is taken along thrusts that no bound limits. A plan is critical where g is a combination
+//! −Aᵀλ of the slopes A of the end. At a bound g + Aᵀλ is against leaving it, and its size is the multiplier of the
+//! bound.
 
 use super::declaration::{Place, Steering};
 use super::place::{attitude, position, turned};
@@ -13,10 +14,10 @@ use nalgebra::{SMatrix, SVector};
 /// Differences of thrusts, in units of the thrust at hover.
 const DIFFERENCE: f64 = 1e-4;
 
-/// What was found.
+/// The results.
 #[derive(Clone, Copy, Debug)]
 pub struct Conditions {
-    /// The largest entry of g + Aᵀλ where nothing is held back, in units of the largest of g.
+    /// The largest entry of g + Aᵀλ where no bound is active, in units of the largest of g.
     pub residual: f64,
     /// The largest difference of a multiplier from the plan's, in units of the largest.
     pub multipliers: f64,
@@ -88,7 +89,7 @@ fn end(steering: &Steering, plan: &Plan, from: usize, rotor: usize, by: f64) -> 
     Ok(place)
 }
 
-/// What separates an end from that of the plan.
+/// The difference of an end from that of the plan.
 fn off(plan: &Plan, end: &Place) -> SVector<f64, 12> {
     let (turned, moved) = (turned(&attitude(&plan.end), &attitude(end)), position(end) - position(&plan.end));
     let mut off = SVector::<f64, 12>::zeros();

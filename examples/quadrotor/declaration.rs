@@ -1,7 +1,7 @@
 //! The quadrotor as the macro is given it.
 //!
-//! On SE(3) the cost of Moser and Veselov, written out, keeps the derivatives of a step at 2600 operations; the Lagrangian by Cayley's map of
-//! SE(3) would need more than the 20000 that are unrolled.
+//! On SE(3) the unrolled cost of Moser and Veselov limits the derivatives of a step to 2600 operations. The Lagrangian
+//! by Cayley's map of SE(3) would need more than the 20000 that are unrolled.
 
 use clebsch::Clebsch;
 use nalgebra::{Matrix4, Vector4, Vector6};

@@ -11,7 +11,7 @@ use clebsch_examples::scene::Failure;
 use clebsch_examples::table::Table;
 use nalgebra::{Rotation3, Vector3};
 
-/// What is not as planned.
+/// The deviation from the plan.
 #[derive(Clone, Copy, Debug)]
 pub struct Surprise {
     name: &'static str,
@@ -113,7 +113,7 @@ pub fn table(pairs: &[Pair]) -> Table<7> {
     table
 }
 
-/// Claims what feedback is worth.
+/// Claims the benefit of feedback.
 pub fn claim([planned, gust, heavier]: &[Pair; 3], claims: &mut Claims) {
     claims.at_most("flown as planned, with gains", planned.closed.distance(), 1e-9, "m, nothing to correct");
     for (name, pair) in [("feedback corrects a gust", gust), ("feedback corrects the mass", heavier)] {

@@ -1,15 +1,16 @@
-//! A quadrotor flies from hovering at one place to hovering at another in less than a second, at least effort: ½ ∫ Σ (u/u₀ − 1)² dt of the
-//! thrusts u of its rotors, u₀ that at hover. No rotor pushes downwards or more than it can: it has to lean, to stand nearly on its edge,
-//! and to catch itself. Six degrees of freedom, four inputs: Lee, Leok and McClamroch, *Geometric tracking control of a quadrotor UAV on SE(3)*
-//! (2010). The vehicle is the Crazyflie 2.0; sources are in `vehicle`. Drag, wake and the delay of the motors are left out.
+//! A quadrotor flies from hovering at one place to hovering at another in less than a second, at least effort. The
+//! effort is ½ ∫ Σ (u/u₀ − 1)² dt of the thrusts u of its rotors, with u₀ the thrust at hover. No rotor pushes
+//! downwards or more than it can: it has to lean, to stand nearly on its edge, and to catch itself. Six degrees of
+//! freedom, four inputs: Lee, Leok and McClamroch, *Geometric tracking control of a quadrotor UAV on SE(3)* (2010). The
+//! vehicle is the Crazyflie 2.0; sources are in `vehicle`. Drag, wake and the delay of the motors are left out.
 //!
 //! | file | its job |
 //! |---|---|
 //! | `declaration` | the quadrotor, as the macro is given it |
-//! | `vehicle`, `place`, `problem` | numbers, poses, what is asked |
+//! | `vehicle`, `place`, `problem` | numbers, poses, the task |
 //! | `plan` | plans of the steps |
-//! | `conditions` | their first-order conditions by differences of whole flights |
-//! | `pontryagin`, `refinement` | plans of the continuous problem, beside those of the steps |
+//! | `conditions` | their first-order conditions by differences of complete flights |
+//! | `pontryagin`, `refinement` | plans of the continuous problem, next to those of the steps |
 //! | `flight` | plans flown in a gust and with another mass, with feedback and without |
 //! | `figure` | drawn |
 
@@ -110,7 +111,7 @@ fn table(plan: &Plan) -> Table<6> {
     table
 }
 
-/// What holds for the steps themselves.
+/// The properties of the steps themselves.
 fn claim(problem: &Problem, plan: &Plan, claims: &mut Claims) -> Result<(), Failure> {
     let (hover, top) = (problem.vehicle.hover(), problem.vehicle.top);
     claims.round_off("it arrives and hovers", plan.gap, problem.steps, 1.0);

@@ -19,7 +19,7 @@ pub struct Plan {
     pub effort: f64,
     /// Linearisations.
     pub iterations: u32,
-    /// What first-order conditions leave, s/N.
+    /// The residual of first-order conditions, s/N.
     pub residual: f64,
     /// Morse index.
     pub index: usize,
@@ -31,7 +31,7 @@ impl Plan {
     /// The plan near hovering, of N · `finer` steps.
     ///
     /// # Errors
-    /// What solving returns.
+    /// The errors of the solver.
     pub fn solve(problem: &Problem, finer: u64) -> Result<Self, Failure> {
         let steering = problem.steering(finer)?;
         let hover = Thrusts::repeat(problem.vehicle.hover());
@@ -63,7 +63,7 @@ impl Plan {
         })
     }
 
-    /// How many thrusts, one for each rotor and step, are held back.
+    /// How many thrusts, one for each rotor and step, are at a bound.
     pub fn held_back(&self) -> usize {
         self.held().flatten().filter(|&side| side != 0).count()
     }
@@ -73,8 +73,9 @@ impl Plan {
         self.stages.iter().map(|stage| stage.multipliers().min()).fold(f64::INFINITY, f64::min)
     }
 
-    /// By how much two costates move that no step changes, as prices do not change where all places are shifted alike or turned about the
-    /// vertical: R p of the position, and the third entry of R p of the attitude + x × that; and the largest of both.
+    /// By how much two costates move that no step changes, and the largest of both. The reason is that prices do not
+    /// change where all places are shifted alike or turned about the vertical. They are R p of the position, and the
+    /// third entry of R p of the attitude + x × that.
     pub fn symmetry(&self) -> ([f64; 2], [f64; 2]) {
         let seen = |stage: &Stage| {
             let (attitude, p) = (attitude(stage.place()), stage.costate());

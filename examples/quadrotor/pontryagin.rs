@@ -1,8 +1,9 @@
 //! The continuous problem by Pontryagin's conditions: nothing here is derived by the macro, and velocities are those in space.
 //!
-//! Ṙ = R ω̂, ẋ = v, v̇ = (Σu/m) R e₃ − g e₃, π̇ = π × ω + Σ uᵢτᵢ with ω = J⁻¹π. The costates a of x, b of v, c of R and ν of π obey ȧ = 0,
-//! ḃ = −a, ċ = c × ω − (Σu/m) e₃ × Rᵀb, ν̇ = ν × ω − J⁻¹(c + ν × π), and uᵢ = u₀ − u₀² (b·R e₃/m + ν·τᵢ), cut off at the bounds, makes the
-//! Hamiltonian least; u₀ is the thrust at hover. Units: SI, but for the time, of which the whole is 1.
+//! Ṙ = R ω̂, ẋ = v, v̇ = (Σu/m) R e₃ − g e₃, π̇ = π × ω + Σ uᵢτᵢ with ω = J⁻¹π. The costates a of x, b of v, c of R and
+//! ν of π obey ȧ = 0, ḃ = −a and the following equations. ċ = c × ω − (Σu/m) e₃ × Rᵀb, ν̇ = ν × ω − J⁻¹(c + ν × π). The
+//! Hamiltonian is least for uᵢ = u₀ − u₀² (b·R e₃/m + ν·τᵢ), cut off at the bounds. Here u₀ is the thrust at hover.
+//! Units: SI, but the duration is 1.
 //!
 //! Errors grow a hundred thousandfold from one end to the other: shots are made from the middle to both ends.
 
@@ -43,7 +44,7 @@ fn part(y: &Packed, row: usize) -> Vector3<f64> {
     y.fixed_rows::<3>(row).into()
 }
 
-/// What separates motion and place: angle, rad, distance, m, velocity, m/s, and angular momentum, N·m·s.
+/// The difference between motion and place: angle, rad, distance, m, velocity, m/s, and angular momentum, N·m·s.
 pub fn apart(motion: &Motion, place: &Place, mass: f64) -> [Vector3<f64>; 4] {
     let turned = turned(&attitude(place), &Matrix3::from_column_slice(&motion.y.as_slice()[..9]));
     let (x, v, pi) = (part(&motion.y, 9), part(&motion.y, 12), part(&motion.y, 15));
@@ -61,7 +62,7 @@ impl Extremals {
         Self { vehicle, inverse_inertia, torques, start, goal, attitude, middle, steps, duration }
     }
 
-    /// The extremal from hovering to hovering near a plan, at half steps, its effort, and how far it may be off; `None` where
+    /// The extremal from hovering to hovering near a plan, at half steps, its effort, and its error bound. `None` where
     /// corrections do not end.
     pub fn aim(&self, near: &Plan) -> Option<(Vec<Motion>, f64, f64)> {
         let stage = near.stages.get(self.middle as usize)?;

@@ -1,4 +1,4 @@
-//! Two hovering places and a time: what every flight is asked.
+//! Two hovering places and a time: the task of every flight.
 
 use super::declaration::{Place, Steering};
 use super::place::hovering;
@@ -11,7 +11,7 @@ use nalgebra::Vector3;
 /// A quadrotor that has to go somewhere.
 #[derive(Clone, Copy, Debug)]
 pub struct Problem {
-    /// What flies.
+    /// The vehicle that flies.
     pub vehicle: Vehicle,
     /// Hovering at the origin.
     pub start: Place,

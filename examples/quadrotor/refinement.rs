@@ -1,4 +1,4 @@
-//! Plans with h, h/2 and h/4 beside the continuous one.
+//! Plans with h, h/2 and h/4 next to the continuous one.
 
 use super::plan::Plan;
 use super::pontryagin::{Extremals, Motion, apart};
@@ -10,7 +10,7 @@ use clebsch_examples::scene::Failure;
 use clebsch_examples::table::Table;
 use std::fmt::{self, Display, Formatter};
 
-/// What is compared: the unit of each is the largest on the way.
+/// The quantities that are compared: the unit of each is the largest on the way.
 const NAMES: [&str; 5] = ["attitudes, rad", "positions", "velocities", "angular momenta", "effort"];
 
 /// How far a slope may be from the order where bounds are reached on the way.
@@ -21,7 +21,7 @@ const SLOPE: f64 = 0.25;
 pub struct Refinement {
     /// s, by shooting.
     effort: f64,
-    /// At half steps: where the continuous thrusts are held back.
+    /// At half steps: where the continuous thrusts are at a bound.
     path: Vec<Motion>,
     rows: [(&'static str, Convergence); 5],
 }
@@ -30,7 +30,7 @@ impl Refinement {
     /// Shoots from the place and the costates in the middle of the plan, which are all that is taken from it, and refines.
     ///
     /// # Errors
-    /// What solving returns, and shots that do not arrive.
+    /// The errors of the solver, and shots that do not arrive.
     pub fn new(problem: &Problem, plan: &Plan) -> Result<Self, Failure> {
         let (extremals, mass) = (Extremals::new(problem), problem.vehicle.mass);
         let plans = [plan.clone(), Plan::solve(problem, 2)?, Plan::solve(problem, 4)?];
@@ -56,7 +56,7 @@ impl Refinement {
         self.path.last().map_or(0, |end| end.switches) + self.path.first().map_or(0, |start| start.switches)
     }
 
-    /// Claims second order, and that the same thrusts are held back.
+    /// Claims second order, and that the same thrusts are at a bound.
     pub fn claim(&self, plan: &Plan, claims: &mut Claims) {
         let [places @ .., (_, effort)] = &self.rows;
         effort.claim(Order::Second, "the order: effort", claims);

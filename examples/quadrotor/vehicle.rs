@@ -1,5 +1,6 @@
-//! The Crazyflie 2.0, as identified by Förster, *System Identification of the Crazyflie 2.0 Nano Quadrocopter*, ETH Zürich (2015): mass,
-//! inertia tensor, thrust of a rotor at full command (its quadratic in the command, at 65535), and torque per thrust.
+//! The Crazyflie 2.0, as identified by Förster, *System Identification of the Crazyflie 2.0 Nano Quadrocopter*, ETH
+//! Zürich (2015). The data are mass, inertia tensor, thrust of a rotor at full command (its quadratic in the command,
+//! at 65535), and torque per thrust.
 
 use super::declaration::{Quadrotor, Thrusts};
 use crate::Flags;
@@ -63,7 +64,7 @@ impl Vehicle {
         RADIUS / 2.0_f64.sqrt()
     }
 
-    /// What is declared.
+    /// The declaration.
     pub fn system(&self) -> Quadrotor {
         let mut mass_matrix = Matrix4::zeros();
         let second = Matrix3::identity() * (self.inertia.trace() / 2.0) - self.inertia;

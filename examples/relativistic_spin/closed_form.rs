@@ -5,8 +5,9 @@ use nalgebra::{Matrix4, SVector, Vector4};
 
 /// A frame with a charge at rest in it, in a constant field.
 ///
-/// The frame turns with κ (𝓕′ + a 𝓑′), 𝓕′ the field that it sees and 𝓑′ the magnetic part of that. For a = 0 it is carried by one
-/// exponential, and sees the same field for ever; the rest is a rotation about the magnetic field that is seen at the start:
+/// The frame turns with κ (𝓕′ + a 𝓑′), 𝓕′ the field that it sees and 𝓑′ the magnetic part of that. For a = 0 it is
+/// carried by one exponential, and sees the same field for ever. The other factor is a rotation about the magnetic
+/// field that is seen at the start:
 /// ```text
 /// Λ(τ) = exp(κτ 𝓕) Λ(0) exp(κaτ 𝓑′(0))
 /// ```
@@ -37,7 +38,7 @@ impl ClosedForm {
         self.charge_to_mass * (self.field.tensor().norm() + (self.anomaly * seen.magnetic.norm()).abs())
     }
 
-    /// The equation of Bargmann, Michel and Telegdi for a velocity u and a spin s, one after the other:
+    /// The equation of Bargmann, Michel and Telegdi for a velocity u and a spin s, one after the other.
     /// ```text
     /// du/dτ = κ 𝓕u,   ds/dτ = κ ((1 + a) 𝓕s + a (s·𝓕u) u)
     /// ```

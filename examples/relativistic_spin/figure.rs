@@ -1,4 +1,4 @@
-//! The spin as the momentum sees it, and what rounding does.
+//! The spin as the momentum sees it, and the effect of rounding.
 
 use crate::watch::{Sample, Watch};
 use crate::{Flags, SCENE};

@@ -1,8 +1,9 @@
 //! A charge with a spin in constant fields: the frame that it carries through spacetime, by steps of the Lorentz group.
 //!
-//! The equation of Bargmann, Michel and Telegdi is that of a free rigid body whose rotations are those of spacetime: its body
-//! momentum is the electromagnetic field that the particle sees, its spatial momentum the field of the laboratory, which is
-//! constant, and its inertia is 1/κ against boosts and 1/(κ(1 + a)) against rotations, κ = e/m and a = (g − 2)/2.
+//! The equation of Bargmann, Michel and Telegdi is that of a free rigid body whose rotations are those of spacetime.
+//! Its body momentum is the electromagnetic field that the particle sees. Its spatial momentum is the field of the
+//! laboratory, which is constant. Its inertia is 1/κ against boosts and 1/(κ(1 + a)) against rotations, with κ = e/m
+//! and a = (g − 2)/2.
 //!
 //! Sources: Bargmann, Michel and Telegdi (1959); muon ring of Brookhaven: Bennett et al., Physical Review Letters 92, 161802 (2004).
 
@@ -29,9 +30,9 @@ use watch::Watch;
 
 /// The frame of a charge with a spin, its group declared by an equation.
 ///
-/// The Hessian of the cost is indefinite, −`boosting` three times and `turning` three times: the energy does not bound the
-/// frame, which an electric field drives off exponentially; solutions between fixed ends are stationary and no minima; and of the
-/// length of a step only rotations are bounded (sin θ ≤ 1), boosts are not (sinh).
+/// The Hessian of the cost is indefinite, −`boosting` three times and `turning` three times. So the energy does not
+/// bound the frame, which an electric field drives off exponentially. Solutions between fixed ends are stationary and
+/// no minima. The length of a step is bounded only for rotations (sin θ ≤ 1), not for boosts (sinh).
 #[derive(Clebsch, Clone, Debug)]
 #[clebsch(
     group Lorentz = |F: Matrix4| {
@@ -79,7 +80,7 @@ struct Flags {
     #[arg(long, value_name = "X,Y,Z", value_parser = finite_list::<3>, allow_hyphen_values = true)]
     #[arg(default_value = "3.094,0,0")]
     momentum: [f64; 3],
-    /// Direction of the spin at the start, in the rest frame
+    /// Direction of the spin at the start, in the frame of the particle at rest
     #[arg(long, value_name = "X,Y,Z", value_parser = finite_list::<3>, allow_hyphen_values = true)]
     #[arg(default_value = "1,0,0")]
     spin: [f64; 3],
@@ -193,7 +194,7 @@ fn claim_equation(flags: &Flags, exact: &ClosedForm, spin: &Vector3<f64>, claims
     let name = "velocity and spin by the equation of Bargmann, Michel and Telegdi";
     let time = flags.run.time(flags.run.steps.min(COMPARED));
     let (start, end) = (exact.start, exact.frame(time));
-    // what magnifies an error of the reference
+    // the factor by which an error of the reference grows
     let stretch = start.norm() * end.norm();
     if stretch.is_nan() || stretch > LONGEST {
         return claims.skip(name, &format!("frames that reach {stretch:.0e}: its s·𝓕u is lost to cancellation"));

@@ -1,4 +1,4 @@
-//! Motion across a magnetic field: the angle between spin and momentum, and what was measured of it.
+//! Motion across a magnetic field: the angle between spin and momentum, and its measured value.
 
 use crate::closed_form::ClosedForm;
 use crate::field::{at_rest, momentum};
@@ -11,8 +11,8 @@ use std::f64::consts::TAU;
 
 /// ω_a/2π of the negative muon in 2001, Hz, and its standard error of 0.7 parts per million.
 ///
-/// Over 61 791 400 Hz, the precession of protons in the same field, it is R = 0.003 707 208 3; with the ratio of the magnetic moments
-/// of muon and proton, λ = 3.183 345 4, that is the published a = R/(λ − R) = 0.001 165 921 4.
+/// Over 61 791 400 Hz, the precession of protons in the same field, it is R = 0.003 707 208 3. The ratio of the
+/// magnetic moments of muon and proton is λ = 3.183 345 4. The published value is then a = R/(λ − R) = 0.001 165 921 4.
 const MEASURED: (f64, f64) = (229_073.59, 0.16);
 
 /// An angle that does not jump.

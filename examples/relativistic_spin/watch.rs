@@ -1,4 +1,4 @@
-//! What is kept of the motion while it runs, and what is claimed of it.
+//! The record of the motion while it runs, and the claims about it.
 
 use crate::Flags;
 use crate::closed_form::ClosedForm;
@@ -22,7 +22,7 @@ pub struct Sample {
     pub time: f64,
     /// Time of the laboratory, µs.
     pub laboratory: f64,
-    /// The spin at rest along the momentum, across it, and along what is left of the magnetic field.
+    /// The spin at rest along the momentum, across it, and along the other part of the magnetic field.
     pub spin: [f64; 3],
     /// The defect of the frame over |q|², and the change of the field of the laboratory over |q|² |𝓕|.
     pub defects: [f64; 2],
@@ -108,7 +108,7 @@ impl Watch {
         self.keep(step, q, defects, laboratory);
     }
 
-    /// Keeps what the table and the figure show.
+    /// Records the data of the table and the figure.
     fn keep(&mut self, step: u64, q: &Matrix4<f64>, defects: [f64; 2], field_change: f64) {
         let (time, gamma) = (self.run.time(step), q[(0, 0)]);
         if step > 0 {
@@ -139,7 +139,7 @@ impl Watch {
         [s.dot(&first), s.dot(&third.cross(&first)), s.dot(&third)]
     }
 
-    /// Claims the group, the conserved momenta and what follows from them.
+    /// Claims the group, the conserved momenta and their consequences.
     pub fn claim(&self, claims: &mut Claims) {
         let (stretch, seen) = (self.stretch, self.seen);
         self.claim_frame("q η qᵀ = η: the frame stays a frame", self.frame_defect, stretch, 1.0, claims);
@@ -154,7 +154,8 @@ impl Watch {
         }
     }
 
-    /// A claim about the laboratory, where rounding grows like γ², unless that is more than what is rounded.
+    /// A claim about the laboratory, where rounding grows like γ², unless that is more than the quantity that is
+    /// rounded.
     fn claim_frame(&self, name: &str, defect: f64, scale: f64, size: f64, claims: &mut Claims) {
         let steps = self.run.steps;
         if size > 0.0 && round_off::worst_case(steps, scale) > size {

@@ -1,4 +1,4 @@
-//! The body momentum on its two spheres, and what the steps conserve.
+//! The body momentum on its two spheres, and the conserved quantities of the steps.
 
 use crate::watch::Watch;
 use crate::{Flags, SCENE};
@@ -6,7 +6,8 @@ use clebsch_examples::figure::{self, Area, BLUE, Drawn, GREEN, Globe, INK, ORANG
 use clebsch_examples::figure::{Series, Track, View};
 use clebsch_examples::scene::Failure;
 
-/// Above the directions of the two halves of M, which are vectors of constant length; below the changes of what is conserved.
+/// Above the directions of the two halves of M, which are vectors of constant length; below the changes of the
+/// conserved quantities.
 pub fn draw(flags: &Flags, watch: &Watch) -> Result<(), Failure> {
     figure::draw(&flags.run, SCENE.name, (1000, 680), |area| {
         let (above, below) = figure::rows(area, 460.0);

@@ -1,4 +1,4 @@
-//! What the generalised rigid body conserves.
+//! The conserved quantities of the generalised rigid body.
 
 use nalgebra::Matrix4;
 
@@ -19,7 +19,7 @@ pub fn skew(entries: &[f64; 6]) -> Matrix4<f64> {
 
 /// Functions of the body momentum M that every step conserves exactly.
 ///
-/// The eigenvalues of F J_d are constant, and they are roots of det(λ² − λ h M − J_d²), so that the coefficients of this
+/// The eigenvalues of F J_d are constant, and they are roots of det(λ² − λ h M − J_d²). So the coefficients of this
 /// polynomial in λ are constant too. With m_ij the entries of M, (k, l) the plane perpendicular to (i, j) and d = J_d²:
 #[derive(Clone, Copy, Debug)]
 pub struct Invariants {

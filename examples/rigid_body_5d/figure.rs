@@ -1,11 +1,11 @@
-//! The body momentum, and what the steps conserve.
+//! The body momentum, and the conserved quantities of the steps.
 
 use crate::watch::Watch;
 use crate::{Flags, SCENE};
 use clebsch_examples::figure::{self, BLUE, GREEN, ORANGE, Panel, RED, Series, along};
 use clebsch_examples::scene::Failure;
 
-/// Above the ten entries of M at the beginning; below the changes of what is conserved over the whole run.
+/// Above the ten entries of M at the beginning; below the changes of the conserved quantities over the run.
 pub fn draw(flags: &Flags, watch: &Watch) -> Result<(), Failure> {
     figure::draw(&flags.run, SCENE.name, (1000, 620), |area| {
         let title = "A free rigid body on SO(5): the ten entries of its momentum in the body frame";

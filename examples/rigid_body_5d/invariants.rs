@@ -1,4 +1,4 @@
-//! What the free body on SO(5) conserves.
+//! The conserved quantities of the free body on SO(5).
 
 use nalgebra::Matrix5;
 
@@ -28,13 +28,14 @@ pub fn skew(entries: &[f64; 10]) -> Matrix5<f64> {
 
 /// Manakov's integrals: the coefficients of det(z + M + s D), D = J_d², that are not constant by themselves.
 ///
-/// The step factors I + λ h M − λ² D into (F − λ J_d)(Fᵀ + λ J_d) and multiplies in the other order, a similarity: every
-/// coefficient of det(z + λ h M − λ² D) in z and λ is kept, and with them the integrals of the continuous body, one by one.
-/// For M + s D, skew plus diagonal, that determinant is a sum over the sets of planes that do not meet:
+/// The step factors I + λ h M − λ² D into (F − λ J_d)(Fᵀ + λ J_d) and multiplies in the other order, a similarity. So
+/// every coefficient of det(z + λ h M − λ² D) in z and λ is conserved. With them the integrals of the continuous body
+/// are conserved, one by one. For M + s D, skew plus diagonal, that determinant is a sum over the sets of planes that
+/// do not meet.
 /// ```text
 /// Π (z + s d_k) + Σ_ij m_ij² Π_{k ≠ i,j} (z + s d_k) + Σ_k P_k² (z + s d_k)
 /// ```
-/// with P_k the Pfaffian of M without its row and column k. Source: Manakov (1976); Moser and Veselov (1991), §1.4.
+/// P_k is the Pfaffian of M without its row and column k. Source: Manakov (1976); Moser and Veselov (1991), §1.4.
 pub fn integrals(m: &Matrix5<f64>, j_d: &[f64; 5]) -> [f64; 6] {
     let d = j_d.map(|entry| entry * entry);
     let mut sums = [0.0; 6];
@@ -55,8 +56,8 @@ pub fn integrals(m: &Matrix5<f64>, j_d: &[f64; 5]) -> [f64; 6] {
 
 /// By how much relative errors of size one in M move the [`integrals`].
 ///
-/// Σ w m² moves by 2 max|w| Σ m² at most; Σ P_k² is (ab)² for rates a, b with a² + b² = Σ m², at most (Σ m²)²/4, and of the
-/// fourth degree.
+/// Σ w m² moves by 2 max|w| Σ m² at most. Σ P_k² is (ab)² for rates a, b with a² + b² = Σ m². It is at most (Σ m²)²/4,
+/// and of the fourth degree.
 pub fn scales(m: &Matrix5<f64>, j_d: &[f64; 5]) -> [f64; 6] {
     let d = j_d.map(|entry| entry * entry);
     let largest = |weight: fn([f64; 3]) -> f64| {
@@ -87,8 +88,8 @@ fn pfaffian(m: &Matrix5<f64>, k: usize) -> f64 {
     m[(a, b)] * m[(c, d)] - m[(a, c)] * m[(b, d)] + m[(a, d)] * m[(b, c)]
 }
 
-/// tr Aᵏ for k = 1, 2, 3, 4, A = F J_d: the eigenvalues of A are roots of det(λ² − λ h M − J_d²), the same at every step. The
-/// fifth function of them, det A = det J_d, is constant in any case.
+/// tr Aᵏ for k = 1, 2, 3, 4, with A = F J_d. The eigenvalues of A are roots of det(λ² − λ h M − J_d²), the same at
+/// every step. The fifth function of them, det A = det J_d, is constant in any case.
 pub fn traces(f: &Matrix5<f64>, j_d: &[f64; 5]) -> [f64; 4] {
     let a = f * Matrix5::from_diagonal(&(*j_d).into());
     let square = a * a;

@@ -1,6 +1,6 @@
 //! The free rigid body of Moser and Veselov on SO(5): ten unknowns a step, integrable, and the step keeps every integral.
 //!
-//! Sources: Moser and Veselov, *Discrete versions of some classical integrable systems* (1991); Manakov, *Note on the
+//! Sources: Moser and Veselov, *Discrete versions of some classical integrable systems* (1991). Manakov, *Note on the
 //! integration of Euler's equations of the dynamics of an n-dimensional rigid body* (1976).
 
 mod euler;

@@ -1,4 +1,4 @@
-//! The body momentum, and what the steps conserve.
+//! The body momentum, and the conserved quantities of the steps.
 
 use crate::SCENE;
 use crate::start::planes;
@@ -8,7 +8,7 @@ use clebsch_examples::figure::{self, BLUE, GREEN, ORANGE, Panel, RED, Series, al
 use clebsch_examples::flags::Run;
 use clebsch_examples::scene::Failure;
 
-/// Above the entries of M at the beginning; below the changes of what is conserved over the whole run.
+/// Above the entries of M at the beginning; below the changes of the conserved quantities over the run.
 pub fn draw<const N: usize>(run: &Run, watch: &Watch<N>) -> Result<(), Failure> {
     figure::draw(run, SCENE.name, (1000, 620), |area| {
         let entries = planes(N).count();

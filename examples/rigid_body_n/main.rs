@@ -1,7 +1,7 @@
-//! The free rigid body of Moser and Veselov in five to ten dimensions: up to 45 components of the momentum, and the step keeps all of
-//! Manakov's integrals.
+//! The free rigid body of Moser and Veselov in five to ten dimensions, with up to 45 components of the momentum. The
+//! step conserves all of Manakov's integrals.
 //!
-//! Sources: Moser and Veselov, *Discrete versions of some classical integrable systems* (1991); Manakov, *Note on the
+//! Sources: Moser and Veselov, *Discrete versions of some classical integrable systems* (1991). Manakov, *Note on the
 //! integration of Euler's equations of the dynamics of an n-dimensional rigid body* (1976).
 
 mod bodies;

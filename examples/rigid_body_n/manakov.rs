@@ -1,19 +1,19 @@
 //! Manakov's integrals of the free body in n dimensions.
 //!
-//! Sources: Manakov, *Note on the integration of Euler's equations of the dynamics of an n-dimensional rigid body* (1976); Moser and
-//! Veselov, *Discrete versions of some classical integrable systems* (1991), §1.4; that ⌊n²/4⌋ of them are independent: Mishchenko and
-//! Fomenko, *Euler equations on finite-dimensional Lie groups* (1978).
+//! Sources: Manakov, *Note on the integration of Euler's equations of the dynamics of an n-dimensional rigid body*
+//! (1976). Moser and Veselov, *Discrete versions of some classical integrable systems* (1991), §1.4. That ⌊n²/4⌋ of
+//! them are independent: Mishchenko and Fomenko, *Euler equations on finite-dimensional Lie groups* (1978).
 
 use nalgebra::{SMatrix, SVector};
 
 /// Coefficients of a polynomial in s, the constant one first.
 type Polynomial<const N: usize> = Vec<SMatrix<f64, N, N>>;
 
-/// One integral: what stands at s^(k − degree) in tr(M + sD)^k, D = J_d².
+/// One integral: the coefficient of s^(k − degree) in tr(M + sD)^k, D = J_d².
 ///
-/// The step factors I + λ h M − λ² D into (F − λ J_d)(Fᵀ + λ J_d) and multiplies in the other order, a similarity: every coefficient
-/// of tr(λ h M − λ² D)^k in λ is kept, and with s = −λ/h those of tr(M + sD)^k. Those of odd degree in M vanish, as the trace of a
-/// product is that of its transpose.
+/// The step factors I + λ h M − λ² D into (F − λ J_d)(Fᵀ + λ J_d) and multiplies in the other order, a similarity. So
+/// every coefficient of tr(λ h M − λ² D)^k in λ is conserved, and with s = −λ/h those of tr(M + sD)^k. Those of odd
+/// degree in M vanish, as the trace of a product is that of its transpose.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Integral {
     /// The power k, from 2 to n: higher ones follow from these by Cayley and Hamilton.
@@ -43,8 +43,8 @@ pub fn values<const N: usize>(integrals: &[Integral], m: &SMatrix<f64, N, N>, d:
 
 /// By how much relative errors of size one in M move them, at most.
 ///
-/// The coefficient is a sum over the words of k letters, `degree` of them M, each at most |M|² ‖M‖^(degree − 2) ‖D‖^(k − degree), the
-/// first norm of Frobenius. The step keeps the norms of M, as it turns it.
+/// The coefficient is a sum over the words of k letters, `degree` of them M. Each is at most |M|² ‖M‖^(degree − 2)
+/// ‖D‖^(k − degree), the first norm of Frobenius. The step keeps the norms of M, as it turns it.
 pub fn scales<const N: usize>(integrals: &[Integral], m: &SMatrix<f64, N, N>, d: &SMatrix<f64, N, N>) -> Vec<f64> {
     let (norm, squares) = (spectral_norm(m), m.norm_squared());
     let scale = |&Integral { power, degree }: &Integral| {
@@ -54,7 +54,8 @@ pub fn scales<const N: usize>(integrals: &[Integral], m: &SMatrix<f64, N, N>, d:
     integrals.iter().map(scale).collect()
 }
 
-/// ‖M‖ of a skew matrix from above, by 11 % at most up to n = 10: its singular values σ come in pairs, so that 2σ¹⁶ ≤ tr(MᵀM)⁸.
+/// ‖M‖ of a skew matrix from above, by 11 % at most up to n = 10. Its singular values σ come in pairs, so that 2σ¹⁶ ≤
+/// tr(MᵀM)⁸.
 fn spectral_norm<const N: usize>(m: &SMatrix<f64, N, N>) -> f64 {
     let Some(unit) = m.try_normalize(0.0) else { return 0.0 };
     let square = unit.transpose() * unit;
@@ -72,7 +73,8 @@ pub fn independent<const N: usize>(integrals: &[Integral], m: &SMatrix<f64, N, N
     rank(integrals.iter().map(gradient).filter_map(|gradient| gradient.try_normalize(0.0)).collect())
 }
 
-/// Below this length what is left of a unit vector is rounding: some 10³ roundings of the powers, magnified by the vectors before.
+/// Below this length the remainder of a unit vector is rounding: some 10³ roundings of the powers, magnified by the
+/// vectors before.
 const ROUNDING: f64 = 1e-10;
 
 /// Gram and Schmidt, the longest first; twice is enough.

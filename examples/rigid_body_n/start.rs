@@ -19,7 +19,8 @@ pub struct Body {
     /// Which rates in the planes, drawn at random
     #[arg(long, value_name = "S", default_value = "1", allow_hyphen_values = true)]
     seed: u64,
-    /// Momentum at the start, body frame, in place of rate and seed: the n(n - 1)/2 entries above the diagonal of the matrix M, row by row, kg m2/s
+    /// Momentum at the start, body frame, in place of rate and seed. These are the n(n - 1)/2 entries above the
+    /// diagonal of the matrix M, row by row, kg m2/s
     #[arg(long, value_name = "M12,..", value_parser = numbers, allow_hyphen_values = true)]
     #[arg(conflicts_with_all = ["rate", "seed"])]
     momentum: Option<Numbers>,

@@ -1,4 +1,4 @@
-//! What is kept of the motion while it runs, and what is claimed of it.
+//! The record of the motion while it runs, and the claims about it.
 
 use crate::manakov::{self, Integral};
 use crate::start::{Start, planes};
@@ -30,7 +30,7 @@ pub struct Sample {
 
 /// The motion, and the largest defects of all states.
 pub struct Watch<const N: usize> {
-    /// What is conserved, at a few times.
+    /// The conserved quantities, at a few times.
     pub table: Table<5>,
     /// Points of the figure.
     pub samples: Vec<Sample>,

@@ -1,9 +1,10 @@
 //! Rigid spacecraft by their published inertia tensors.
 //!
-//! Station: the International Space Station as in Betts, *Practical Methods for Optimal Control and Estimation Using Nonlinear Programming*,
-//! second edition (2010), page 293 and following, there in slug·ft²; after Pietz, *Pseudospectral collocation methods for the direct
-//! transcription of optimal control problems*, Rice University (2003). Envisat: Bastida Virgili, Lemmens and Krag, *Investigation on Envisat
-//! attitude motion*, e.Deorbit Workshop, ESA (2014).
+//! Station: the International Space Station as in Betts, *Practical Methods for Optimal Control and Estimation Using
+//! Nonlinear Programming*, second edition (2010). The data are on page 293 and following, there in slug·ft². They are
+//! after Pietz, *Pseudospectral collocation methods for the direct transcription of optimal control problems*, Rice
+//! University (2003). Envisat: Bastida Virgili, Lemmens and Krag, *Investigation on Envisat attitude motion*, e.Deorbit
+//! Workshop, ESA (2014).
 
 use crate::Flags;
 use clap::ValueEnum;

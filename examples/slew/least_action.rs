@@ -1,7 +1,9 @@
-//! Nothing turns the spacecraft on its way, ∫ ½ Ω·JΩ dt is least: the slew of which only the start and the end cost.
+//! Nothing turns the spacecraft on its way, and ∫ ½ Ω·JΩ dt is least: only the start and the end of the slew have a
+//! cost.
 //!
-//! Extremals are free motions, π̇ = π × J⁻¹π; the momentum at the start, which is the costate there as its momentum map sees it, is what
-//! is looked for. There are many. On each of the two kinds of paths that cannot be deformed into one another one is least.
+//! Extremals are free motions, π̇ = π × J⁻¹π. The unknown is the momentum at the start, which is the costate there as
+//! its momentum map sees it. There are many. On each of the two kinds of paths that cannot be deformed into one another
+//! one is least.
 //!
 //! | file | its job |
 //! |---|---|
@@ -48,7 +50,7 @@ struct Slews {
 /// Solves, shoots, compares, claims, writes and draws.
 ///
 /// # Errors
-/// What solving returns, and files that cannot be written.
+/// The errors of the solver, and files that cannot be written.
 pub fn run(flags: &Flags, body: Body) -> Result<Claims, Failure> {
     let problem = Problem::new(flags, body)?;
     let mut claims = Claims::new();
@@ -104,7 +106,7 @@ impl Slews {
         least.ok_or_else(|| Failure::Flags("no guess leads to a slew".to_owned()))
     }
 
-    /// Claims what is least.
+    /// Claims the least action.
     fn claim(&self, claims: &mut Claims) -> Result<(), Failure> {
         let (least, slew) = (self.least()?, &self.least()?.slew);
         let name = "no slew costs less than the least from a guess";

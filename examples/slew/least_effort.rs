@@ -1,7 +1,7 @@
 //! Bounded torques turn the spacecraft from rest to rest at least effort, ∫ ½ |u|² dt.
 //!
-//! The discrete plan is compared with the continuous one, which Pontryagin's conditions and shooting give, with turns about the fixed
-//! axis, and with what becomes of it where the body or the start is not as planned.
+//! The discrete plan is compared with the continuous one, by Pontryagin's conditions and shooting, and with turns about
+//! the fixed axis. It is also compared with flights in which the body or the start is not as planned.
 //!
 //! | file | its job |
 //! |---|---|
@@ -42,7 +42,7 @@ const WIDE: f64 = 4.0;
 /// Plans, shoots, compares, flies, claims, writes and draws.
 ///
 /// # Errors
-/// What solving returns, and files that cannot be written.
+/// The errors of the solver, and files that cannot be written.
 pub fn run(flags: &Flags, body: Body) -> Result<Claims, Failure> {
     let problem = Problem::new(flags, body)?;
     let wide = Problem { top: WIDE * problem.top, ..problem.clone() };
@@ -81,7 +81,7 @@ fn table(plan: &Plan, free: &Plan, eigenaxis: &Eigenaxis) -> Table<5> {
     table
 }
 
-/// What bounds cost, and what the axis that is free to move saves.
+/// The price of bounds, and the saving by an axis that is free to move.
 fn compare(problem: &Problem, [plan, free]: [&Plan; 2], eigenaxis: &Eigenaxis, claims: &mut Claims) {
     claims.at_most("bounds make it no cheaper", free.effort, plan.effort * (1.0 + 1e-9), "N² m² s, with bounds");
     let smooth = eigenaxis.smooth * (1.0 + 10.0 / (problem.steps as f64).powi(2));
@@ -95,7 +95,7 @@ fn compare(problem: &Problem, [plan, free]: [&Plan; 2], eigenaxis: &Eigenaxis, c
     }
 }
 
-/// What holds for the steps themselves, to rounding.
+/// The properties of the steps themselves, to rounding.
 fn claim(problem: &Problem, plan: &Plan, claims: &mut Claims) {
     let (angle, momentum) = problem::apart(&plan.end, &problem.goal());
     let (moves, costate) = plan.costate_moves();

@@ -1,12 +1,13 @@
 //! A spacecraft turned from one attitude to another in a given time: which motion costs least?
 //!
-//! Two answers. The cost is the action, and nothing acts on the way: whatever gives the spacecraft its momentum at the start and takes it at
-//! the end is not asked. Or it starts and ends at rest, torques turn it, and the cost is their square; that each of them is bounded, and by
-//! how much, is a plain assumption, for which `--torque` takes another. Orbit and gradient of gravity are left out. The inertia is that of the International Space Station or of Envisat;
-//! sources are in `body`. Geodesics of rotation groups and their conjugate points: Arnold, *Mathematical Methods of Classical Mechanics*
-//! (1989), appendix 2; Milnor, *Morse Theory* (1963), §15. Fixed endpoints of a free body by discrete Clebsch optimal control: Nordkvist,
-//! Crouch and Bloch, *Discrete Clebsch Optimal Control*. Torques: Pontryagin and others, *The Mathematical Theory of Optimal Processes*
-//! (1962), chapter 1.
+//! Two answers. In the first the cost is the action, and nothing acts on the way. The source of the momentum at the
+//! start and at the end is not a part of the problem. In the second it starts and ends at rest, torques turn it, and
+//! the cost is their square. The bound of each torque is a plain assumption, and `--torque` takes another. Orbit and
+//! gradient of gravity are left out. The inertia is that of the International Space Station or of Envisat; sources are
+//! in `body`. Geodesics of rotation groups and their conjugate points: Arnold, *Mathematical Methods of Classical
+//! Mechanics* (1989), appendix 2; Milnor, *Morse Theory* (1963), §15. Fixed endpoints of a free body by discrete
+//! Clebsch optimal control: Nordkvist, Crouch and Bloch, *Discrete Clebsch Optimal Control*. Torques: Pontryagin and
+//! others, *The Mathematical Theory of Optimal Processes* (1962), chapter 1.
 
 mod attitude;
 mod body;
@@ -32,7 +33,7 @@ const SCENE: Scene = Scene {
     columns_note: "attitude R11..R33 (body to space), angular momentum pi1,pi2,pi3 (body frame, kg m2/s), angular velocity omega1,omega2,omega3 (body frame, rad/s); with --least effort also the torques u1,u2,u3 from there on (body frame, N m)",
 };
 
-/// What is to be least.
+/// The quantity that is least.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 enum Least {
     /// ∫ ½ Ω·JΩ dt; nothing acts on the way
@@ -62,10 +63,11 @@ pub struct Flags {
     /// Duration, seconds, in place of a step size
     #[arg(long, value_name = "T", value_parser = positive, allow_hyphen_values = true, conflicts_with = "step_size")]
     time: Option<f64>,
-    /// What is to be least: the action of a free motion, or the effort of bounded torques from rest to rest
+    /// The quantity that is least: the action of a free motion, or the effort of bounded torques from rest to rest
     #[arg(long, value_enum, default_value = "action")]
     least: Least,
-    /// The largest torque about each axis of the body, N m [default: 80 % of what the smoothest turn about the fixed axis needs]
+    /// The largest torque about each axis of the body, N m [default: 80 % of the need of the smoothest turn about the
+    /// fixed axis]
     #[arg(long, value_name = "U", value_parser = positive, allow_hyphen_values = true)]
     torque: Option<f64>,
     /// Flown: by which part of it the inertia is larger than planned

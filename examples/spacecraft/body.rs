@@ -60,8 +60,8 @@ impl Body {
 /// Which principal axis points where.
 #[derive(Clone, Copy, Debug)]
 pub struct Orientation {
-    /// Which of the moments, from 0 for the least, is about the radius (yaw), the direction of flight (roll) and the normal of the
-    /// orbit (pitch).
+    /// The order of the moments, from 0 for the least. They are about the radius (yaw), the direction of flight (roll)
+    /// and the normal of the orbit (pitch).
     pub places: [usize; 3],
     /// Moments about these, kg·m².
     pub moments: Vector3<f64>,

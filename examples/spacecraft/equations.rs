@@ -9,7 +9,7 @@ use clebsch_examples::energy_band::Terms;
 use clebsch_examples::reference::{Solution, solve};
 use nalgebra::{Matrix3, SVector, Vector3};
 
-/// A body with what its equations need.
+/// A body with the data of its equations.
 #[derive(Clone, Copy, Debug)]
 pub struct Equations {
     body: Body,
@@ -88,9 +88,9 @@ impl Equations {
         solve(|y| self.field(y), y, duration, rate)
     }
 
-    /// The terms of the modified energy: free motion is a straight line and a free rotation, whose Moser–Veselov steps are the
-    /// free motion of T + h² D with D = (e₃C² − e₂CT + e₁T²)/6, C = ½|π|² and e_i the elementary symmetric functions of the
-    /// inverse moments (Hairer and Vilmart 2006).
+    /// The terms of the modified energy. Free motion is a straight line and a free rotation. Its Moser–Veselov steps
+    /// are the free motion of T + h² D with D = (e₃C² − e₂CT + e₁T²)/6. Here C = ½|π|², and e_i are the elementary
+    /// symmetric functions of the inverse moments (Hairer and Vilmart 2006).
     pub fn terms(&self, (position, attitude): &Pose, momentum: &Momentum) -> Terms {
         let (linear, angular) = halves(momentum);
         let moments = self.body.moments.map(f64::recip);

@@ -1,4 +1,4 @@
-//! What is known in closed form: the period of a pitch libration, Kepler's orbit; and an orbit that feels the attitude.
+//! The closed forms: the period of a pitch libration, Kepler's orbit; and an orbit that feels the attitude.
 
 use crate::body::{Body, Orientation};
 use crate::equations::Equations;
@@ -32,8 +32,8 @@ pub struct Pitch {
     angle: f64,
 }
 
-/// Follows a libration in pitch alone, which is a pendulum in twice the angle: θ̈ = −½ω_p² sin 2θ, ω_p = n√(3(J₁ − J₃)/J₂) with
-/// the moments J₁ about the direction of flight, J₂ about the normal, J₃ about the radius.
+/// Follows a libration in pitch alone, which is a pendulum in twice the angle: θ̈ = −½ω_p² sin 2θ, ω_p = n√(3(J₁ −
+/// J₃)/J₂). The moments are J₁ about the direction of flight, J₂ about the normal, J₃ about the radius.
 pub fn pitch<M: Method<Spacecraft>>(
     system: &Spacecraft,
     body: &Body,
@@ -154,7 +154,8 @@ pub fn convergence<M: Method<Spacecraft>>(
     Ok(())
 }
 
-/// The same body so large that its attitude takes part in the angular momentum: what one half gives the other takes.
+/// The same body so large that its attitude takes part in the angular momentum: one half takes the amount that the
+/// other gives.
 pub fn exchange<M: Method<Spacecraft>>(body: &Body, flags: &Flags, claims: &mut Claims) -> Result<(), Failure> {
     /// J/(m r²) of the large body.
     const SIZE: f64 = 0.01;

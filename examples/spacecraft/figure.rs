@@ -51,8 +51,8 @@ fn jacobi(watch: &Watch) -> Panel<'static> {
     Panel { title: "Jacobi's integral, change since the start", unit: "J", x_label: "orbits", series }
 }
 
-/// The regions of Lagrange and of DeBra and Delp in the plane of k_yaw (to the right) and k_roll (upwards); crosses are unstable
-/// orientations of the body, the square is the stable one.
+/// The regions of Lagrange and of DeBra and Delp in the plane of k_yaw (to the right) and k_roll (upwards). Crosses are
+/// unstable orientations of the body, the square is the stable one.
 fn triangle(cases: &[Case]) -> Panel<'static> {
     let grid = |i: i32| f64::from(i) / 200.0;
     let edge = (-200..=0).map(|i| (grid(i), edge(grid(i)))).collect();

@@ -1,9 +1,10 @@
 //! A spacecraft on its orbit: position and attitude as one system, coupled by the gradient of gravity.
 //!
-//! Envisat without control. Mass and inertia: Bastida Virgili, Lemmens and Krag, *Investigation on Envisat attitude motion*,
-//! e.Deorbit Workshop, ESA (2014). Semi-major axis: mission parameters of DLR, 7159 km. GM of the Earth: IERS Conventions (2010).
-//! Librations and their stability: Hughes, *Spacecraft Attitude Dynamics* (1986), chapter 9; DeBra and Delp, *Rigid body attitude
-//! stability and natural frequencies in a circular orbit*, Journal of the Astronautical Sciences 8 (1961) 14–17.
+//! Envisat without control. Mass and inertia: Bastida Virgili, Lemmens and Krag, *Investigation on Envisat attitude
+//! motion*, e.Deorbit Workshop, ESA (2014). Semi-major axis: mission parameters of DLR, 7159 km. GM of the Earth: IERS
+//! Conventions (2010). Librations and their stability: Hughes, *Spacecraft Attitude Dynamics* (1986), chapter 9. DeBra
+//! and Delp, *Rigid body attitude stability and natural frequencies in a circular orbit*, Journal of the Astronautical
+//! Sciences 8 (1961) 14–17.
 
 mod body;
 mod equations;
@@ -84,7 +85,7 @@ const SCENE: Scene = Scene {
     columns_note: "position x1,x2,x3 (m), attitude R11..R33 (body to space), momentum p1,p2,p3 (space, kg m/s), angular momentum pi1,pi2,pi3 (body frame, kg m2/s); at order 1 after the kick",
 };
 
-/// Envisat without control, held by the gradient of gravity: librations, their stability, and the orbit
+/// Envisat without control, stabilised by the gradient of gravity: librations, their stability, and the orbit
 #[derive(Parser, Debug)]
 pub struct Flags {
     /// Inertia tensor about the centre of mass, body frame, kg m2
@@ -104,7 +105,7 @@ pub struct Flags {
     #[arg(long, value_name = "YAW,ROLL,PITCH", value_parser = finite_list::<3>, allow_hyphen_values = true)]
     #[arg(default_value = "4,3,10")]
     libration: [f64; 3],
-    /// Eccentricity of the orbit that is held against Kepler's
+    /// Eccentricity of the orbit that is compared with Kepler's
     #[arg(long, value_name = "E", value_parser = eccentricity, allow_hyphen_values = true, default_value = "0.2")]
     eccentricity: f64,
     #[command(flatten)]

@@ -8,15 +8,16 @@ use nalgebra::{Matrix3, Rotation3, Vector3};
 
 /// The circular orbit of the steps themselves.
 ///
-/// x₊ − 2x + x₋ = −h² GM x/r³ has the circles 2(1 − cos ψ) = h²n², n² = GM/r³, ψ being the angle of a step; so a libration is not
-/// forced by an eccentricity that is only the step's. The coupling moves both by J/(m r²), which is less than rounding.
+/// x₊ − 2x + x₋ = −h² GM x/r³ has the circles 2(1 − cos ψ) = h²n², n² = GM/r³, with the angle ψ of a step. So no
+/// eccentricity that is only the step's forces a libration. The coupling moves both by J/(m r²), which is less than
+/// rounding.
 #[derive(Clone, Copy, Debug)]
 pub struct Circle {
     /// m
     pub radius: f64,
     /// n = √(GM/r³), rad/s.
     pub mean_motion: f64,
-    /// sin ψ/h: what the momenta of a steady turn by ψ show as angular velocity, rad/s.
+    /// sin ψ/h: the angular velocity by the momenta of a steady turn by ψ, rad/s.
     pub rate: f64,
     /// Half a kick, m/s, that the momentum of order 1 is ahead; zero at order 2.
     half_kick: f64,
@@ -50,8 +51,8 @@ impl Circle {
         Ok(Self { radius, mean_motion, rate, half_kick })
     }
 
-    /// The state at the first axis of space, flying along the second; the body turned by `tilt` (yaw, roll, pitch, radians) from
-    /// its orientation and at rest in the orbiting frame.
+    /// The state at the first axis of space, flying along the second. The body is turned by `tilt` (yaw, roll, pitch,
+    /// radians) from its orientation, and at rest in the orbiting frame.
     pub fn start(&self, body: &Body, orientation: &Orientation, tilt: &Vector3<f64>) -> (Pose, Momentum) {
         let attitude = Rotation3::from_scaled_axis(*tilt).into_inner() * orientation.axes.transpose();
         let normal = attitude.transpose() * Vector3::z();

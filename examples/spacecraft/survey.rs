@@ -24,7 +24,7 @@ const LONGEST: f64 = 1e5;
 /// Growth below this, in units of n, is not told from none.
 const LEAST_GROWTH: f64 = 0.05;
 
-/// One orientation and what became of a tilt.
+/// One orientation and the outcome of a tilt.
 pub struct Case {
     /// Moments about radius, direction of flight and normal, by their rank from 0.
     pub places: [usize; 3],
@@ -35,7 +35,7 @@ pub struct Case {
     pub growth: f64,
     /// The largest tilt over the first.
     largest: f64,
-    /// What Lagrange's integral allows; none where it is indefinite.
+    /// The bound by Lagrange's integral; none where it is indefinite.
     bound: Option<f64>,
     /// h·2n, with 2n the largest of the entries of the linear system.
     angle: f64,
@@ -84,8 +84,8 @@ fn case<M: Method<Spacecraft>>(
     })
 }
 
-/// Lagrange's integral ½ Σ J α̇² + ½ n² (κ_y ψ² + κ_r ρ² + κ_p θ²) with κ = (pitch − roll), 4(pitch − yaw), 3(roll − yaw): from
-/// rest, no angle exceeds √(Σ κα²/κ_min).
+/// Lagrange's integral is ½ Σ J α̇² + ½ n² (κ_y ψ² + κ_r ρ² + κ_p θ²) with κ = (pitch − roll), 4(pitch − yaw), 3(roll −
+/// yaw). From rest, no angle exceeds √(Σ κα²/κ_min).
 fn bound(orientation: &Orientation, angles: &Vector3<f64>) -> Option<f64> {
     let [yaw, roll, pitch] = orientation.moments.into();
     let stiffness = Vector3::new(pitch - roll, 4.0 * (pitch - yaw), 3.0 * (roll - yaw));

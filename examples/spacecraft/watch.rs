@@ -1,4 +1,4 @@
-//! What is kept of the motion while it runs, and what is claimed of it.
+//! The record of the motion while it runs, and the claims about it.
 
 use crate::body::{Body, Orientation};
 use crate::equations::Equations;
@@ -141,8 +141,9 @@ impl Watch {
 
     /// The energy of orbit and body says nothing of the libration, which is less than its rounding; Jacobi's integral does.
     ///
-    /// It is conserved by the continuous libration on a circle. Steps keep a modified one, which differs by hΩ (order 1) or (hΩ)²
-    /// (order 2) of what a libration by these angles has, with Ω = 2n the fastest of the libration.
+    /// It is conserved by the continuous libration on a circle. Steps conserve a modified one. It differs by hΩ
+    /// (order 1) or (hΩ)² (order 2) of the integral of a libration by these angles. Ω = 2n is the fastest rate of the
+    /// libration.
     fn claim_jacobi(&self, claims: &mut Claims) {
         let n = self.circle.mean_motion;
         let angle = 2.0 * n * self.run.step_size;

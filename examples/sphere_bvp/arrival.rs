@@ -12,7 +12,8 @@ use nalgebra::{Vector3, Vector6};
 
 /// q̇ at the start, 1/s, from the momentum before the first step: N × q.
 ///
-/// At order 1 that momentum is the one half a kick later, as its step kicks only once, at the end: the path is that of order 2.
+/// At order 1 that momentum is the one half a kick later, as its step kicks only once, at the end. The path is that of
+/// order 2.
 pub fn launch(momentum: &Vector3<f64>, flags: &Flags, h: f64) -> Vector3<f64> {
     let from = flags.ends().0;
     let half_kick = match flags.run.order {

@@ -9,7 +9,7 @@ pub struct GreatCircle<const D: usize> {
     start: SVector<f64, D>,
     /// e, a unit vector at a right angle to the start.
     pub direction: SVector<f64, D>,
-    /// Θ, the angle of the whole arc, rad.
+    /// Θ, the angle of the arc, rad.
     pub angle: f64,
 }
 
@@ -73,8 +73,8 @@ impl<const D: usize> GreatCircle<D> {
 
     /// The Morse index: D − 2 directions across the arc, each with a conjugate point at every half turn; `None` where the end is one.
     ///
-    /// The same for the polygon with φ < π/2: its Jacobi fields sin(kφ) vanish where those of the arc do, and the Hessian across
-    /// the arc has the eigenvalues 2(cos φ − cos(jπ/N))/h, j = 1 … N − 1.
+    /// The same for the polygon with φ < π/2. Its Jacobi fields sin(kφ) vanish where those of the arc do. The Hessian
+    /// across the arc has the eigenvalues 2(cos φ − cos(jπ/N))/h, j = 1 … N − 1.
     pub fn index(&self) -> Option<usize> {
         (self.angle % PI != 0.0).then_some((D - 2) * (self.angle / PI) as usize)
     }

@@ -1,4 +1,4 @@
-//! Points of spheres joined by extremals: great circles between any two of them, and how to throw the bob of a pendulum so that it
+//! Points of spheres joined by extremals: great circles between any two of them, and the throw of a pendulum's bob that
 //! arrives in time.
 //!
 //! Great circles: Nordkvist, Crouch and Bloch, *Discrete Clebsch Optimal Control*, example B, for the step. Indices of geodesics: Milnor,

@@ -27,7 +27,7 @@ pub struct Defects {
 impl Defects {
     /// Of an extremal from the polygon inscribed in `circle`.
     ///
-    /// The momentum of a point of unit mass at q with the velocity w is the matrix M = ½(w qᵀ − q wᵀ) of the trace pairing: w = 2Mq.
+    /// A point of unit mass at q with the velocity w has the momentum M = ½(w qᵀ − q wᵀ) of the trace pairing: w = 2Mq.
     pub fn of<S, const D: usize, const M: usize>(extremal: &Extremal<'_, S, M>, circle: &GreatCircle<D>, h: f64) -> Self
     where
         S: Variational<M> + Clebsch<Scalar = f64, Configuration = SVector<f64, D>>,
@@ -59,7 +59,7 @@ impl Defects {
     }
 }
 
-/// What [`Defects::over_rounding`] is compared with, in words.
+/// The reference of [`Defects::over_rounding`], in words.
 pub const ROUNDING: &str = "of the worst case of rounding; points, velocities, momenta, action";
 
 /// Solves between two points with 1, 2, 10, 100 and 1000 steps, prints and claims the closed form.

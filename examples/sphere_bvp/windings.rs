@@ -87,7 +87,8 @@ where
     let boundary = stepper.boundary();
     let mut path = vec![boundary.rest(&start); STEPS];
     let extremal = boundary.solve(&start, &arc.end(), guess, &mut path)?;
-    // Between opposite points all half circles are extremals: the one that was found, best told by what is a quarter turn away.
+    // Between opposite points all half circles are extremals: the one that was found, best told by the point a quarter
+    // turn away.
     let arc = &if arc.index().is_some() { *arc } else { arc.towards(extremal.nodes()[STEPS / 2].configuration()) };
     let (defects, index) = (Defects::of(&extremal, arc, h), extremal.negative());
     table.row([

@@ -27,7 +27,7 @@ fn coordinates<const D: usize>(watch: &Watch<D>) -> Panel<'static> {
 
 fn growth<const D: usize>(watch: &Watch<D>) -> Panel<'static> {
     let curve = |label, colour, value: fn(&Growth) -> f64| {
-        // what is still exact has no logarithm: a gap
+        // an error of zero has no logarithm: a gap
         let points = watch.growth.iter().map(|growth| ((growth.step as f64).log10(), value(growth).log10())).collect();
         Series { label, colour, points }
     };

@@ -1,4 +1,5 @@
-//! Geodesics of S³, S⁷, S²⁰ and S¹⁰⁰, moved by SO(4) to SO(101) from the left: the step is explicit, and its points lie on a great circle.
+//! Geodesics of S³, S⁷, S²⁰ and S¹⁰⁰, moved by SO(4) to SO(101) from the left. The step is explicit, and its points lie
+//! on a great circle.
 //!
 //! Source: Nordkvist, Crouch and Bloch, *Discrete Clebsch Optimal Control*, example B.
 
@@ -71,7 +72,8 @@ const SCENE: Scene = Scene {
     columns_note: "position q1.. and velocity w1.. (1/s), N + 1 of each",
 };
 
-/// Geodesics of S3, S7, S20 and S100: an explicit step whose points lie on a great circle, held against its closed form
+/// Geodesics of S3, S7, S20 and S100: an explicit step whose points lie on a great circle, compared with its closed
+/// form
 #[derive(Parser, Debug)]
 struct Flags {
     /// Dimension of the sphere
@@ -83,7 +85,8 @@ struct Flags {
     /// Position at the start, a unit vector of N + 1 numbers [default: 0.5,0.5,0.5,0.5 and zeros; on S20 and S100 all equal]
     #[arg(long, value_name = "X,..", value_parser = coordinates, allow_hyphen_values = true)]
     position: Option<Coordinates>,
-    /// Velocity at the start, N + 1 numbers, 1/s; what it has along the position is left out [default: 0.3,-0.4,0.2,-0.1,0.5,-0.3,0.1,0.2, again and again]
+    /// Velocity at the start, N + 1 numbers, 1/s; its component along the position is left out [default:
+    /// 0.3,-0.4,0.2,-0.1,0.5,-0.3,0.1,0.2, again and again]
     #[arg(long, value_name = "X,..", value_parser = coordinates, allow_hyphen_values = true)]
     velocity: Option<Coordinates>,
     #[command(flatten)]
@@ -176,7 +179,7 @@ where
     let position = numbers::<D>(flags.position.as_ref(), |i| first_position(D, i), "--position")?;
     let velocity = numbers::<D>(flags.velocity.as_ref(), first_velocity, "--velocity")?;
     let stepper = point.into_stepper(flags.run.step_size)?;
-    // J(q, w) forgets what w has along q: the momentum is then in the annihilator of the rotations that fix q.
+    // J(q, w) forgets the component of w along q: the momentum is then in the annihilator of the rotations that fix q.
     let start = stepper.state(position, stepper.momentum_map(&position, &velocity))?;
     let circle = GreatCircle::new(position, velocity, |speed| flags.discretization.angle(flags.run.step_size, speed));
 

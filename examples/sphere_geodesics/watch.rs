@@ -1,4 +1,4 @@
-//! What is kept of the motion while it runs, and what is claimed of it.
+//! The record of the motion while it runs, and the claims about it.
 
 use crate::Discretization;
 use crate::great_circle::GreatCircle;
@@ -12,7 +12,7 @@ use std::f64::consts::TAU;
 /// Turns in the figure, and points of them.
 const TURNS: f64 = 1.5;
 const POINTS: f64 = 400.0;
-/// Ratio of the numbers of steps at which the growth of round-off is kept.
+/// Ratio of the numbers of steps at which the growth of round-off is recorded.
 const SPACING: f64 = 1.05;
 
 /// Largest distances from the closed form after some number of steps.
@@ -40,7 +40,7 @@ pub struct Watch<const D: usize> {
     pub path: Vec<(f64, SVector<f64, D>)>,
     run: Run,
     largest: Growth,
-    /// Largest ratio of the distance to what rounding can do in so many steps.
+    /// Largest ratio of the distance to the rounding error of so many steps.
     worst: f64,
     momentum_defect: f64,
 }
@@ -72,12 +72,13 @@ impl<const D: usize> Watch<D> {
         self.keep(step, time, q);
     }
 
-    /// What a rounding of one step is relative to: the point, of length one, or the angle that it is turned by, if that is larger.
+    /// The unit of a rounding of one step: the point, of length one, or the angle that it is turned by, if that is
+    /// larger.
     fn scale(&self) -> f64 {
         self.circle.angle.abs().max(1.0)
     }
 
-    /// Keeps what the table and the figure show.
+    /// Records the data of the table and the figure.
     fn keep(&mut self, step: u64, time: f64, q: &SVector<f64, D>) {
         let shown = (TURNS * TAU / self.circle.angle).min(self.run.steps as f64);
         if step as f64 <= shown && step.is_multiple_of((shown / POINTS).ceil().max(1.0) as u64) {

@@ -1,7 +1,7 @@
 //! Molecules on a sphere that attract and repel each other by the potential of Lennard-Jones: a sum over all pairs, N as a const generic.
 //!
-//! Source: Lee, Leok and McClamroch, *Lagrangian mechanics and variational integrators on two-spheres*, International Journal for Numerical Methods
-//! in Engineering 79 (2009), whose example has 642 molecules on the unit sphere.
+//! Source: Lee, Leok and McClamroch, *Lagrangian mechanics and variational integrators on two-spheres*, International
+//! Journal for Numerical Methods in Engineering 79 (2009). Its example has 642 molecules on the unit sphere.
 
 mod figure;
 mod pair;
@@ -88,7 +88,8 @@ const SCENE: Scene = Scene {
     columns_note: "total angular momentum L1, L2, L3 (1/s), kinetic and potential energy of all molecules (1/s2)",
 };
 
-/// Molecules on a sphere that attract and repel each other: angular momentum and energy of all, and a pair beside its closed form
+/// Molecules on a sphere that attract and repel each other: angular momentum and energy of all, and a pair next to its
+/// closed form
 #[derive(Parser, Debug)]
 struct Flags {
     /// Number of molecules: 12, 64 or 642

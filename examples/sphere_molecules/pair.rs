@@ -12,8 +12,8 @@ const AMPLITUDE: f64 = 1e-6;
 /// Steps of a period.
 const STEPS: u32 = 1000;
 
-/// Claims that they pass their place of rest after a quarter of the period: ω² = 2V″(r₀) cos²(θ₀/2), with V″(r₀) = 36 ∛4 ε/σ² and
-/// r₀ = ⁶√2 σ = 2 sin(θ₀/2), as the angle between them has half the mass of one.
+/// Claims that they pass their place of rest after a quarter of the period: ω² = 2V″(r₀) cos²(θ₀/2). Here V″(r₀) = 36
+/// ∛4 ε/σ² and r₀ = ⁶√2 σ = 2 sin(θ₀/2), as the angle between them has half the mass of one.
 pub fn claim(flags: &Flags, claims: &mut Claims) -> Result<(), Failure> {
     let size = 0.3;
     let half = (2.0_f64.powf(1.0 / 6.0) * size / 2.0).asin();

@@ -1,4 +1,4 @@
-//! What is kept of the molecules while they move, and what is claimed of them.
+//! The record of the molecules while they move, and the claims about them.
 
 use crate::{Cloud, Many};
 use clebsch::SiteError;
@@ -98,7 +98,7 @@ impl Watch {
         Ok([total.x, total.y, total.z, kinetic, energy - kinetic])
     }
 
-    /// Claims what all molecules conserve together, and where the energy stays.
+    /// Claims the common conserved quantities of all molecules, and the band of the energy.
     pub fn claim(&self, sites: usize, claims: &mut Claims) {
         let steps = self.run.steps;
         let scale = self.scales[0] + sites as f64 * self.scales[1] * self.run.step_size;

@@ -1,4 +1,4 @@
-//! The paper's two figures in one: the path, and what is conserved.
+//! The paper's two figures in one: the path, and the conserved quantities.
 
 use crate::watch::{Sample, Watch};
 use crate::{Flags, SCENE};

@@ -1,4 +1,4 @@
-//! What is kept of the motion while it runs, and what is claimed of it.
+//! The record of the motion while it runs, and the claims about it.
 
 use crate::Flags;
 use clebsch_examples::claims::Claims;
@@ -96,7 +96,7 @@ impl Watch {
         }
     }
 
-    /// Claims what is conserved, the band of the energy and the paper's figures.
+    /// Claims the conserved quantities, the band of the energy and the paper's figures.
     pub fn claim(&self, flags: &Flags, claims: &mut Claims) {
         let steps = self.run.steps;
         claims.round_off("N·q stays zero", self.normal_defect, steps, self.largest_momentum);

@@ -1,7 +1,8 @@
 //! A ring of spins with exchange in a field: rotors on N spheres, each moved by its own rotation, tied to their neighbours.
 //!
-//! The declaration has N as a const generic: one loop steps eight spins in an array or a hundred thousand in vectors, and the code is the same.
-//! Spins here have inertia, q̈ as well as q: Hamiltonian rotors, whose order parameter waves travel with the speed √J of an antiferromagnet or a sigma model.
+//! The declaration has N as a const generic. One loop steps eight spins in an array or a hundred thousand in vectors,
+//! and the code is the same. Spins here have inertia, q̈ as well as q: Hamiltonian rotors. Their order parameter waves
+//! travel with the speed √J of an antiferromagnet or a sigma model.
 //!
 //! Source: Haldane, *Nonlinear field theory of large-spin Heisenberg antiferromagnets*, Physical Review Letters 50 (1983), for the field that long rings tend to.
 
@@ -82,7 +83,7 @@ const SCENE: Scene = Scene {
     columns_note: "mean of the spins q1, q2, q3 and of their momenta N1, N2, N3, the energy of a spin",
 };
 
-/// A ring of spins in a field: what all of them conserve together, and a picture of the field in time
+/// A ring of spins in a field: their common conserved quantities, and a picture of the field in time
 #[derive(Parser, Debug)]
 struct Flags {
     /// Number of spins: 8, 64, 1000, 10000 or 100000

@@ -1,4 +1,4 @@
-//! What is kept of the ring while it moves, and what is claimed of it.
+//! The record of the ring while it moves, and the claims about it.
 
 use crate::{Flags, Ring, Spins};
 use clebsch::SiteError;
@@ -101,7 +101,7 @@ impl Watch {
         Ok([mean.x, mean.y, mean.z, momentum.x, momentum.y, momentum.z, energy / sites])
     }
 
-    /// Claims what all spins conserve together, and where the energy stays.
+    /// Claims the common conserved quantities of all spins, and the band of the energy.
     pub fn claim(&self, flags: &Flags, sites: usize, claims: &mut Claims) {
         let steps = self.run.steps;
         let name = match self.conserved {

@@ -1,4 +1,4 @@
-//! What a scene asserts, each claim with its measured number and its bound.
+//! The claims of a scene, each with its measured number and its bound.
 
 use crate::round_off;
 use std::fmt::{self, Display, Formatter};
@@ -14,7 +14,7 @@ pub struct Claims {
 pub struct Claim {
     name: String,
     verdict: Verdict,
-    /// What was measured against what.
+    /// The measured number and its reference.
     numbers: String,
     /// Where the bound comes from, or why the claim does not apply.
     reason: String,

@@ -13,7 +13,7 @@ pub struct Conserved {
 }
 
 impl Conserved {
-    /// Not observed yet. `scale` is by how much relative errors of size one in what it is computed from move it.
+    /// Not observed yet. `scale` is the change of it by relative errors of size one in its inputs.
     pub fn new(name: &'static str, scale: f64) -> Self {
         Self { name, scale, start: None, defect: 0.0 }
     }

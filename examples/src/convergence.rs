@@ -15,7 +15,7 @@ const SLOPE: f64 = 0.1;
 /// Ends of the same motion with steps of h, h/2 and h/4.
 ///
 /// # Errors
-/// What a start or a step returns.
+/// The errors of a start or of a step.
 pub fn refined<S: Clebsch<Scalar = f64> + Clone, M: Method<S>>(
     system: &S,
     run: &Run,

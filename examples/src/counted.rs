@@ -10,7 +10,7 @@ thread_local! {
     static ITERATIONS: Cell<u32> = const { Cell::new(0) };
 }
 
-/// What `work` returns, and how many iterations were made for it in this thread.
+/// The result of `work`, and the number of iterations for it in this thread.
 pub fn iterations<R>(work: impl FnOnce() -> R) -> (R, u32) {
     ITERATIONS.set(0);
     let result = work();
@@ -140,7 +140,7 @@ mod tests {
         }
     }
 
-    /// What is at rest takes one linearisation, what moves takes more; the bits are those of plain numbers.
+    /// A body at rest takes one linearisation, a moving one takes more; the bits are those of plain numbers.
     #[test]
     fn iterations_are_counted() {
         let (rest, at_rest) = iterations(|| solve(&Parabola, &Vector1::new(Counted(0.0_f64))));

@@ -45,7 +45,7 @@ impl Csv {
         write_row(writer, step, time, values).map_err(Failure::file(path))
     }
 
-    /// Writes what is still in memory and says where the file is.
+    /// Writes the buffered lines and says where the file is.
     ///
     /// # Errors
     /// [`Failure::File`]

@@ -1,13 +1,14 @@
 //! How far the energy of a symplectic step strays: it conserves a modified energy that is near.
 //!
-//! For kicks of the potential V around a drift of the kinetic energy T, the Baker–Campbell–Hausdorff series gives what the step
-//! conserves:
+//! For kicks of the potential V around a drift of the kinetic energy T, the Baker–Campbell–Hausdorff series gives the
+//! conserved energy of the step.
 //! ```text
 //! order 2 (half kicks)        T + V + h² (D + V̈/12 − K/24) + O(h⁴)
 //! order 1 (drift, then kick)  T + V + h V̇/2 + h² (D + V̈/12 + K/12) + O(h³)
 //! ```
-//! V̇ and V̈ are time derivatives along the free motion, K = τ·Σ⁻¹τ belongs to the force τ, and h² D is what the drift adds to T
-//! where it is no exact free motion. Source: Hairer, Lubich and Wanner, *Geometric Numerical Integration*, §IX.3 and §IX.4.
+//! V̇ and V̈ are time derivatives along the free motion, and K = τ·Σ⁻¹τ belongs to the force τ. The drift adds h² D to
+//! T where it is no exact free motion. Source: Hairer, Lubich and Wanner, *Geometric Numerical Integration*, §IX.3 and
+//! §IX.4.
 
 use crate::claims::Claims;
 use crate::flags::{Order, Run};
@@ -87,7 +88,7 @@ impl EnergyBand {
 
     /// Claims that the modified energy is constant and that the energy stays in the band which follows.
     ///
-    /// The terms left out are smaller than those kept by (hΩ)² at order 2, by hΩ at order 1, Ω the fastest rate.
+    /// The neglected terms are smaller than the others by (hΩ)² at order 2, by hΩ at order 1, Ω the fastest rate.
     pub fn claim(&self, claims: &mut Claims) {
         let names = ["the energy stays in its band", "the modified energy is constant"];
         let angle = self.h * self.rate;

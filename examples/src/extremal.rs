@@ -1,5 +1,5 @@
-//! Extremals of continuous problems whose inputs are bounded: smooth pieces, joined where an input reaches a bound or leaves it, and
-//! aimed at a target by Newton's method.
+//! Extremals of continuous problems whose inputs are bounded. They are smooth pieces, joined where an input reaches a
+//! bound or leaves it. Newton's method aims them at a target.
 
 use crate::reference::solve;
 use nalgebra::{SMatrix, SVector};
@@ -12,10 +12,10 @@ const SEARCH: usize = 60;
 const CORRECTIONS: usize = 60;
 /// The largest correction, relative.
 const LARGEST: f64 = 0.3;
-/// Differences of costates, relative: the square of it and rounding over it are what derivatives are wrong by.
+/// Differences of costates, relative: the error of derivatives is the square of it and rounding over it.
 const DIFFERENCE: f64 = 1e-6;
 
-/// Pontryagin's conditions: N numbers, places and costates among them, and U inputs. The whole time is 1.
+/// Pontryagin's conditions: N numbers, places and costates among them, and U inputs. The duration is 1.
 pub trait Pontryagin<const N: usize, const U: usize> {
     /// ẏ with each input at its lower bound (−1), at its upper bound (1) or between them (0).
     fn field(&self, y: &SVector<f64, N>, held: [i8; U]) -> SVector<f64, N>;
@@ -28,7 +28,7 @@ pub trait Pontryagin<const N: usize, const U: usize> {
         Motion { held: self.wanted(&y), y, switches: 0, error: 0.0 }
     }
 
-    /// The extremal later by a part of the whole time.
+    /// The extremal later by a part of the duration.
     fn after(&self, motion: &Motion<N, U>, part: f64) -> Motion<N, U> {
         let strides = (part * STRIDES).ceil().max(1.0);
         (0..strides as u64).fold(*motion, |motion, _| self.stride(motion, part / strides))
@@ -58,7 +58,7 @@ pub trait Pontryagin<const N: usize, const U: usize> {
         }
     }
 
-    /// With inputs held, or not, as at its start.
+    /// With inputs at a bound, or not, as at its start.
     #[doc(hidden)]
     fn piece(&self, motion: &Motion<N, U>, length: f64) -> Motion<N, U> {
         let solution = solve(|y| self.field(y, motion.held), motion.y, length, 1.0);
@@ -84,13 +84,13 @@ pub trait Pontryagin<const N: usize, const U: usize> {
 /// Where an extremal is.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Motion<const N: usize, const U: usize> {
-    /// Places, costates and what else is integrated.
+    /// Places, costates and the other integrated quantities.
     pub y: SVector<f64, N>,
     /// For each input −1 or 1 at its lower or upper bound, 0 between them.
     pub held: [i8; U],
     /// How many times a bound was reached or left.
     pub switches: usize,
-    /// What integration has made wrong.
+    /// The error of integration.
     pub error: f64,
 }
 
@@ -99,13 +99,13 @@ pub struct Motion<const N: usize, const U: usize> {
 pub struct Shot<const K: usize> {
     /// At the start.
     pub costates: SVector<f64, K>,
-    /// How far the end may be off: what corrections and integration leave.
+    /// How far the end may be off: the error of corrections and integration.
     pub error: f64,
 }
 
 impl<const K: usize> Shot<K> {
-    /// The costates near `guess` for which `miss` vanishes, which also says what integration has made wrong; `None` where corrections
-    /// do not end. Derivatives by differences of `units` times the relative size.
+    /// The costates near `guess` for which `miss` vanishes, and the error of integration; `None` where corrections do
+    /// not end. Derivatives by differences of `units` times the relative size.
     pub fn aim(
         guess: &SVector<f64, K>,
         units: &SVector<f64, K>,
@@ -159,7 +159,8 @@ mod tests {
         }
     }
 
-    /// From rest to rest a unit further, by hand: u = ±5 down to the share s of half the time, s² = 3 − 12/5, and linear between.
+    /// From rest to rest a unit further, by hand. The input is ±5 down to the share s of half the time, s² = 3 − 12/5,
+    /// and linear between.
     #[test]
     fn a_cart_is_held_back_at_both_ends() {
         let end =

@@ -1,10 +1,10 @@
-//! Flags that every scene takes, and parsers that say what is wrong with a number.
+//! Flags that every scene takes, and parsers whose errors name the mistake in a number.
 
 use clap::{Args, Parser, ValueEnum};
 use std::fmt::{self, Display, Formatter};
 use std::path::PathBuf;
 
-/// What differs between the scenes in the flags that all of them take.
+/// The differences between the scenes in the flags that all of them take.
 #[derive(Clone, Copy, Debug)]
 pub struct Scene {
     /// The name of the example.
@@ -17,7 +17,7 @@ pub struct Scene {
     pub steps: &'static str,
     /// Default of `--order`.
     pub order: &'static str,
-    /// What `--order` means here.
+    /// The meaning of `--order` here.
     pub order_note: &'static str,
     /// The columns of `--csv` after `step,time`, with units.
     pub columns_note: &'static str,

@@ -5,10 +5,10 @@ use crate::progress::Progress;
 use crate::scene::Failure;
 use clebsch::{Clebsch, Method, State, Stepper};
 
-/// Hands the states 0, 1, …, `run.steps` to `observe`, with their number and time; nothing is kept.
+/// Hands the states 0, 1, …, `run.steps` to `observe`, with their number and time; nothing is stored.
 ///
 /// # Errors
-/// [`Failure::Step`] with the first step that could not be made, and what `observe` returns.
+/// [`Failure::Step`] with the first step that could not be made, and the errors of `observe`.
 pub fn integrate<S: Clebsch<Scalar = f64>, M: Method<S>>(
     run: &Run,
     stepper: &Stepper<S, M>,

@@ -1,4 +1,5 @@
-//! What the scenes share. A scene is a folder beside this one: a declaration, its flags, what it claims and its figure.
+//! The code that the scenes share. A scene is a folder next to this one: a declaration, its flags, its claims and its
+//! figure.
 //!
 //! ```text
 //! cargo run --release --example toutatis -- --help
@@ -6,10 +7,10 @@
 //!
 //! | module | its job |
 //! |---|---|
-//! | [`flags`] | what every scene takes on the command line, and number parsers with clear errors |
+//! | [`flags`] | flags that every scene takes on the command line, and number parsers with clear errors |
 //! | [`integrate`], [`progress`] | step after step, with progress and with errors that name the step |
 //! | [`csv`], [`table`], [`figure`] | the trajectory as a file, as a short table, as a drawing |
-//! | [`claims`] | what a scene asserts: each with its measured number and its bound |
+//! | [`claims`] | claims of a scene: each with its measured number and its bound |
 //! | [`round_off`], [`conserved`], [`energy_band`] | the bounds: worst cases of rounding, and the modified energy of a symplectic step |
 //! | [`elliptic`], [`jacobi`] | elliptic integrals and functions, for closed forms to compare with |
 //! | [`reference`](mod@reference), [`convergence`] | an integrator without geometry, and the order of the steps against it |

@@ -78,7 +78,7 @@ mod tests {
     use super::*;
     use nalgebra::{Vector2, Vector3};
 
-    /// Whole turns of a harmonic oscillator, and ẏ = y² with y = 1/(1 − t).
+    /// Full turns of a harmonic oscillator, and ẏ = y² with y = 1/(1 − t).
     #[test]
     fn exact_solutions_are_met_to_round_off() {
         let turn =

@@ -1,8 +1,8 @@
 //! How far rounding can carry a quantity that is conserved exactly.
 
-/// Roundings in sequence that one step puts on one number, at most: the group element (some 20 operations from the solved
-/// chart vector, itself known to a few units in the last place), its product with the configuration or the momentum (5), the
-/// kick (10), and the evaluation of what is measured (20); rounded up to a power of two.
+/// The most roundings in sequence that one step makes in one number, rounded up to a power of two. The group element
+/// takes some 20 operations from the solved chart vector, itself known to a few units in the last place. Its product
+/// with the configuration or the momentum takes 5, the kick 10, and the evaluation of the measured quantity 20.
 const ROUNDINGS_PER_STEP: f64 = 64.0;
 
 /// The worst case after `steps` steps: every rounding is by at most ε/2 of `scale`, and all of them have the same sign.

@@ -1,4 +1,4 @@
-//! The frame of a scene: what can go wrong, what is printed, with which code it exits.
+//! The frame of a scene: its failures, its output, and its exit codes.
 
 use crate::claims::Claims;
 use std::fmt::{self, Display, Formatter};
@@ -30,7 +30,7 @@ pub enum Failure {
 }
 
 impl Failure {
-    /// For `map_err` on what is written to `path`.
+    /// For `map_err` on errors of writing to `path`.
     pub fn file(path: &Path) -> impl Fn(io::Error) -> Self + '_ {
         |error| Self::File { path: path.to_owned(), error }
     }

@@ -26,7 +26,8 @@ impl<const N: usize> Display for Table<N> {
     }
 }
 
-/// Lines of texts in columns, the first to the left, the others to the right; for tables whose number of columns is found as they are made.
+/// Lines of texts in columns, the first to the left, the others to the right. It serves tables whose number of columns
+/// is found as they are made.
 pub fn aligned<R: AsRef<[String]>>(lines: impl Iterator<Item = R>) -> String {
     let lines: Vec<R> = lines.collect();
     let columns = lines.iter().map(|line| line.as_ref().len()).max().unwrap_or(0);

@@ -1,4 +1,4 @@
-//! The README shows the first example and its output: both are what the repository holds and prints.
+//! The README shows the first example and its output: both are those of the repository.
 
 use std::path::Path;
 use std::process::Command;

@@ -1,4 +1,4 @@
-//! Each scene as a person runs it: short runs succeed and write what they promise, mistakes are explained.
+//! Each scene as a person runs it: short runs succeed and write the promised files, mistakes are explained.
 //!
 //! `cargo test` builds the examples first; with `--test scenes` alone, run `cargo build --examples` before.
 
@@ -52,7 +52,7 @@ fn run(scene: &str, arguments: &[&str]) -> Output {
     output.unwrap_or_else(|error| panic!("{}: {error}; run `cargo build --examples` first", program.display()))
 }
 
-/// What a run that has to fail prints on standard error; it must not be a panic.
+/// The output on standard error of a run that has to fail; it must not be a panic.
 fn refusal(scene: &str, arguments: &[&str]) -> String {
     let output = run(scene, arguments);
     let errors = String::from_utf8_lossy(&output.stderr).into_owned();
@@ -61,7 +61,7 @@ fn refusal(scene: &str, arguments: &[&str]) -> String {
     errors
 }
 
-/// Runs a check for each case, beside each other: as many at once as the machine has cores. The test fails where one of them does.
+/// Runs a check for each case, as many at once as the machine has cores. The test fails where one of them does.
 fn for_each<T: Sync>(cases: &[T], check: impl Fn(&T) + Sync) {
     let next = AtomicUsize::new(0);
     let workers = std::thread::available_parallelism().map_or(1, NonZero::get);

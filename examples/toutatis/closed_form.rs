@@ -7,8 +7,8 @@ use std::f64::consts::TAU;
 
 /// The motion of a free rigid body with moments A ≤ B ≤ C, L² = |π|² and E2 = π·J⁻¹π, twice the energy.
 ///
-/// In a long-axis mode, L² < B E2, the body momentum circulates about A and ω_A is a multiple of dn; otherwise it circulates
-/// about C and ω_A is a multiple of cn. Source: Landau and Lifshitz, *Mechanics*, §37.
+/// In a long-axis mode, L² < B E2, the body momentum circulates about A, and ω_A is a multiple of dn. Otherwise it
+/// circulates about C, and ω_A is a multiple of cn. Source: Landau and Lifshitz, *Mechanics*, §37.
 #[derive(Clone, Copy, Debug)]
 pub struct Tumbling {
     a: f64,
@@ -51,11 +51,12 @@ impl Tumbling {
         if self.is_about_long_axis() { short / long } else { long / short }
     }
 
-    /// The period with which the body momentum circulates, 4K(m) over the rate of the elliptic functions, and the mean period with
-    /// which the long axis turns about the spatial momentum.
+    /// The period with which the body momentum circulates, 4K(m) over the rate of the elliptic functions. With it, the
+    /// mean period with which the long axis turns about the spatial momentum.
     ///
-    /// That axis turns at the rate L (E2 − Aω_A²)/(L² − A²ω_A²), whose mean is L/A + L (E2 − L²/A)/D · Π(n, m)/K(m), with D the
-    /// least value of L² − A²ω_A². `None` at rest, in steady rotation about the long axis, on the separatrix and for a sphere.
+    /// That axis turns at the rate L (E2 − Aω_A²)/(L² − A²ω_A²). The mean is L/A + L (E2 − L²/A)/D · Π(n, m)/K(m), with
+    /// D the least value of L² − A²ω_A². `None` at rest, in steady rotation about the long axis, on the separatrix and
+    /// for a sphere.
     pub fn periods(&self) -> Option<Periods<f64>> {
         let Self { a, b, c, square, double_energy } = *self;
         let m = self.parameter();
@@ -73,9 +74,9 @@ impl Tumbling {
     }
 }
 
-/// The moments of the body whose exact motion, attitude included, the Moser–Veselov steps of length h follow up to O(h⁴):
-/// 1/I_j becomes σ/I_j + δ, with σ = 1 + h²(e₁E2 − e₂L²/2)/6 and δ = h²(e₃L² − e₂E2/2)/6, e_i the elementary symmetric
-/// functions of the 1/I_j.
+/// The moments of the body whose exact motion, attitude included, the Moser–Veselov steps of length h follow up to
+/// O(h⁴). 1/I_j becomes σ/I_j + δ, with σ = 1 + h²(e₁E2 − e₂L²/2)/6 and δ = h²(e₃L² − e₂E2/2)/6. The e_i are the
+/// elementary symmetric functions of the 1/I_j.
 ///
 /// Source: Hairer and Vilmart, *Preprocessed discrete Moser–Veselov algorithm for the full dynamics of a rigid body* (2006).
 pub fn as_stepped(moments: &Vector3<f64>, momentum: &Vector3<f64>, h: f64) -> Vector3<f64> {

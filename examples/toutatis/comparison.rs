@@ -1,4 +1,4 @@
-//! The periods from the integration beside those from elsewhere.
+//! The periods from the integration next to those from elsewhere.
 
 use crate::Flags;
 use crate::closed_form::{Tumbling, as_stepped};

@@ -1,4 +1,4 @@
-//! Asteroid 4179 Toutatis tumbles freely: its two periods from one integration, against what radar and a flyby found.
+//! Asteroid 4179 Toutatis tumbles freely: its two periods from one integration, against those by radar and a flyby.
 //!
 //! Inertia and spin: Takahashi, Busch and Scheeres, *Spin state and moment of inertia characterization of 4179 Toutatis* (2013).
 //! Periods: Zhao, Ji and others, *Orientation and rotational parameters of asteroid 4179 Toutatis: new insights from Chang'e-2's
@@ -44,8 +44,8 @@ const SCENE: Scene = Scene {
     columns_note: "attitude R11..R33 (body to space), momentum pi1,pi2,pi3 (body frame, inertia unit times rad/day)",
 };
 
-/// Asteroid 4179 Toutatis tumbling freely, on real data: period of rotation about its long axis and mean period of
-/// precession of that axis, against published values
+/// Asteroid 4179 Toutatis tumbling freely, on real data: its period of rotation and its mean period of precession,
+/// against published values
 #[derive(Parser, Debug)]
 struct Flags {
     /// Principal moments of inertia about the body axes, in any one unit

@@ -42,7 +42,7 @@ pub struct Phase {
     pub precession: f64,
 }
 
-/// Follows the two angles and notes when the first has made whole turns.
+/// Follows the two angles and notes when the first has made full turns.
 #[derive(Clone, Debug)]
 pub struct Turns {
     /// The two body axes across the one that the body momentum circulates about.
@@ -50,7 +50,7 @@ pub struct Turns {
     first: Option<Phase>,
     /// The last four phases, the latest at the end.
     recent: Vec<Phase>,
-    /// Whole turns so far and the phase at the last of them.
+    /// Full turns so far and the phase at the last of them.
     whole: Option<(f64, Phase)>,
 }
 
@@ -103,7 +103,8 @@ impl Turns {
         Periods { rotation: turns(|phase| phase.rotation), precession: turns(|phase| phase.precession) }
     }
 
-    /// The periods over all whole turns: the precession speeds up and slows down within a turn, so that its mean needs whole ones.
+    /// The periods over all full turns: the precession speeds up and slows down within a turn, so that its mean needs
+    /// full ones.
     pub fn periods(&self) -> Option<Periods<f64>> {
         let (first, (turns, last)) = (self.first?, self.whole?);
         let time = last.time - first.time;
@@ -119,7 +120,7 @@ pub fn frame_of(momentum: &Vector3<f64>) -> Matrix3<f64> {
     Matrix3::from_rows(&[first.transpose(), third.cross(&first).transpose(), third.transpose()])
 }
 
-/// `angle` by whole turns nearest to `last`.
+/// `angle` by full turns nearest to `last`.
 fn unwrap(last: f64, angle: f64) -> f64 {
     last + (angle - last + PI).rem_euclid(TAU) - PI
 }

@@ -1,4 +1,4 @@
-//! What is kept of the motion while it runs.
+//! The record of the motion while it runs.
 
 use crate::periods::{Periods, Turns, frame_of};
 use clebsch_examples::claims::Claims;
@@ -8,7 +8,7 @@ use nalgebra::{Matrix3, Vector3};
 
 /// Points of the figure.
 const POINTS: u64 = 5000;
-/// How much of the path of the short axis is kept, days: it soon covers the sphere.
+/// How much of the path of the short axis is recorded, days: it soon covers the sphere.
 pub const SHORT_PATH: f64 = 30.0;
 /// Intervals of the table.
 const ROWS: u64 = 8;
@@ -110,7 +110,7 @@ impl Watch {
         self.turns.periods()
     }
 
-    /// Claims what a free body conserves exactly.
+    /// Claims the exactly conserved quantities of a free body.
     pub fn claim(&self, run: &Run, claims: &mut Claims) {
         let momentum = self.momentum.norm();
         claims.round_off("the spatial momentum R π is constant", self.momentum_defect, run.steps, momentum);

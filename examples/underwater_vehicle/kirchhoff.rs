@@ -7,7 +7,7 @@ use clebsch_examples::energy_band::Terms;
 use clebsch_examples::reference::{Solution, solve};
 use nalgebra::{Matrix3, Matrix4, Matrix6, SVector, Vector3, Vector6};
 
-/// A vehicle with what its equations need.
+/// A vehicle with the data of its equations.
 #[derive(Clone, Copy, Debug)]
 pub struct Kirchhoff {
     inverse_inertia: Matrix6<f64>,
@@ -58,9 +58,10 @@ impl Kirchhoff {
 
     /// The terms of the modified energy, with V = Γ·m g r.
     ///
-    /// With the body velocity η of the exact motion, F = exp(hη) and 2(F − I)(F + I)⁻¹ = hη − h³η³/12 + …; the action of the
-    /// exact motion is h ℓ(η) − h³ f·𝕀⁻¹f/24 with f the free rate of the momentum, as η turns by f along a step. So the drift
-    /// is the free motion of T + h² D with D = ⟨μ, η³⟩/12 − f·𝕀⁻¹f/24, and η³ = (−|ω|²ω, ω×(ω×v)).
+    /// With the body velocity η of the exact motion, F = exp(hη) and 2(F − I)(F + I)⁻¹ = hη − h³η³/12 + …. The action
+    /// of the exact motion is h ℓ(η) − h³ f·𝕀⁻¹f/24, as η turns by f along a step. Here f is the free rate of the
+    /// momentum. So the drift is the free motion of T + h² D with D = ⟨μ, η³⟩/12 − f·𝕀⁻¹f/24, and η³ = (−|ω|²ω,
+    /// ω×(ω×v)).
     pub fn terms(&self, pose: &Matrix4<f64>, momentum: &Vector6<f64>) -> Terms {
         let upwards: Vector3<f64> = pose.fixed_view::<1, 3>(2, 0).transpose();
         let (angular, linear) = halves(momentum);

@@ -1,8 +1,8 @@
 //! A neutrally buoyant ellipsoid in an ideal fluid: when ballast and spin keep it on its course.
 //!
-//! Sources: Kirchhoff's equations and the added masses, Lamb, *Hydrodynamics*, §114, §115 and §124; stability, Leonard, *Stability
-//! of a bottom-heavy underwater vehicle*, Automatica 33 (1997) 331–346, and Leonard and Marsden, *Stability and drift of
-//! underwater vehicle dynamics: mechanical systems with rigid motion symmetry*, Physica D 105 (1997) 130–162.
+//! Sources: Kirchhoff's equations and the added masses, Lamb, *Hydrodynamics*, §114, §115 and §124. Stability, Leonard,
+//! *Stability of a bottom-heavy underwater vehicle*, Automatica 33 (1997) 331–346. Leonard and Marsden, *Stability and
+//! drift of underwater vehicle dynamics: mechanical systems with rigid motion symmetry*, Physica D 105 (1997) 130–162.
 
 mod figure;
 mod kirchhoff;

@@ -26,12 +26,12 @@ pub struct Steady {
 }
 
 impl Steady {
-    /// W l* = P² (1/m_∥ − 1/m_⊥): how low the centre of mass of a vehicle without spin has to be, metres; not above zero
-    /// where the fluid turns the vehicle back by itself.
+    /// W l* = P² (1/m_∥ − 1/m_⊥): how low the centre of mass of a vehicle without spin has to be, metres. It is not
+    /// above zero where the fluid turns the vehicle back by itself.
     ///
-    /// m_∥ is the mass along the course, m_⊥ that along the axis which the fluid turns into it. Sources: Leonard (1997), level
-    /// course of a bottom-heavy ellipsoid; Leonard and Marsden, *Stability and drift of underwater vehicle dynamics: mechanical
-    /// systems with rigid motion symmetry*, Physica D 105 (1997) 130–162, steady rise.
+    /// m_∥ is the mass along the course, m_⊥ that along the axis which the fluid turns into it. Sources: Leonard
+    /// (1997), level course of a bottom-heavy ellipsoid. Leonard and Marsden, *Stability and drift of underwater
+    /// vehicle dynamics: mechanical systems with rigid motion symmetry*, Physica D 105 (1997) 130–162, steady rise.
     pub fn critical_offset(&self) -> f64 {
         self.fluid_moment() / self.vehicle.weight()
     }
@@ -63,8 +63,8 @@ impl Steady {
         }
     }
 
-    /// Pose and momentum of the steady motion, turned by `tilt` (radians) about the second body axis; the linear momentum in
-    /// space is that of the steady motion, so that only the tilt is perturbed.
+    /// Pose and momentum of the steady motion, turned by `tilt` (radians) about the second body axis. The linear
+    /// momentum in space is that of the steady motion, so that only the tilt is perturbed.
     pub fn tilted(&self, tilt: f64) -> (Matrix4<f64>, Vector6<f64>) {
         let rotation = Rotation3::from_axis_angle(&Vector3::y_axis(), tilt);
         let direction = if self.course == Course::Cruise { Vector3::x() } else { Vector3::z() };
@@ -75,17 +75,17 @@ impl Steady {
     }
 }
 
-/// D²γ = i g Dγ − k γ, for the tilt γ = Γ₁ + iΓ₂ of the vertical Γ = Rᵀe₃ in the body and its rate as seen from space,
-/// Dγ = −ω₂ + iω₁.
+/// D²γ = i g Dγ − k γ, for the tilt γ = Γ₁ + iΓ₂ and its rate as seen from space, Dγ = −ω₂ + iω₁. Γ = Rᵀe₃ is the
+/// vertical in the body.
 ///
-/// Follows from Kirchhoff's equations linearised about the steady motion, P being constant in space: for a rise
-/// (J − m²l²/m₁) D²γ = iJ₃Ω Dγ − (W l − P²(1/m₃ − 1/m₁)) γ; on a level course the pitch obeys the same with Ω = 0, and 1 and 3
-/// exchanged in the bracket.
+/// Follows from Kirchhoff's equations linearised about the steady motion, with P constant in space. For a rise (J −
+/// m²l²/m₁) D²γ = iJ₃Ω Dγ − (W l − P²(1/m₃ − 1/m₁)) γ. On a level course the pitch obeys the same with Ω = 0, and 1 and
+/// 3 exchanged in the bracket.
 #[derive(Clone, Copy, Debug)]
 pub struct Oscillation {
     /// g, 1/s.
     pub gyration: f64,
-    /// k, 1/s²: what the ballast gives less what the fluid takes.
+    /// k, 1/s²: the stiffness by the ballast less that by the fluid.
     pub stiffness: f64,
     /// Both added, 1/s².
     pub pull: f64,

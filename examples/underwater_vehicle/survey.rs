@@ -42,7 +42,7 @@ impl Family {
     /// All of them.
     pub const ALL: [Self; 3] = [Self::CruiseWithBallast, Self::RiseWithBallast, Self::RiseWithSpin];
 
-    /// What is steady and what holds it.
+    /// The steady motion and its stabilisation.
     pub fn name(self) -> &'static str {
         match self {
             Self::CruiseWithBallast => "cruise, ballast",
@@ -61,7 +61,7 @@ impl Family {
     }
 }
 
-/// One steady motion and what became of a tilt.
+/// One steady motion and the outcome of a tilt.
 #[derive(Clone, Copy, Debug)]
 pub struct Case {
     /// Its family.
@@ -160,14 +160,15 @@ pub fn table(cases: &[Case]) -> Table<5> {
 impl Case {
     /// Below the threshold the tilt grows at the rate of the linear theory, above it stays as small as there.
     ///
-    /// Steps of order 1 are those of order 2 seen from other momenta, by half a kick: both grow alike, and the growing part is
-    /// measured wrongly by hΩ at start and end.
+    /// Steps of order 1 are those of order 2 seen from other momenta, by half a kick. Both grow alike, and the growing
+    /// part is measured wrongly by hΩ at start and end.
     pub fn claim(&self, claims: &mut Claims) {
         let name = format!("{} at {} of its threshold", self.family.name(), self.ratio);
         let (size, condition) = (self.oscillation.size(), self.oscillation.condition());
         let shift = self.angle * self.angle / 2.0 * size * condition;
         let half_kick = if self.order == Order::First { self.angle * condition } else { 0.0 };
-        // At the end a tilt is TILT · GROWTH times a small number: what is not linear is less than itself.
+        // At the end a tilt is TILT · GROWTH times a small number: the nonlinear part is less than this factor of
+        // itself.
         let nonlinear = TILT * GROWTH;
         if self.ratio < 1.0 {
             let growth = self.oscillation.growth();
@@ -188,7 +189,7 @@ impl Case {
     }
 }
 
-/// What is said where a vehicle has no threshold.
+/// The text for a vehicle without a threshold.
 pub fn skip(family: Family, base: &Steady, claims: &mut Claims) {
     let reason = match base.course {
         Course::Cruise => {

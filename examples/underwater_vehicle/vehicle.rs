@@ -9,7 +9,7 @@ pub const DENSITY: f64 = 1000.0;
 /// m/s²
 pub const GRAVITY: f64 = 9.81;
 
-/// What the fluid adds to the kinetic energy of a body, diagonal in the axes of an ellipsoid.
+/// The share of the fluid in the kinetic energy of a body, diagonal in the axes of an ellipsoid.
 #[derive(Clone, Copy, Debug)]
 pub struct Added {
     /// To the mass, kg.
@@ -20,8 +20,8 @@ pub struct Added {
 
 /// Lamb's added masses and inertias of an ellipsoid with semi-axes a, b, c, displacing the mass m.
 ///
-/// α₀ = abc ∫₀^∞ dλ/((a² + λ) Δ) = ⅔ abc R_D(b², c², a²); mass m α₀/(2 − α₀); inertia
-/// m/5 (b² − c²)² (γ₀ − β₀) / (2(b² − c²) + (b² + c²)(β₀ − γ₀)), and cyclic. Source: Lamb, *Hydrodynamics*, §114 and §115.
+/// α₀ = abc ∫₀^∞ dλ/((a² + λ) Δ) = ⅔ abc R_D(b², c², a²), and the mass is m α₀/(2 − α₀). The inertia is m/5 (b² − c²)²
+/// (γ₀ − β₀) / (2(b² − c²) + (b² + c²)(β₀ − γ₀)), and cyclic. Source: Lamb, *Hydrodynamics*, §114 and §115.
 pub fn added(semi_axes: [f64; 3]) -> Added {
     let (volume, square) = (semi_axes.iter().product::<f64>(), semi_axes.map(|axis| axis * axis));
     let displaced = DENSITY * 4.0 * PI / 3.0 * volume;

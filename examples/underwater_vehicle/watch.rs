@@ -1,4 +1,4 @@
-//! What is kept of the rise while it runs, and what is claimed of it.
+//! The record of the rise while it runs, and the claims about it.
 
 use crate::kirchhoff::Kirchhoff;
 use crate::vehicle::halves;

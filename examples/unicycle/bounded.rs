@@ -10,10 +10,10 @@ use clebsch_examples::table::Table;
 use nalgebra::{Matrix3, Vector2};
 use std::f64::consts::{PI, TAU};
 
-/// What holds the inputs back, in the order in which the bounds are declared.
+/// The limits of the inputs, in the order in which the bounds are declared.
 const BOUNDS: [&str; 3] = ["turns right at most", "turns left at most", "stands still"];
 
-/// What a barrier may leave of inputs and places, relative.
+/// The tolerance of a barrier for inputs and places, relative.
 const BARRIER: f64 = 1e-8;
 
 /// A plan that keeps the bounds.
@@ -30,7 +30,7 @@ impl Bounded {
     /// Solves the problem within bounds from a turn in place, a drive straight ahead and another turn; `None` where bounds leave no way.
     ///
     /// # Errors
-    /// What solving returns otherwise.
+    /// The other errors of the solver.
     pub fn new(problem: Problem, goal: &Matrix3<f64>, top_turn: f64, steps: u64) -> Result<Option<Self>, Error> {
         let problem = Problem { car: Car { top_turn, ..problem.car }, ..problem };
         let guess = turn_drive_turn(goal, top_turn, problem.duration);
@@ -65,7 +65,7 @@ impl Bounded {
         table
     }
 
-    /// The bounds are kept, and the conditions of first order hold where they are active and where they are not.
+    /// The bounds are satisfied, and the conditions of first order hold where they are active and where they are not.
     pub fn claim(&self, claims: &mut Claims) {
         let (plan, car, steps) = (&self.plan, &self.problem.car, self.plan.steps() as u64);
         claims.round_off("bounds: the plan arrives", plan.gap, steps, 1.0);
@@ -99,7 +99,7 @@ fn turn_drive_turn(goal: &Matrix3<f64>, top_turn: f64, duration: f64) -> impl Fn
     let first = if distance > 0.0 { way.y.atan2(way.x) } else { 0.0 };
     let second = (way.z - first + PI).rem_euclid(TAU) - PI;
     let angle = first.abs() + second.abs();
-    // half of the time, or half of what is left at the largest rate
+    // half of the time, or half of the remaining time at the largest rate
     let least = angle / top_turn;
     let turning = if least < duration / 2.0 { duration / 2.0 } else { (least + duration) / 2.0 };
     let (rate, speed) = (angle / turning, distance / (duration - turning));

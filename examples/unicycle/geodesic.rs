@@ -1,11 +1,13 @@
 //! The closed form: geodesics of the sub-Riemannian plane of motions in Jacobi's elliptic functions.
 //!
-//! With the turning rate ω, the speed v and the price ½∫(a²ω² + v²)dt, Pontryagin's principle gives a²ω = λ_θ and v = λ_x for a costate
-//! λ = (λ_θ, λ_x, λ_y) in the frame of the unicycle. Its part (λ_x, λ_y) is a vector of length P that stays as it is in space; the angle φ
-//! that it makes with the heading obeys φ̈ = (P/a)² sin φ cos φ, and 2φ − π swings like a pendulum with the frequency Ω = P/a.
+//! The turning rate is ω, the speed v and the price ½∫(a²ω² + v²)dt. Pontryagin's principle gives a²ω = λ_θ and v = λ_x
+//! for a costate λ = (λ_θ, λ_x, λ_y) in the frame of the unicycle. Its part (λ_x, λ_y) is a vector of length P that is
+//! constant in space. The angle φ that it makes with the heading obeys φ̈ = (P/a)² sin φ cos φ. So 2φ − π swings like a
+//! pendulum with the frequency Ω = P/a.
 //!
-//! Source: Moiseev and Sachkov, *Maxwell strata in sub-Riemannian problem on the group of motions of a plane*, ESAIM: Control, Optimisation
-//! and Calculus of Variations 16 (2010), 380–399, there for a = 1 and speed 1; integrated anew for the coordinates of this scene.
+//! Source: Moiseev and Sachkov, *Maxwell strata in sub-Riemannian problem on the group of motions of a plane*, ESAIM
+//! COCV 16 (2010), 380–399. There a = 1 and the speed is 1. The formulas are integrated anew for the coordinates of this
+//! scene.
 
 use crate::place::at;
 use clebsch_examples::jacobi::Jacobi;
@@ -27,7 +29,7 @@ pub struct Geodesic {
 pub struct Moment {
     /// q
     pub place: Matrix3<f64>,
-    /// λ_θ, λ_x, λ_y: what more of a small motion takes off the price.
+    /// λ_θ, λ_x, λ_y: the decrease of the price by more of a small motion.
     pub costate: Vector3<f64>,
     /// ω in rad/s, v in m/s.
     pub input: Vector2<f64>,
@@ -49,7 +51,7 @@ impl Geodesic {
         let (length, [turn, ahead, left]) = (turn_price.sqrt(), <[f64; 3]>::from(*costate));
         let (p, speed) = (ahead.hypot(left), (turn / length).hypot(ahead));
         let frequency = p / length;
-        // P² − 2E, without what both have in common
+        // P² − 2E, without the common part of both
         let excess = left * left - (turn / length).powi(2);
         let side = 1_f64.copysign(left);
         let motion = if p == 0.0 {

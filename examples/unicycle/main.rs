@@ -1,5 +1,5 @@
-//! A unicycle that turns and drives at least price: geodesics of the sub-Riemannian plane of motions, and what bounds, a free end and a
-//! free time make of them.
+//! A unicycle that turns and drives at least price: geodesics of the sub-Riemannian plane of motions. Then the effect
+//! of bounds, of a free end and of a free time.
 //!
 //! Closed form: Moiseev and Sachkov (2010), as in `geodesic`. The number of steps and their length are those of `--steps` and `--step-size`;
 //! nothing is a kick.
@@ -47,7 +47,7 @@ pub struct Flags {
     /// Price of turning against driving, m2
     #[arg(long, value_name = "C", value_parser = positive, allow_hyphen_values = true, default_value = "1")]
     turn_price: f64,
-    /// Costate at the start of the geodesic: C omega in m2/s, v in m/s, and what pushes to the left, m/s
+    /// Costate at the start of the geodesic: C omega in m2/s, v in m/s, and the push to the left, m/s
     #[arg(long, value_name = "THETA,X,Y", value_parser = finite_list::<3>, allow_hyphen_values = true)]
     #[arg(default_value = "1.5,1.2,2.4")]
     costate: [f64; 3],

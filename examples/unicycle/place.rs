@@ -12,7 +12,7 @@ pub fn at(x: f64, y: f64, heading: f64) -> Matrix3<f64> {
 /// Written as x, y in metres and the heading in degrees.
 ///
 /// # Errors
-/// What is no three numbers.
+/// A text that is not three numbers.
 pub fn parse(text: &str) -> Result<Matrix3<f64>, String> {
     let [x, y, degrees] = finite_list::<3>(text)?;
     // quarters of a turn are exact

@@ -6,7 +6,7 @@ use clebsch::{Error, Optimum, Target};
 use clebsch_examples::claims::largest;
 use nalgebra::{Matrix3, Vector2};
 
-/// What is asked for.
+/// The task.
 #[derive(Clone, Copy, Debug)]
 pub struct Problem {
     /// Parameters.
@@ -32,7 +32,7 @@ pub struct Plan {
     pub index: usize,
     /// Linearisations.
     pub iterations: u32,
-    /// What is left of the way to the target.
+    /// The remaining way to the target.
     pub gap: f64,
 }
 
@@ -40,7 +40,7 @@ impl Problem {
     /// The plan of N steps near the inputs `guess`(t), t in the middle of a step.
     ///
     /// # Errors
-    /// What solving returns.
+    /// The errors of the solver.
     pub fn solve<S: Wheel<C>, const C: usize>(
         &self,
         steps: u64,
@@ -56,7 +56,7 @@ impl Problem {
     /// The same with the step size at which the price is least, within a factor of a thousand of that of `solve`.
     ///
     /// # Errors
-    /// What solving returns.
+    /// The errors of the solver.
     pub fn solve_free_time<S: Wheel<C>, const C: usize>(
         &self,
         steps: u64,
@@ -73,7 +73,7 @@ impl Problem {
     /// Plans with N, 2N and 4N steps: each is the guess of the next, so that they are the same plan.
     ///
     /// # Errors
-    /// What solving returns.
+    /// The errors of the solver.
     pub fn refine<S: Wheel<C>, const C: usize>(
         &self,
         steps: u64,
@@ -87,7 +87,7 @@ impl Problem {
 }
 
 impl Plan {
-    /// What was found.
+    /// The result.
     pub fn of<S: Wheel<C>, const C: usize>(optimum: &Optimum<'_, S, 3, 2, C>) -> Self {
         let moment = |place, costate, input| Moment { place, costate, input };
         let stages = optimum.stages();

@@ -16,7 +16,7 @@ const SMALL: f64 = 1e-9;
 pub struct Shot {
     /// λ at the start.
     pub costate: Vector3<f64>,
-    /// By how much a small error of what is to vanish, in units of it, changes the costate.
+    /// By how much a small error of the residual, in its unit, changes the costate.
     pub sensitivity: f64,
 }
 

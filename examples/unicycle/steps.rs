@@ -1,7 +1,8 @@
-//! The equations of first order of the steps, derived by hand: what shooting with them gives is compared with what was solved.
+//! The equations of first order of the steps, derived by hand: shooting with them is compared with the solution.
 //!
-//! Within a step of constant inputs the costate obeys the continuous equations, which it solves in closed form; that the price does not
-//! change to first order means that the inputs are the means of λ_θ/a² and λ_x over the step, or the bound that these are beyond.
+//! Within a step of constant inputs the costate obeys the continuous equations, which it solves in closed form. The
+//! price does not change to first order if the inputs are the means of λ_θ/a² and λ_x over the step. An input beyond
+//! its bound is at the bound.
 
 use crate::geodesic::Moment;
 use crate::place::{self, at};
@@ -9,7 +10,7 @@ use crate::plan::Plan;
 use clebsch_examples::claims::largest;
 use nalgebra::{Matrix3, Vector2, Vector3};
 
-/// Sweeps for the inputs of a step, each of which divides the error by some 1/h.
+/// Sweeps for the inputs of a step; each divides the error by some 1/h.
 const SWEEPS: usize = 200;
 /// Relative change of a costate, to see how it grows.
 const CHANGE: f64 = 1e-6;
@@ -35,8 +36,8 @@ impl Steps {
         Self { h, turn_price, least: Vector2::repeat(f64::NEG_INFINITY), most: Vector2::repeat(f64::INFINITY) }
     }
 
-    /// How far a plan is from what shooting with its costate at the start gives, as in [`apart`], and by how much a relative change of that
-    /// costate grows.
+    /// How far a plan is from shooting with its costate at the start, as in [`apart`]. The second number is the growth
+    /// of a relative change of that costate.
     pub fn off(&self, plan: &Plan) -> Option<(f64, f64)> {
         let Moment { place, costate, .. } = plan.path[0];
         let path = self.shoot(&place, &costate, plan.steps())?;
@@ -64,7 +65,7 @@ impl Steps {
         Some(path)
     }
 
-    /// The inputs that are the means of what they bring about.
+    /// The inputs that are the means of their own results.
     fn input(&self, costate: &Vector3<f64>, guess: &Vector2<f64>) -> Option<Vector2<f64>> {
         let (mut input, mut last) = (*guess, f64::INFINITY);
         for _ in 0..SWEEPS {

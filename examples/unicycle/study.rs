@@ -1,4 +1,4 @@
-//! A problem solved with steps of h, h/2 and h/4 beside the closed form.
+//! A problem solved with steps of h, h/2 and h/4 next to the closed form.
 
 use crate::conjugate;
 use crate::declaration::Free;
@@ -45,7 +45,7 @@ impl Study {
     /// Solves the problem from the inputs `guess`(t), and aims the closed form at the same target from the costate that was found.
     ///
     /// # Errors
-    /// What solving returns.
+    /// The errors of the solver.
     pub fn new(
         name: &'static str,
         problem: Problem,
@@ -107,7 +107,7 @@ impl Study {
         }
     }
 
-    /// What is exact is so to round-off, what is of second order is that.
+    /// Claims exact properties to round-off, and those of second order to that order.
     pub fn claim(&self, claims: &mut Claims) {
         let [plan, ..] = &self.plans;
         let name = |text: &str| format!("{}: {text}", self.name);
@@ -177,7 +177,7 @@ impl Study {
 }
 
 impl Problem {
-    /// What a geodesic lacks: the way to the target, or the condition λ = −∂φ/∂q at a free end.
+    /// The gap of a geodesic: the way to the target, or the condition λ = −∂φ/∂q at a free end.
     fn lack(&self, geodesic: &Geodesic) -> Option<Vector3<f64>> {
         let moment = geodesic.at(self.duration);
         match self.target {

@@ -1,6 +1,7 @@
 //! The same parking in a time of one's own choice, which has a price.
 //!
-//! Paths do not depend on the time, so that a path of the length d in the metric costs d²/(2T) + wT: the least is d√(2w), at T = d/√(2w).
+//! Paths do not depend on the time, so a path of the length d in the metric costs d²/(2T) + wT. The least is d√(2w), at
+//! T = d/√(2w).
 
 use crate::declaration::{Car, Free};
 use crate::plan::{Plan, Problem};
@@ -13,10 +14,10 @@ use clebsch_examples::table::Table;
 
 /// The golden ratio less 1.
 const GOLDEN: f64 = 0.618_033_988_749_894_9;
-/// Sections of an interval: the price is flat to rounding once it is a ten millionth of what it was.
+/// Sections of an interval: the price is flat to rounding once the interval is a ten millionth of its first length.
 const SECTIONS: usize = 34;
 
-/// Plans whose time was found, and what it should be.
+/// Plans whose time was found, and its exact value.
 #[derive(Clone, Debug)]
 pub struct FreeTime {
     /// With N, 2N and 4N steps.
@@ -31,7 +32,7 @@ impl FreeTime {
     /// Solves the problem of `parking` with the price `time_price` of a second.
     ///
     /// # Errors
-    /// What solving returns.
+    /// The errors of the solver.
     pub fn new(problem: Problem, parking: &Study, time_price: f64) -> Result<Self, Error> {
         let problem = Problem { car: Car { time_price, ..problem.car }, ..problem };
         let [coarse, middle, fine] = &parking.plans;
@@ -45,7 +46,7 @@ impl FreeTime {
         Ok(Self { plans, searched, exact })
     }
 
-    /// What was found.
+    /// The results.
     pub fn table(&self) -> Table<6> {
         let mut table =
             Table::new(["free time: steps", "time / s", "off by", "price / (m²/s)", "off by", "iterations"]);

@@ -1,4 +1,4 @@
-//! What the study asserts of every declaration.
+//! The claims of the study about every declaration.
 
 use crate::exact::Exact;
 use crate::measure::{Point, by_setting};

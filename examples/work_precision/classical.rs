@@ -7,7 +7,7 @@ use nalgebra::SVector;
 use std::hint::black_box;
 use std::time::Instant;
 
-/// ẏ = f(y) in M numbers, which a person who wants speed would take, beside the N of the scene.
+/// ẏ = f(y) in M numbers, the fast form of a person, next to the N of the scene.
 #[derive(Clone)]
 pub struct Equation<F, const M: usize, const N: usize> {
     /// f

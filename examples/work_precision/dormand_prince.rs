@@ -1,4 +1,5 @@
-//! DOP853: the method of Dormand and Prince of order 8 with embedded methods of orders 5 and 3, in steps as long as a tolerance allows.
+//! DOP853: the method of Dormand and Prince of order 8 with embedded methods of orders 5 and 3. Its steps are as long
+//! as a tolerance allows.
 //!
 //! Source: Hairer, Nørsett and Wanner, *Solving Ordinary Differential Equations I*, §II.5 and §II.10; coefficients of its program DOP853.
 
@@ -42,7 +43,7 @@ pub struct DormandPrince<'a, F> {
     pub field: &'a F,
 }
 
-/// y after a step, and by what the embedded methods of orders 5 and 3 differ from it, over h.
+/// y after a step, and the differences of the embedded methods of orders 5 and 3 from it, over h.
 struct Step<const M: usize> {
     next: SVector<f64, M>,
     fifth: SVector<f64, M>,
@@ -57,7 +58,7 @@ impl<F> DormandPrince<'_, F> {
     {
         let mut k = [SVector::zeros(); 12];
         k[0] = *slope;
-        // written out, so that the optimiser sees the coefficients that are 0
+        // unrolled, so that the optimiser sees the coefficients that are 0
         macro_rules! stages {
             ($($stage:literal)*) => { $(
                 k[$stage] = (self.field)(&(y + sum::<M, $stage>(&A[$stage - 1], &k) * h));

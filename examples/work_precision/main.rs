@@ -1,4 +1,4 @@
-//! What accuracy costs: every setting of four scenes and two classical methods, from long steps to short ones.
+//! The price of accuracy: every setting of four scenes and two classical methods, from long steps to short ones.
 //!
 //! A setting is a discretization with an order. Times are those of one core; machines are noisy, so take their ratios.
 
@@ -22,7 +22,7 @@ use report::Csv;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-/// Work and precision: error against time for all settings of four scenes, beside RK4 and DOP853
+/// Work and precision: error against time for all settings of four scenes, next to RK4 and DOP853
 #[derive(Parser, Debug)]
 #[command(name = "work_precision")]
 struct Flags {
@@ -93,7 +93,7 @@ fn run(flags: &Flags) -> Result<Claims, Failure> {
     Ok(study.claims)
 }
 
-/// What has been found so far.
+/// The results so far.
 struct Study<'a> {
     flags: &'a Flags,
     csv: Option<Csv<'a>>,

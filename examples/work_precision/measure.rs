@@ -1,4 +1,4 @@
-//! What is measured of each setting at each place of its dial.
+//! The measurements of each setting at each place of its dial.
 
 use crate::exact::Exact;
 use crate::motion::Scene;
@@ -36,7 +36,7 @@ pub struct Point {
     pub momenta: f64,
     /// How far the configuration leaves its space, at most.
     pub constraint: f64,
-    /// What it beats.
+    /// The settings that it beats.
     pub front: Front,
 }
 
@@ -124,7 +124,7 @@ fn walk<const N: usize>(scene: &Scene<N>, exact: &Exact<N>, setting: &dyn Settin
     Some(Point { name, dial, h, steps, error, time: f64::INFINITY, energy, momenta, constraint, front: Front::Behind })
 }
 
-/// What has been seen of a motion.
+/// The observations of a motion.
 struct Seen {
     start_energy: f64,
     start_momenta: Vector6<f64>,
@@ -179,8 +179,8 @@ pub fn by_setting(points: &[Point]) -> impl Iterator<Item = &[Point]> {
     points.chunk_by(|a, b| a.name == b.name)
 }
 
-/// Time and length of steps at which a setting has an error, between two of its points by powers, or of its longest steps where they are
-/// better than that.
+/// Time and length of steps at which a setting has an error, between two of its points by powers. If its longest steps
+/// are better than that, they are taken.
 pub fn at_error(points: &[Point], error: f64) -> Option<(f64, f64)> {
     let first = points.first()?;
     if first.error <= error {

@@ -1,4 +1,4 @@
-//! A scene: its equations of motion, what it keeps, and the ways to integrate it.
+//! A scene: its equations of motion, its conserved quantities, and the ways to integrate it.
 
 use crate::setting::Setting;
 use clebsch_examples::claims::largest;
@@ -38,7 +38,7 @@ pub struct Scene<const N: usize> {
     pub closed_form: Option<ClosedForm>,
     /// Steps of the reference in each tenth of the duration; half as many tell its error.
     pub reference_steps: u64,
-    /// What is compared.
+    /// The settings that are compared.
     pub settings: Vec<Box<dyn Setting<N>>>,
 }
 

@@ -88,8 +88,8 @@ const SPAN: f64 = 4.1;
 
 /// The measured order: between the shortest steps whose error is in [`WINDOW`] and those that are, if they can, four times as long.
 ///
-/// At order 1 it is that of the energy error. Its steps are those of order 2 seen from other momenta, by half a kick, so that over long
-/// times the phase is wrong by h² t, and h shows only in what does not grow.
+/// At order 1 it is that of the energy error. Its steps are those of order 2 seen from other momenta, by half a kick.
+/// So over long times the phase is wrong by h² t, and h shows only in bounded errors.
 pub fn slope(points: &[Point]) -> Option<f64> {
     let first_order = points.first()?.name.order == 1;
     let error = |point: &Point| if first_order { point.energy[0].max(point.energy[1]) } else { point.error };
@@ -101,7 +101,7 @@ pub fn slope(points: &[Point]) -> Option<f64> {
     fixed.then(|| (error(first) / error(last)).ln() / (first.h / last.h).ln())
 }
 
-/// What to take for an error, one line for each.
+/// The advice for an error, one line for each.
 pub fn advice(title: &str, duration: f64, points: &[Point]) -> Vec<String> {
     WISHED.iter().filter_map(|error| advise(title, duration, points, *error)).collect()
 }
@@ -162,7 +162,7 @@ impl<'a> Csv<'a> {
         Ok(())
     }
 
-    /// Writes what is still in memory and says where the file is.
+    /// Writes the buffered lines and says where the file is.
     ///
     /// # Errors
     /// [`Failure::File`]

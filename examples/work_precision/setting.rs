@@ -10,12 +10,12 @@ use std::time::Instant;
 pub const SAMPLES: u64 = 10;
 /// Observations of a walk with fixed steps, at most, about.
 const OBSERVATIONS: u64 = 5120;
-/// A reading of the clock takes at least so long, nanoseconds: what it costs to read it does not show.
+/// A reading of the clock takes at least so long, nanoseconds: then the cost of reading does not show.
 pub const READING: u128 = 1_500_000;
 /// Steps, or parts of a motion, between the first two looks at the clock; each time twice as many.
 const FIRST_LOOK: u64 = 1;
 
-/// What a person turns to trade time for accuracy.
+/// The dial that a person turns to trade time for accuracy.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Dial {
     /// Steps of equal length, in each of [`SAMPLES`] parts of the duration.
@@ -47,7 +47,8 @@ pub struct Name {
 }
 
 impl Name {
-    /// Whether momenta and the orbit are kept by each step: by those of order 16 only where sweeps go on until they settle.
+    /// Whether each step conserves momenta and the orbit. Steps of order 16 do so only where sweeps go on until they
+    /// settle.
     pub fn is_settled(&self) -> bool {
         self.tolerance.is_none() || self.order < 16
     }
@@ -65,7 +66,7 @@ impl std::fmt::Display for Name {
 
 /// A method for a scene whose motions are N numbers.
 pub trait Setting<const N: usize> {
-    /// What it is called.
+    /// Its name.
     fn name(&self) -> Name;
 
     /// Whether its dial is a tolerance.
@@ -76,14 +77,14 @@ pub trait Setting<const N: usize> {
     /// Integrates over `duration`, shows times and motions, those of [`SAMPLES`] among them, and returns the number of steps.
     ///
     /// # Errors
-    /// What a step returns, such as that it is too long.
+    /// The errors of a step, such as that it is too long.
     fn walk(&self, dial: Dial, duration: f64, observe: &mut Observe<'_, N>) -> Result<u64, Error>;
 
     /// Nanoseconds of computing for one unit of simulated time; nothing is observed.
     fn clock(&self, dial: Dial, duration: f64) -> f64;
 }
 
-/// Takes a time and what the motion is then.
+/// Takes a time and the motion then.
 pub type Observe<'a, const N: usize> = dyn FnMut(f64, &SVector<f64, N>) + 'a;
 
 /// Writes a state as the numbers of the scene.

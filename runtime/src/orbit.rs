@@ -44,7 +44,7 @@ pub fn length_defect<T: Scalar, const N: usize>(q: &SVector<T, N>) -> T {
 /// that nothing waits for; corrections are rare.
 ///
 /// Starts may be off by √ε: one step of Newton and Schulz leaves round-off. A larger defect takes three steps. Beyond
-/// [`LARGEST_DEFECT`] the result is NaN, as formulas have lost their digits.
+/// 1/1024 the result is NaN, as formulas have lost their digits.
 ///
 /// Source: Higham, *Functions of Matrices*, section 8.3.
 #[inline(always)]

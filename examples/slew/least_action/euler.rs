@@ -1,7 +1,7 @@
 //! The continuous free motion with its derivative by the momentum at the start: nothing here is derived by the macro.
 //!
-//! Ṙ = R ω̂ and π̇ = π × ω with ω = J⁻¹π (Euler). Variations δR = R η̂ obey η̇ = J⁻¹δπ + η × ω and δπ̇ = δπ × ω + π × J⁻¹δπ.
-//! Units: the time of the whole slew and the mean principal moment are 1, so that all numbers are angles.
+//! Ṙ = R ω̂ and π̇ = π × ω with ω = J⁻¹π (Euler). Variations δR = R η̂ obey η̇ = J⁻¹δπ + η × ω and δπ̇ = δπ × ω + π ×
+//! J⁻¹δπ. Units: the duration of the slew and the mean principal moment are 1, so that all numbers are angles.
 
 use crate::body::Body;
 use clebsch_examples::reference::solve;
@@ -31,7 +31,7 @@ pub struct Motion {
     pub by_momentum: Matrix3<f64>,
     /// δπ by δπ₀.
     change: Matrix3<f64>,
-    /// What integration has made wrong, from above, before the motion magnifies it.
+    /// The error of integration, from above, before the motion magnifies it.
     pub error: f64,
 }
 
@@ -48,7 +48,7 @@ impl Euler {
         }
     }
 
-    /// The action of the whole motion, J·s: the energy ½ π·J⁻¹π is constant.
+    /// The action of the motion, J·s: the energy ½ π·J⁻¹π is constant.
     pub fn action(&self, momentum: &Vector3<f64>) -> f64 {
         momentum.dot(&(self.inverse_inertia * momentum)) / 2.0 * self.action_unit
     }
@@ -69,7 +69,7 @@ impl Euler {
         }
     }
 
-    /// The motion later by a part of the whole time.
+    /// The motion later by a part of the duration.
     pub fn after(&self, motion: &Motion, part: f64) -> Motion {
         let rate = motion.momentum.norm() / self.least_moment;
         let solution = solve(|y| self.field(y), motion.pack(), part, rate);

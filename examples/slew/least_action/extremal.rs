@@ -1,4 +1,4 @@
-//! One slew as the steps have it: the extremal between two attitudes, and what it keeps.
+//! One slew as the steps have it: the extremal between two attitudes, and its conserved quantities.
 
 use super::declaration::FreeBody;
 use super::problem::Problem;
@@ -41,7 +41,7 @@ impl Slew {
     /// The extremal near a guess, by [`clebsch::Boundary::solve`].
     ///
     /// # Errors
-    /// What solving returns.
+    /// The errors of the solver.
     pub fn solve<M: Differentiated<FreeBody, 3>>(
         problem: &Problem,
         stepper: &Stepper<FreeBody, M>,
@@ -94,10 +94,11 @@ impl Slew {
         Ok(())
     }
 
-    /// Claims what holds to round-off; a momentum that is wrong by ε leads `growth` ε aside.
+    /// Claims the properties that hold to round-off; a momentum that is wrong by ε leads `growth` ε aside.
     pub fn claim(&self, name: &str, growth: f64, claims: &mut Claims) {
         let steps = self.path.len() as u64 - 1;
-        // A momentum is known as well as the short turn of one step is: an attitude that is rounded by ε makes it wrong by ε/turn.
+        // A momentum is known as well as the short turn of one step is. An attitude that is rounded by ε makes it wrong
+        // by ε/turn.
         let amplified = 1.0 + steps as f64 / self.angle;
         let name_of = |what| format!("{name}: {what}");
         claims.round_off(&name_of("the spacecraft arrives"), self.gap, steps, 1.0);

@@ -14,7 +14,7 @@ use clebsch_examples::table::Table;
 /// Solves for the least slew with all discretizations and steps of h, h/2 and h/4; prints and claims their order.
 ///
 /// # Errors
-/// What solving returns.
+/// The errors of the solver.
 pub fn compare(problem: &Problem, shot: &Shot, claims: &mut Claims) -> Result<(), Failure> {
     let mut table = Table::new(["discretization", "off with h", "h/2", "h/4 / rad", "order"]);
     for discretization in Discretization::ALL {

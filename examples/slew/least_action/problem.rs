@@ -1,4 +1,4 @@
-//! Two attitudes, a body, a duration: what every slew is asked.
+//! Two attitudes, a body, a duration: the task of every slew.
 
 use super::euler::Euler;
 use crate::Flags;

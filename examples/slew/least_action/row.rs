@@ -1,4 +1,4 @@
-//! A slew by shooting beside the same by steps.
+//! A slew by shooting next to the same by steps.
 
 use super::census::is_same;
 use super::declaration::FreeBody;
@@ -36,7 +36,7 @@ impl Row {
     /// Leads the steps along `shot`, with h, h/2 and h/4.
     ///
     /// # Errors
-    /// What solving returns.
+    /// The errors of the solver.
     pub fn new<M: Differentiated<FreeBody, 3>>(
         problem: &Problem,
         shot: Shot,
@@ -67,10 +67,10 @@ impl Row {
     }
 }
 
-/// The slews with h, h/2 and h/4 beside `shot`.
+/// The slews with h, h/2 and h/4 next to `shot`.
 ///
 /// # Errors
-/// What solving returns.
+/// The errors of the solver.
 pub fn refine<M: Differentiated<FreeBody, 3>>(problem: &Problem, shot: &Shot) -> Result<[Option<Slew>; 3], Failure> {
     Ok([trace::<M>(problem, shot, 1)?, trace::<M>(problem, shot, 2)?, trace::<M>(problem, shot, 4)?])
 }

@@ -20,7 +20,7 @@ pub struct Shot {
     pub momentum: Vector3<f64>,
     /// J·s
     pub action: f64,
-    /// How far the momentum may be off: what integration has made wrong, as the motion magnifies it.
+    /// How far the momentum may be off: the error of integration, as the motion magnifies it.
     pub error: f64,
 }
 

@@ -1,4 +1,4 @@
-//! The slew of the steps beside a given one.
+//! The slew of the steps next to a given one.
 
 use super::declaration::FreeBody;
 use super::extremal::Slew;
@@ -7,12 +7,13 @@ use super::shooting::Shot;
 use clebsch::{Clebsch, Differentiated, Error, Guess};
 use clebsch_examples::scene::Failure;
 
-/// The extremal of N · `finer` steps beside `shot`; `None` where there is none.
+/// The extremal of N · `finer` steps next to `shot`; `None` where there is none.
 ///
-/// A node of each step is solved for on its own, from one attitude of `shot` to the next; all of them are the guess, [`Guess::Path`].
+/// A node of each step is solved for on its own, from one attitude of `shot` to the next. All of them are the guess,
+/// [`Guess::Path`].
 ///
 /// # Errors
-/// What solving returns.
+/// The errors of the solver.
 pub fn trace<M: Differentiated<FreeBody, 3>>(
     problem: &Problem,
     shot: &Shot,

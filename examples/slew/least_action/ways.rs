@@ -17,7 +17,7 @@ pub struct Way {
     pub name: &'static str,
     /// The action of the turn about the fixed axis, J·s.
     pub steady: f64,
-    /// What was found.
+    /// The result.
     pub slew: Slew,
 }
 
@@ -26,7 +26,7 @@ pub struct Way {
 /// The first is looked for as a minimum, the others as whatever is near. Half a turn has two directions: there a velocity says which.
 ///
 /// # Errors
-/// What solving returns.
+/// The errors of the solver.
 pub fn follow<M: Differentiated<FreeBody, 3>>(problem: &Problem) -> Result<Vec<Way>, Failure> {
     let stepper =
         FreeBody { inertia: problem.body.inertia }.into_stepper_by::<M>(problem.duration / problem.steps as f64)?;
@@ -43,7 +43,7 @@ pub fn follow<M: Differentiated<FreeBody, 3>>(problem: &Problem) -> Result<Vec<W
     Ok(ways)
 }
 
-/// What all guesses lead to.
+/// The results of all guesses.
 pub fn table(ways: &[Way]) -> Table<7> {
     let mut table = Table::new([
         "guess",

@@ -3,7 +3,7 @@
 use clebsch::Clebsch;
 use nalgebra::{Matrix3, Vector3};
 
-/// A body that is turned by torques about its axes, each of them bounded; ½ |u|² a second is what they cost.
+/// A body that is turned by torques about its axes, each of them bounded; the price is ½ |u|² a second.
 #[derive(Clebsch, Clone, Debug)]
 #[clebsch(
     action     = |F: SO<3>, R: SO<3>| R * F,

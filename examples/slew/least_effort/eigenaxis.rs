@@ -1,7 +1,8 @@
 //! Turns about the fixed axis from rest to rest, for comparison.
 //!
-//! With the angle θ(t) about the axis e the torque is u = J e θ̈ + θ̇² e × J e, two parts at right angles: |u|² = |J e|² θ̈² + |e × J e|² θ̇⁴.
-//! ∫ θ̈² dt ≥ 12 θ₁²/T³, with equality for θ = θ₁ (3s² − 2s³), s = t/T, so that no such turn, bounded or not, costs less than 6 |J e|² θ₁²/T³.
+//! With the angle θ(t) about the axis e the torque is u = J e θ̈ + θ̇² e × J e. Its two parts are at right angles:
+//! |u|² = |J e|² θ̈² + |e × J e|² θ̇⁴. ∫ θ̈² dt ≥ 12 θ₁²/T³, with equality for θ = θ₁ (3s² − 2s³), s = t/T. So no such
+//! turn, bounded or not, costs less than 6 |J e|² θ₁²/T³.
 
 use super::problem::Problem;
 use nalgebra::Vector3;
@@ -12,9 +13,9 @@ const PARTS: u32 = 2000;
 /// The smoothest turn about the fixed axis.
 #[derive(Clone, Copy, Debug)]
 pub struct Eigenaxis {
-    /// What every turn about this axis costs at least, N²·m²·s.
+    /// The least price of every turn about this axis, N²·m²·s.
     pub least: f64,
-    /// What the turn with least ∫ θ̈² costs, N²·m²·s.
+    /// The price of the turn with least ∫ θ̈², N²·m²·s.
     pub smooth: f64,
     /// The largest torque about an axis of the body that it needs, N·m.
     pub largest_torque: f64,

@@ -13,10 +13,10 @@ use nalgebra::{Rotation3, Vector3};
 /// One in so many steps may have a torque that is cut off; where more have, the bounds leave too little to correct with.
 const FEW: usize = 20;
 
-/// What is not as planned.
+/// The deviation from the plan.
 #[derive(Clone, Copy, Debug)]
 struct Surprise {
-    /// What it is.
+    /// Its name.
     name: &'static str,
     /// The true inertia over the known one.
     inertia: f64,
@@ -79,10 +79,10 @@ pub fn table(sorties: &[Sortie]) -> Table<6> {
     table
 }
 
-/// Claims what feedback is worth.
+/// Claims the benefit of feedback.
 ///
-/// Gains are those of the plan: at a bound they are nothing. A bound that holds back to the very end leaves no way to correct, at the end,
-/// an inertia that is not as planned; that flight is in the table and nothing is claimed of it.
+/// Gains are those of the plan: at a bound they are nothing. If a bound is active to the very end, the end has no way
+/// to correct an inertia that is not as planned. That flight is in the table, and nothing is claimed about it.
 pub fn claim(sorties: &[Sortie; 2], claims: &mut Claims) {
     let [bounded, unbounded] = sorties;
     let [planned, _, tilted] = &bounded.flights;

@@ -17,7 +17,7 @@ pub struct Plan {
     pub effort: f64,
     /// Linearisations.
     pub iterations: u32,
-    /// What first-order conditions leave, N·m·s, as numbers that torques times the step size are compared with.
+    /// The residual of first-order conditions, N·m·s, in the unit of torques times the step size.
     pub residual: f64,
     /// Morse index.
     pub index: usize,
@@ -29,7 +29,7 @@ impl Plan {
     /// The plan near no torque at all, of N · `finer` steps.
     ///
     /// # Errors
-    /// What solving returns.
+    /// The errors of the solver.
     pub fn solve(problem: &Problem, finer: u64) -> Result<Self, Failure> {
         let steering = problem.steering(finer)?;
         let (start, goal) = (problem.start(), problem.goal());
@@ -50,7 +50,7 @@ impl Plan {
         self.stages.iter().map(|stage| stage.input().amax()).fold(0.0, f64::max)
     }
 
-    /// How many torques, one for each axis and step, are held back by a bound.
+    /// How many torques, one for each axis and step, are at a bound.
     pub fn held_back(&self) -> usize {
         self.stages.iter().map(|stage| stage.active().iter().filter(|&&active| active).count()).sum()
     }
@@ -68,7 +68,8 @@ impl Plan {
         (moved, first.norm())
     }
 
-    /// By how much the momentum in space is not the sum of what the torques have given, ½ h (R u + R⁺ u) a step; and its largest.
+    /// The largest difference of the momentum in space from the sum of the torques' impulses, ½ h (R u + R⁺ u) a step.
+    /// The second number is its largest length.
     pub fn momentum_book(&self) -> (f64, f64) {
         let places: Vec<Place> = self.places().collect();
         let (mut book, mut off, mut largest) = (Vector3::zeros(), 0.0_f64, 0.0_f64);

@@ -1,8 +1,8 @@
 //! The continuous problem by Pontryagin's conditions: nothing here is derived by the macro.
 //!
-//! Ṙ = R ω̂ and π̇ = π × ω + u with ω = J⁻¹π; costates p of the attitude and ν of the momentum obey ṗ = p × ω and
-//! ν̇ = ν × ω − J⁻¹(p + ν × π), and u = −ν, cut off at the bounds, makes the Hamiltonian ½ |u|² + p·ω + ν·π̇ least.
-//! Units: duration and mean principal moment are 1.
+//! Ṙ = R ω̂ and π̇ = π × ω + u with ω = J⁻¹π. Costates p of the attitude and ν of the momentum obey ṗ = p × ω and ν̇ =
+//! ν × ω − J⁻¹(p + ν × π). The Hamiltonian ½ |u|² + p·ω + ν·π̇ is least for u = −ν, cut off at the bounds. Units:
+//! duration and mean principal moment are 1.
 
 use super::problem::Problem;
 use crate::attitude::turn;

@@ -1,4 +1,4 @@
-//! A body at rest, another attitude, a duration, bounds: what every plan is asked.
+//! A body at rest, another attitude, a duration, bounds: the task of every plan.
 
 use super::declaration::{Place, SteeredBody, Steering};
 use crate::Flags;

@@ -1,4 +1,4 @@
-//! Plans with h, h/2 and h/4 beside the continuous one.
+//! Plans with h, h/2 and h/4 next to the continuous one.
 
 use super::plan::Plan;
 use super::pontryagin::{Extremals, Motion, attitude, effort, momentum};
@@ -19,7 +19,7 @@ const SLOPE: f64 = 0.25;
 pub struct Refinement {
     /// N²·m²·s, by shooting.
     effort: f64,
-    /// At half steps: where the continuous torques are held back.
+    /// At half steps: where the continuous torques are at a bound.
     path: Vec<Motion>,
     steps: u64,
     rows: [(&'static str, Convergence); 4],
@@ -29,7 +29,7 @@ impl Refinement {
     /// Shoots from the costates of the plan, which are all that is taken from it, and refines.
     ///
     /// # Errors
-    /// What solving returns, and shots that do not arrive.
+    /// The errors of the solver, and shots that do not arrive.
     pub fn new(problem: &Problem, plan: &Plan) -> Result<Self, Failure> {
         let extremals = Extremals::new(problem);
         let near = plan.stages.first().map(|stage| *stage.costate()).unwrap_or_default();
@@ -76,7 +76,7 @@ impl Refinement {
         middles.zip(&plan.stages).map(differ).sum()
     }
 
-    /// Claims second order, and that the same torques are held back.
+    /// Claims second order, and that the same torques are at a bound.
     pub fn claim(&self, plan: &Plan, claims: &mut Claims) {
         let [places @ .., effort, work] = &self.rows;
         for (name, convergence) in [effort, work] {

@@ -9,7 +9,8 @@ use plotters::prelude::{DrawingArea, DrawingAreaErrorKind, IntoDrawingArea, SVGB
 use std::io;
 use std::path::Path;
 
-/// Units of the drawing per pixel of the page: the backend rounds to whole units, which would make curves jagged at 1.
+/// Units of the drawing per pixel of the page: the backend rounds to integer units, which would make curves jagged
+/// at 1.
 pub(super) const FINENESS: u32 = 10;
 
 /// A part of the figure, in units of 1/10 pixel.

@@ -28,7 +28,7 @@ pub struct Curve<'a> {
 /// A chart with logarithmic axes; x grows to the right.
 #[derive(Clone, Copy, Debug)]
 pub struct Decades<'a> {
-    /// What is shown.
+    /// The title of the plot.
     pub title: &'a str,
     /// Name and unit of x.
     pub x_label: &'a str,
@@ -39,7 +39,7 @@ pub struct Decades<'a> {
 }
 
 impl Decades<'_> {
-    /// Draws into the whole area.
+    /// Draws into all of the area.
     pub fn draw(&self, area: &Area<'_>) -> Drawn {
         let points = || self.curves.iter().flat_map(|curve| curve.visible());
         let frame =

@@ -27,7 +27,7 @@ pub struct Pointer<'a> {
     pub colour: RGBColor,
 }
 
-/// The sphere and what is on it.
+/// The sphere and the curves on it.
 #[derive(Clone, Debug)]
 pub struct Globe<'a> {
     /// From where one looks.
@@ -53,7 +53,7 @@ pub struct Track<'a> {
 const REACH: f64 = 1.22;
 
 impl Globe<'_> {
-    /// Draws into the whole area.
+    /// Draws into all of the area.
     pub fn draw(&self, area: &Area<'_>) -> Drawn {
         let (width, height) = area.dim_in_pixel();
         let eye = Eye::new(self.view, f64::from(width), f64::from(height));

@@ -6,10 +6,10 @@ use plotters::prelude::{Circle, Rectangle};
 use plotters::style::Color;
 use plotters::style::text_anchor::{HPos, VPos};
 
-/// A published value with its uncertainty, and what was computed.
+/// A published value with its uncertainty, and the computed one.
 #[derive(Clone, Copy, Debug)]
 pub struct Interval<'a> {
-    /// What it is, with its unit.
+    /// Its name, with its unit.
     pub title: &'a str,
     /// The published value.
     pub published: f64,

@@ -22,7 +22,7 @@ pub struct Series<'a> {
 /// A chart with a title, labelled axes and curves.
 #[derive(Clone, Debug)]
 pub struct Panel<'a> {
-    /// What is shown.
+    /// The title of the plot.
     pub title: &'a str,
     /// The unit of y, empty for none.
     pub unit: &'a str,
@@ -33,7 +33,7 @@ pub struct Panel<'a> {
 }
 
 impl Panel<'_> {
-    /// Draws into the whole area.
+    /// Draws into all of the area.
     pub fn draw(&self, area: &Area<'_>) -> Drawn {
         let points = || self.series.iter().flat_map(|series| &series.points);
         let scale = Scale::of(points().map(|point| point.1));

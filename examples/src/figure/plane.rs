@@ -6,7 +6,7 @@ use plotters::prelude::Circle;
 use plotters::style::text_anchor::{HPos, VPos};
 use plotters::style::{Color, RGBColor};
 
-/// A part of the plane with what is in it.
+/// A part of the plane with its contents.
 #[derive(Clone, Copy, Debug)]
 pub struct Plane<'a> {
     /// Unit of both coordinates.
@@ -45,7 +45,7 @@ pub struct Arrow {
 const ARROW: f64 = 17.0;
 
 impl Plane<'_> {
-    /// Draws into the whole area.
+    /// Draws into all of the area.
     pub fn draw(&self, area: &Area<'_>) -> Drawn {
         let points = self.paths.iter().flat_map(|path| path.points).copied();
         let Some(map) = Map::of(points.chain(self.arrows.iter().map(|arrow| arrow.at)), area) else { return Ok(()) };

@@ -69,13 +69,13 @@ pub(super) fn coloured<T>(points: &[T], colour: Option<RGBColor>) -> Vec<(RGBCol
     pieces(points).enumerate().map(|(index, piece)| (along(fraction(index)), piece)).collect()
 }
 
-/// `to` in the share `share`, `from` in the rest.
+/// A mixture with the share `share` of `to`, and otherwise `from`.
 pub(super) fn blend(from: RGBColor, to: RGBColor, share: f64) -> RGBColor {
     let mix = |a: u8, b: u8| (f64::from(a) + (f64::from(b) - f64::from(a)) * share).round() as u8;
     RGBColor(mix(from.0, to.0), mix(from.1, to.1), mix(from.2, to.2))
 }
 
-/// A line of text at the top of an area; returns the rest.
+/// A line of text at the top of an area; returns the area below.
 pub fn caption<'a>(area: &Area<'a>, line: &str) -> Result<Area<'a>, DrawingAreaErrorKind<io::Error>> {
     let (head, body) = area.split_vertically(px(26.0));
     write(&head, line, (px(10.0), px(14.0)), text(15.0, INK, HPos::Left, VPos::Center))?;

@@ -177,7 +177,8 @@ pub fn scene() -> Scene<12> {
     }
 }
 
-/// The body momentum at a time, (a cn, b sn, c dn) for a body that turns about its third axis rather than its first, L² > 2E J₂.
+/// The body momentum at a time, (a cn, b sn, c dn). The body turns about its third axis rather than its first, L² > 2E
+/// J₂.
 ///
 /// Source: Landau and Lifshitz, *Mechanics*, §37.
 fn closed_form(time: f64) -> Option<Vector3<f64>> {

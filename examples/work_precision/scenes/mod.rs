@@ -1,4 +1,4 @@
-//! The scenes: declarations, equations of motion, and what each keeps.
+//! The scenes: declarations, equations of motion, and the conserved quantities of each.
 
 pub mod body4;
 pub mod free_body;

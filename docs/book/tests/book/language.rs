@@ -14,7 +14,7 @@ const WORDS: usize = 25;
 const PRIVATE: [&str; 8] = ["kept", "held", "the rest", "whole", "beside", "of which", "written out", "what"];
 
 /// The areas that are counted: a name, its Markdown files, the folders of its sources.
-fn areas() -> [(&'static str, Vec<PathBuf>); 5] {
+fn areas() -> [(&'static str, Vec<PathBuf>); 6] {
     let root = root();
     let mut guides = files(&root.join("docs"), "md");
     guides.extend(["CONTRIBUTING.md", "macros/reference.md"].map(|name| root.join(name)));
@@ -26,6 +26,7 @@ fn areas() -> [(&'static str, Vec<PathBuf>); 5] {
         ("docs", guides),
         ("runtime", files(&root.join("runtime/src"), "rs")),
         ("macros", macros.concat()),
+        ("examples", files(&root.join("examples"), "rs")),
     ]
 }
 
