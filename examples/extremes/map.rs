@@ -102,6 +102,7 @@ pub fn refusal(error: Error) -> String {
         Error::NotConverged { iterations, .. } => format!("not converged in {iterations}"),
         Error::NotFinite { .. } => "overflow".to_owned(),
         Error::SingularKineticEnergy { .. } => "singular".to_owned(),
+        Error::IndefiniteKineticEnergy { .. } => "indefinite".to_owned(),
         Error::OffOrbit { .. } => "off the group".to_owned(),
         Error::OutsideMomentumSpace { .. } => "no momentum".to_owned(),
         other => format!("{other:?}").split([' ', '{']).next().unwrap_or_default().to_owned(),

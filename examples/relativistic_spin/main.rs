@@ -39,8 +39,9 @@ use watch::Watch;
         let eta = Matrix4::from_diagonal(&vector![1, -1, -1, -1]);
         F.transpose() * eta * F == eta
     },
-    action = |F: Lorentz, q: Lorentz| q * F,
-    cost   = |h, F| (self.turning * (4 - F.trace()) / 2 + (self.boosting - self.turning) * (1 - F[(0, 0)])) / h,
+    action    = |F: Lorentz, q: Lorentz| q * F,
+    cost      = |h, F| (self.turning * (4 - F.trace()) / 2 + (self.boosting - self.turning) * (1 - F[(0, 0)])) / h,
+    signature = indefinite,
 )]
 pub struct SpinFrame {
     /// Inertia against boosts: 1/κ, T ns.

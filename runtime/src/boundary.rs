@@ -113,6 +113,7 @@ impl<'a, S: Variational<M, Scalar: Real>, B: Differentiated<S, M>, const M: usiz
     ///
     /// # Errors
     /// * [`Error::PathLength`], [`Error::NotFinite`], [`Error::OffOrbit`] for the arguments;
+    /// * [`Error::IndefiniteKineticEnergy`] where the inertia depends on the configuration or the time, and is not positive at an end;
     /// * [`Error::UndeterminedDirection`] and [`Error::Unreachable`] where the target is opposite to the start or on another orbit;
     /// * [`Error::NoExtremal`] where the work was not enough.
     ///
@@ -162,6 +163,8 @@ impl<'a, S: Variational<M, Scalar: Real>, B: Differentiated<S, M>, const M: usiz
         self.check(start, &guess, path.len())?;
         let Stepper { system, h, constants } = self.stepper;
         let problem = Endpoints::<S, M, B> { system, h: *h, constants, time: self.time, start, target };
+        let time = problem.time_of_end(path.len());
+        target.map_or(Ok(()), |target| system.check_kinetic_energy(time, target))?;
         let mut search = Search { problem, path, last: *start };
         let (summary, iterations) = search.newton(&guess)?;
         let end = search.last;
@@ -225,7 +228,7 @@ impl<'a, S: Variational<M, Scalar: Real>, B: Differentiated<S, M>, const M: usiz
         if nodes == 0 || !nodes.is_multiple_of(per_step) {
             return Err(Error::PathLength { nodes, per_step });
         }
-        self.stepper.check_configuration(start)?;
+        self.stepper.check_place(self.time, start)?;
         if matches!(guess, Guess::Velocity(velocity) if !velocity.is_finite()) {
             return Err(Error::NotFinite { name: "the guessed velocity" });
         }

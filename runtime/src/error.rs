@@ -81,7 +81,7 @@ errors! {
             /// The sites, N.
             sites: usize,
         } => "the storage has {found} entries where there are {sites} sites: give one entry for each site";
-        /// A field that is declared `#[clebsch(symmetric)]` is not symmetric.
+        /// A field is not symmetric that is declared `#[clebsch(symmetric)]`, or that a cost needs to be symmetric.
         NotSymmetric {
             /// The field.
             field: &'static str,
@@ -90,8 +90,9 @@ errors! {
             /// The largest defect that is taken for round-off.
             tolerance: f64,
         } =>
-            "`{field}` is declared symmetric, but entries that mirror each other differ by up to {defect:.3e}, more \
-             than the round-off of {tolerance:.1e}: pass ({field} + {field}ᵀ)/2, or remove `#[clebsch(symmetric)]`";
+            "`{field}` is declared symmetric, or its cost needs it to be, but entries that mirror each other differ by \
+             up to {defect:.3e}, more than the round-off of {tolerance:.1e}: pass ({field} + {field}ᵀ)/2, or remove \
+             `#[clebsch(symmetric)]`";
         /// A field that is declared `#[clebsch(diagonal)]` has an entry off its diagonal.
         NotDiagonal {
             /// Name of the field.
@@ -118,6 +119,27 @@ errors! {
             "the kinetic energy is singular for these parameters (condition number {condition:.2e}), so that momenta \
              do not determine velocities: check masses and moments of inertia for zeros and for units that differ by \
              many orders";
+        /// The kinetic energy ½ ξ·Σξ is negative for some velocity ξ, or for every one, and the declaration does not say `signature = indefinite`.
+        ///
+        /// Σ is the inertia, the Hessian of the kinetic energy in the basis of the Lie algebra. Its eigenvalues are in units of mass, or of mass times length squared.
+        IndefiniteKineticEnergy {
+            /// The least eigenvalue of Σ.
+            least_eigenvalue: f64,
+            /// The largest eigenvalue of Σ; the kinetic energy is negative for every velocity where this is below zero.
+            largest_eigenvalue: f64,
+        } =>
+            "the kinetic energy is {} (eigenvalues of the inertia from {least_eigenvalue:.3e} to \
+             {largest_eigenvalue:.3e}): {}; declare `signature = indefinite` where this is meant",
+            Said(|f: &mut Formatter<'_>| f.write_str(if largest_eigenvalue < 0.0 {
+                "negative for every velocity"
+            } else {
+                "negative for some velocities"
+            })),
+            Said(|f: &mut Formatter<'_>| f.write_str(if largest_eigenvalue < 0.0 {
+                "check for a missing `.transpose()` in a square, and change the sign of the cost or of the Lagrangian"
+            } else {
+                "check the signs of masses and moments of inertia, and for a missing `.transpose()` in a square"
+            }));
         /// The configuration is not on the space that the declaration promises, for example no rotation matrix.
         OffOrbit {
             /// By how much its equations are violated, as in the largest entry of |RᵀR − I|; infinite on the wrong component.

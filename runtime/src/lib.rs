@@ -138,6 +138,7 @@ mod collocation;
 mod conserved;
 mod control;
 mod controlled;
+mod definite;
 #[cfg(feature = "double-double")]
 mod double_double;
 mod drive;

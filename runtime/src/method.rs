@@ -61,7 +61,7 @@ pub trait Method<S: Clebsch>: Sized {
     /// Checks the parameters and computes the constants.
     ///
     /// # Errors
-    /// [`Error::NotFinite`], [`Error::NotSymmetric`] or [`Error::SingularKineticEnergy`].
+    /// [`Error::NotFinite`], [`Error::NotSymmetric`], [`Error::SingularKineticEnergy`] or [`Error::IndefiniteKineticEnergy`].
     fn constants(system: &S, h: S::Scalar) -> Result<Self::Constants, Error>;
 
     /// The discrete Legendre transform F⁻ℓd, as [`Clebsch::legendre`].

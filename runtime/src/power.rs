@@ -295,6 +295,11 @@ pub trait Power<const N: usize>:
         sum
     }
 
+    /// Whether the kinetic energy of every site is positive.
+    fn power_check_kinetic_energy(&self, t: T<Self>, q: &Q<Self>) -> Result<(), Error> {
+        q.iter().enumerate().try_for_each(|(i, q)| self.site(i).check_kinetic_energy(t, q))
+    }
+
     /// The representing matrices, site by site.
     #[inline]
     fn matrices_of(mu: &Mu<Self>) -> Self::MomentumMatrix {

@@ -3,7 +3,7 @@
 use crate::fields::copy;
 use crate::parameters::check_finite;
 use crate::scheme::{Held, Left, Scheme};
-use crate::stepper::{check_state, check_violation};
+use crate::stepper::check_violation;
 use crate::{Clebsch, Declared, Error, Mask, Method, Scalar, State, Stepper, Time};
 use core::fmt::{self, Debug, Formatter};
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
@@ -106,7 +106,7 @@ impl<S: Clebsch, M: Method<S>> Stepper<S, M> {
     pub fn resume(&self, saved: SavedState<S, M>) -> Result<State<S, M>, Error> {
         let SavedState(mut state) = saved;
         let mu = state.momentum();
-        check_state(&self.system, &state.configuration, &mu)?;
+        self.check_state(state.time.now(), &state.configuration, &mu)?;
         check_violation(M::Scheme::held_defect(&state.configuration, &state.held), &mu)?;
         check_finite("the time", &state.time.now())?;
         check_finite("the data of the last step", &(state.left, state.h))?;

@@ -75,6 +75,18 @@ impl<S: Clebsch, M: Method<S>> Stepper<S, M> {
         check_on_orbit(q, self.system.orbit_defect(q))
     }
 
+    /// The same, and the kinetic energy is positive there at the time t.
+    pub(crate) fn check_place(&self, t: S::Scalar, q: &S::Configuration) -> Result<(), Error> {
+        self.check_configuration(q)?;
+        self.system.check_kinetic_energy(t, q)
+    }
+
+    /// (q, N) is a state at the time t.
+    pub(crate) fn check_state(&self, t: S::Scalar, q: &S::Configuration, mu: &S::Momentum) -> Result<(), Error> {
+        check_momentum(&self.system, q, mu)?;
+        self.system.check_kinetic_energy(t, q)
+    }
+
     /// Kinetic energy plus potential, at the time of the state.
     ///
     /// Nearly constant for an autonomous system: its oscillation shrinks with the order.
@@ -182,9 +194,16 @@ pub fn check_on_orbit<T: Scalar, Q: Space<T>>(q: &Q, defect: T) -> Result<(), Er
     })
 }
 
-/// Whether (q, N) is a state: q is on its orbit, and N is finite. Up to √ε of its largest component, N is a momentum
-/// that motions of q can have.
+/// Whether (q, N) is a state: [`check_momentum`], and the kinetic energy is positive at q where it does not depend on the time.
 pub fn check_state<S: Clebsch>(system: &S, q: &S::Configuration, mu: &S::Momentum) -> Result<(), Error> {
+    check_momentum(system, q, mu)?;
+    // a plan starts at a time that is not known here
+    let is_autonomous = size_of::<S::Time>() == 0;
+    if is_autonomous { system.check_kinetic_energy(Zero::zero(), q) } else { Ok(()) }
+}
+
+/// Whether q is on its orbit, and N is finite. Up to √ε of its largest component, N is a momentum that motions of q can have.
+fn check_momentum<S: Clebsch>(system: &S, q: &S::Configuration, mu: &S::Momentum) -> Result<(), Error> {
     check_on_orbit(q, system.orbit_defect(q))?;
     check_finite("the momentum", mu)?;
     check_violation(system.isotropy_defect(q, mu), mu)

@@ -79,7 +79,7 @@ pub trait Clebsch: Sized {
     /// Checks the parameters and computes the constants.
     ///
     /// # Errors
-    /// [`Error::NotFinite`], [`Error::NotSymmetric`] or [`Error::SingularKineticEnergy`].
+    /// [`Error::NotFinite`], [`Error::NotSymmetric`], [`Error::SingularKineticEnergy`] or [`Error::IndefiniteKineticEnergy`].
     fn constants(&self, h: Self::Scalar) -> Result<Self::Constants, Error>;
 
     /// The action: Φ_F(q).
@@ -128,6 +128,16 @@ pub trait Clebsch: Sized {
         q: &Self::Configuration,
         mu: &Self::Momentum,
     ) -> Self::Scalar;
+
+    /// Whether the kinetic energy ½ ξ·Σξ is positive at the configuration q and the time t, where its inertia Σ depends on them.
+    ///
+    /// The provided method accepts it: [`constants`](Self::constants) checks an inertia that is the same everywhere. With `signature = indefinite` nothing does.
+    ///
+    /// # Errors
+    /// [`Error::IndefiniteKineticEnergy`].
+    fn check_kinetic_energy(&self, t: Self::Scalar, q: &Self::Configuration) -> Result<(), Error> {
+        Ok(())
+    }
 
     /// The representing matrices of μ.
     fn momentum_matrix(mu: &Self::Momentum) -> Self::MomentumMatrix;

@@ -159,6 +159,17 @@ pub mod isotropy {
     pub mod free {}
 }
 
+/// The signs that the kinetic energy may have. `stepper()` checks the inertia of the parameters; `state()` checks an inertia that depends on the configuration or the time.
+///
+/// Example: `signature = indefinite`
+pub mod signature {
+    /// It is positive for every velocity ξ but 0: others are `Error::IndefiniteKineticEnergy`.
+    pub mod definite {}
+
+    /// It may be negative, as on Lorentz groups: extremals of the action are then no minima.
+    pub mod indefinite {}
+}
+
 /// Further items that the macro derives, a list of words.
 ///
 /// Example: `emit = [generated]`

@@ -37,6 +37,13 @@ macro_rules! __formulas_of_sites {
         ) -> $scalar {
             $crate::__private::Power::power_kinetic_energy(self, constants, t, q, mu)
         }
+        fn check_kinetic_energy(
+            &self,
+            t: $scalar,
+            q: &Self::Configuration,
+        ) -> $crate::__private::Result<(), $crate::__private::Error> {
+            $crate::__private::Power::power_check_kinetic_energy(self, t, q)
+        }
         fn momentum_matrix(mu: &Self::Momentum) -> Self::MomentumMatrix {
             <Self as $crate::__private::Power<$sites>>::matrices_of(mu)
         }

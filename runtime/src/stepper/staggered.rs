@@ -1,6 +1,6 @@
 //! Momenta of steps of first order, which are staggered: read at the time of their configuration, started from there, and taken over from other methods.
 
-use super::{GRADIENT, Stepper, check_state};
+use super::{GRADIENT, Stepper};
 use crate::parameters::check_finite;
 use crate::parts::{Mu, Q, T};
 use crate::scheme::Scheme;
@@ -98,7 +98,7 @@ impl<S: Clebsch, M: Method<S>> Stepper<S, M> {
     }
 
     pub(super) fn checked_staggered_state(&self, t: T<S>, q: Q<S>, mu: Mu<S>) -> Result<State<S, M>, Error> {
-        check_state(&self.system, &q, &mu)?;
+        self.check_state(t, &q, &mu)?;
         let stagger = M::stagger(&self.system, self.h, t, &q);
         check_finite(GRADIENT, &stagger)?;
         let staggered = plus(&mu, &stagger);

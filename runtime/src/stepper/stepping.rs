@@ -1,6 +1,6 @@
 //! State after state.
 
-use super::{GRADIENT, Stepper, check_state, first_without, whole_or_lane};
+use super::{GRADIENT, Stepper, first_without, whole_or_lane};
 use crate::parts::{Mu, Q, T, U};
 use crate::scheme::{Left, Scheme};
 use crate::{Clebsch, Error, Mask, Method, Scalar, Space, State, Time, Trajectory};
@@ -14,7 +14,7 @@ impl<S: Clebsch, M: Method<S>> Stepper<S, M> {
     /// starts at 0.
     ///
     /// # Errors
-    /// [`Error::NotFinite`], [`Error::OffOrbit`] or [`Error::OutsideMomentumSpace`].
+    /// [`Error::NotFinite`], [`Error::OffOrbit`], [`Error::OutsideMomentumSpace`], or [`Error::IndefiniteKineticEnergy`] where the inertia depends on q or on the time.
     pub fn state(&self, q: S::Configuration, mu: S::Momentum) -> Result<State<S, M>, Error> {
         self.checked_state(S::Scalar::zero(), q, mu)
     }
@@ -104,7 +104,7 @@ impl<S: Clebsch, M: Method<S>> Stepper<S, M> {
     }
 
     pub(super) fn checked_state(&self, t: T<S>, q: Q<S>, mu: Mu<S>) -> Result<State<S, M>, Error> {
-        check_state(&self.system, &q, &mu)?;
+        self.check_state(t, &q, &mu)?;
         self.made_state(t, q, mu)
     }
 

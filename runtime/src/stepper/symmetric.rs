@@ -11,7 +11,7 @@ impl<S: Clebsch, M: Method<S>> Stepper<S, M> {
     /// The state (q, p) on T*Q, after checks: finite, q on its orbit. Where the time matters it starts at 0.
     ///
     /// # Errors
-    /// [`Error::NotFinite`] or [`Error::OffOrbit`].
+    /// [`Error::NotFinite`], [`Error::OffOrbit`], or [`Error::IndefiniteKineticEnergy`] as for [`state`](Self::state).
     pub fn cotangent_state(&self, q: S::Configuration, p: S::Configuration) -> Result<CotangentState<S>, Error> {
         self.checked_cotangent_state(S::Scalar::zero(), q, p)
     }
@@ -40,7 +40,7 @@ impl<S: Clebsch, M: Method<S>> Stepper<S, M> {
     }
 
     pub(super) fn checked_cotangent_state(&self, t: T<S>, q: Q<S>, p: Q<S>) -> Result<CotangentState<S>, Error> {
-        self.check_configuration(&q)?;
+        self.check_place(t, &q)?;
         check_finite("the covector", &p)?;
         Ok(CotangentState { time: S::Time::at(t), configuration: q, covector: p })
     }

@@ -126,6 +126,15 @@ fn parameters() -> Vec<Scene> {
             ],
         ),
         scene(
+            refused(FreeRigidBody { inertia: Matrix3::from_diagonal(&Vector3::new(1.0, -2.0, 3.0)) }.stepper(0.1)),
+            &[
+                "negative for some velocities",
+                "from -2.000e0 to 3.000e0",
+                "the signs of masses and moments of inertia",
+                "declare `signature = indefinite`",
+            ],
+        ),
+        scene(
             refused(PromisedTop { inertia: skew, ..promised() }.stepper(0.1)),
             &["`inertia` is declared diagonal", "1.000e-1", "set it to zero, or remove `#[clebsch(diagonal)]`"],
         ),

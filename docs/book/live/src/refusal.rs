@@ -35,7 +35,9 @@ impl From<Error> for Refusal {
     fn from(error: Error) -> Self {
         match error {
             Error::NotFinite { .. } => Self::NotFinite,
-            Error::StepSize { .. } | Error::SingularKineticEnergy { .. } => Self::NotPositive,
+            Error::StepSize { .. }
+            | Error::SingularKineticEnergy { .. }
+            | Error::IndefiniteKineticEnergy { .. } => Self::NotPositive,
             Error::Unsolvable { .. } => Self::TooLong,
             Error::NotConverged { .. } => Self::NotSolved,
             _ => Self::NoState,

@@ -167,21 +167,24 @@ fn energy(formulas: &MechanicsFormulas<'_>, lowered: &Lowered) -> String {
         let coefficient = if is_sum { format!("({text})") } else { text.to_string() };
         (size.is_some(), if text == "1" { square } else { format!("{coefficient} {square}") })
     };
+    let refused =
+        if formulas.is_definite() { ", and `stepper()` refuses it without `signature = indefinite`" } else { "" };
+    let symmetric = formulas.symmetric.sentences();
     let signature = match formulas.signature() {
         Some((_, 0)) => "positive definite for positive parameters".to_string(),
-        Some((0, _)) => "negative definite for positive parameters".to_string(),
+        Some((0, _)) => format!("negative definite for positive parameters{refused}"),
         Some((positive, negative)) => {
             format!(
-                "indefinite, of signature ({positive}, {negative}) for positive parameters: extremals are no minima"
+                "indefinite, of signature ({positive}, {negative}) for positive parameters: extremals are no minima{refused}"
             )
         }
         None => "of a signature that depends on the parameters".to_string(),
     };
-    let Some(terms) = &lowered.energy else { return format!("Kinetic energy is {signature}.\n") };
+    let Some(terms) = &lowered.energy else { return format!("Kinetic energy is {signature}.{symmetric}\n") };
     let terms = joined(terms.iter().map(term), '-');
     let to_second_order = if formulas.energy.general.is_some() { " to second order" } else { "" };
     let linear = if formulas.energy.gyroscopic.is_zero() { "" } else { ", and a part that is linear in the velocity" };
-    format!("Kinetic energy in these coordinates{to_second_order}: {terms}{linear}. It is {signature}.\n")
+    format!("Kinetic energy in these coordinates{to_second_order}: {terms}{linear}. It is {signature}.{symmetric}\n")
 }
 
 /// Whether no sum stands outside of brackets.

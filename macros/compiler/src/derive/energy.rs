@@ -3,6 +3,7 @@
 use clebsch_symbolic::{Elements, Expr, IntoList, Shape, identity, integer};
 
 use super::symbols::{at_zero, identities};
+use super::symmetric::vanishing_for_symmetric;
 use super::{DiscreteLagrangian, Symbols, SystemFormulas, naming};
 use crate::diagnostic::{Diagnostics, bail};
 use crate::model::{Factor, Kinetic, Mechanics, System};
@@ -120,7 +121,18 @@ fn gyroscopic<'g>(model: &System<'g>, slope: Expr<'g>) -> Result<Expr<'g>, Diagn
         return Ok(limit);
     }
     let place = model.spans.kinetic.place;
-    bail!(place, "the cost has a slope at `{}` = I, so a body at rest would start to move", model.factors[0].name;
+    let message =
+        format!("the cost has a slope at `{}` = I, so a body at rest would start to move", model.factors[0].name);
+    if let [matrix, others @ ..] = vanishing_for_symmetric(model, slope).as_slice() {
+        let (verb, names) = match others {
+            [] => ("is", format!("`{matrix}`")),
+            _ => ("are", others.iter().fold(format!("`{matrix}`"), |names, other| format!("{names} and `{other}`"))),
+        };
+        bail!(place, "{message} unless {names} {verb} symmetric";
+            help "write `#[clebsch(symmetric)]` above the field, which `stepper()` then checks";
+            note "its derivative along exp(ε ξ) at the identity is {}", slope.expand());
+    }
+    bail!(place, "{message}";
         help "use a cost with a minimum there, as in `(F - I).norm_squared() / (2 * h)`";
         note "its derivative along exp(ε ξ) at the identity is {}", slope.expand());
 }

@@ -8,9 +8,9 @@ use clebsch_symbolic::{Chart, Expr, Group, IntoList};
 use super::energy::is_multiple_of_identity;
 use super::{
     Collocation, DiscreteLagrangian, Energy, FormulaTable, InputStep, MomentumEquation, Quantity, SiteTerm, Splitting,
-    Substep, Symmetries, SystemFormulas, exact, signature,
+    Substep, SymmetricParts, Symmetries, SystemFormulas, exact, signature,
 };
-use crate::model::{Isotropy, LeafSpace, Mechanics, Steered};
+use crate::model::{Isotropy, LeafSpace, Mechanics, Signature, Steered};
 
 /// The derived formulas, as matrix expressions.
 pub enum Formulas<'g> {
@@ -50,6 +50,8 @@ pub struct MechanicsFormulas<'g> {
     pub uniform_inertia: Option<Expr<'g>>,
     /// The kinetic part of the continuous Lagrangian, ½ ξ·Σξ + A·ξ.
     pub energy: Energy<'g>,
+    /// The matrices that the kinetic energy takes the symmetric part of.
+    pub symmetric: SymmetricParts<'g>,
     /// V(q), that of the cost included.
     pub potential_energy: Expr<'g>,
     /// ½J(q, ∂(U₁ − U₀)) for each factor: the momentum of a step of first order is ahead of its configuration by it.
@@ -170,6 +172,11 @@ impl MechanicsFormulas<'_> {
             && substep.other.is_none()
             && !self.is_timed()
             && !self.is_compensated()
+    }
+
+    /// Whether the inertia has to be positive definite.
+    pub fn is_definite(&self) -> bool {
+        self.model.signature == Signature::Definite
     }
 
     /// Whether the kinetic energy changes with the configuration or the time.

@@ -34,6 +34,7 @@ mod structure;
 mod substep;
 mod summation;
 mod symbols;
+mod symmetric;
 mod symmetry;
 mod system;
 mod trivialisation;
@@ -66,6 +67,7 @@ use rows::MOST_LISTED;
 pub use splitting::Splitting;
 pub use substep::Substep;
 pub use symbols::{ChartBlock, Symbols};
+pub use symmetric::SymmetricParts;
 pub use symmetry::{ConservedMomentum, Symmetries};
 pub use system::SystemFormulas;
 pub use variation::{EdgeDerivatives, Quantity};
@@ -129,6 +131,7 @@ fn mechanics(model: Mechanics<'_>) -> Result<MechanicsFormulas<'_>, Diagnostics>
     substep::check_poles(&model, &system.symbols, &substeps)?;
     substep::check_tolerance(&model, &substeps, collocation.is_some())?;
     let uniform_inertia = energy::uniform(&system.symbols, energy.kinetic, inertia);
+    let symmetric = SymmetricParts::of(&model, model.kinetic.energy(), energy.kinetic);
     let formulas = MechanicsFormulas {
         projection: if is_free { None } else { system.projection() },
         coadjoint: system.coadjoint(),
@@ -139,6 +142,7 @@ fn mechanics(model: Mechanics<'_>) -> Result<MechanicsFormulas<'_>, Diagnostics>
         is_free,
         inertia,
         energy,
+        symmetric,
         potential_energy,
         stagger,
         is_staggered,

@@ -154,14 +154,34 @@ impl Emitter<'_, '_> {
 
     /// The body of the function that makes the constants.
     pub(super) fn constants(&self, kernel: &Kernel) -> TokenStream {
-        let (scope, checks, name) = (self.scope_of_system(), self.checks(), self.names.free("Constants"));
+        let (scope, name) = (self.scope_of_system(), self.names.free("Constants"));
+        let (checks, symmetric) = (self.checks(), self.checks_of_symmetry());
         let inertia = (!self.formulas.inertia_moves()).then(|| {
             let (inertia, (_, invert)) = (self.inertia(&scope), self.inverse());
-            quote!(let inertia = { #inertia }; let inertia_inverse = runtime::#invert(&inertia)?;)
+            let check =
+                if self.has_uniform_inertia() { quote!(check_definite_uniform) } else { quote!(check_definite) };
+            let check = self.formulas.is_definite().then(|| quote!(runtime::#check(&inertia)?;));
+            quote!(let inertia = { #inertia }; let inertia_inverse = runtime::#invert(&inertia)?; #check)
         });
         let locals = scope.locals(kernel);
         let constants = self.constants_of_stepper().into_iter().map(|[name, _, value]| quote!(#name #value,));
-        quote!(#checks #inertia #locals runtime::Ok(#name { #(#constants)* }))
+        quote!(#checks #symmetric #inertia #locals runtime::Ok(#name { #(#constants)* }))
+    }
+
+    /// Checks of the matrices that have to be symmetric though nothing is promised of them.
+    fn checks_of_symmetry(&self) -> TokenStream {
+        let (system, required) = (self.receiver(), &self.formulas.symmetric.required);
+        let leaves = self
+            .model
+            .parameters
+            .iter()
+            .flat_map(|parameter| parameter.leaves.iter().map(move |leaf| (parameter, leaf)));
+        let leaves = leaves.filter(|(_, leaf)| required.contains(&leaf.symbol));
+        let checks = leaves.map(|(parameter, leaf)| {
+            let (field, access) = (&parameter.field, &leaf.accessor);
+            self.check_of(Promise::Symmetric, &parameter.name, &quote!(#system.#field #access))
+        });
+        checks.collect()
     }
 }
 

@@ -65,6 +65,8 @@ functions! {
         fn legendre(Receiver, h: T, t: T, q: &Q, f: &F) -> Mu { Id::Legendre }
         /// The discrete Legendre transform: the momentum N⁺ after the step that moves q by F.
         fn legendre_next(Receiver, h: T, t: T, q: &Q, f: &F) -> Mu { Id::LegendreNext }
+        /// Whether the kinetic energy is positive here.
+        fn check_kinetic_energy(&self, t: T, q: &Q) -> Result<(), Error> { Id::Inertia }
         /// The representing matrices M = Σ G^{ij} μ_j E_i of a momentum.
         fn momentum_matrix(mu: &Mu) -> F { Id::MomentumMatrix => }
         /// The components μ_i = tr(MᵀE_i) of a momentum.

@@ -69,6 +69,12 @@ impl<'g> Emitter<'_, 'g> {
             "isotropy_defect" => Body::from(self.isotropy(kernel?, ["distance_of_projection", "annihilator_defect"])),
             "project_momentum" => Body::from(self.isotropy(kernel?, ["projection", "annihilator_projection"])),
             "kinetic_energy" => Body::from(self.kinetic_energy()),
+            // that of a constant inertia is among the constants
+            "check_kinetic_energy" if self.formulas.inertia_moves() && self.formulas.is_definite() => {
+                let inertia = self.inertia(&scope);
+                Body::new(kernel?, quote!(runtime::check_definite_at(&{ #inertia })))
+            }
+            "check_kinetic_energy" => return None,
             _ => function.computes(&scope, kernel?),
         })
     }

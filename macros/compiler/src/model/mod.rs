@@ -153,6 +153,7 @@ pub fn model<'g>(graph: &'g Graph, declaration: &Declaration) -> Result<Model<'g
         power,
         symmetries: formulas.symmetries,
         isotropy: if dials.emit.momentum { Isotropy::Free } else { isotropy },
+        signature: dials.signature.as_ref().map_or(Signature::Definite, |signature| signature.value),
         order: dials.order.as_ref().map_or(Order::Second, |order| order.value),
     })))
 }

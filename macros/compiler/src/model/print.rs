@@ -6,7 +6,8 @@ use clebsch_symbolic::Group;
 
 use super::scalar::spell_scalar;
 use super::{
-    Isotropy, Kinetic, LeafSpace, Mechanics, Model, Motion, OfferedSymmetry, Order, Parameter, Side, Steered, System,
+    Isotropy, Kinetic, LeafSpace, Mechanics, Model, Motion, OfferedSymmetry, Order, Parameter, Side, Signature,
+    Steered, System,
 };
 use crate::parse::joined;
 
@@ -57,6 +58,9 @@ impl fmt::Display for Mechanics<'_> {
         }
         if self.isotropy == Isotropy::Free {
             writeln!(f, "  isotropy   {}", self.isotropy)?;
+        }
+        if self.signature == Signature::Indefinite {
+            writeln!(f, "  signature  {}", self.signature)?;
         }
         self.system.print_dials(f)?;
         writeln!(f, "  order      {}", self.order)

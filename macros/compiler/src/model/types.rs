@@ -8,7 +8,7 @@ use proc_macro2::{Ident, Span};
 
 use super::power::{SiteIndex, Term};
 use super::{Access, Layout};
-use crate::parse::{Dials, Discretization, Emit, Isotropy, Located, Opaque, Order, Promise, Summation};
+use crate::parse::{Dials, Discretization, Emit, Isotropy, Located, Opaque, Order, Promise, Signature, Summation};
 
 /// The mathematics of a declaration, checked: names, shapes, groups, the laws of the action.
 pub enum Model<'g> {
@@ -76,6 +76,8 @@ pub struct Mechanics<'g> {
     pub symmetries: Vec<OfferedSymmetry<'g>>,
     /// How to treat motions of the group that move no configuration.
     pub isotropy: Isotropy,
+    /// The signs that the kinetic energy may have.
+    pub signature: Signature,
     /// Where the potential is placed.
     pub order: Order,
 }
@@ -304,7 +306,7 @@ pub enum Kinetic<'g> {
 
 impl<'g> Kinetic<'g> {
     /// The cost, or the Lagrangian.
-    pub(super) fn energy(&self) -> Expr<'g> {
+    pub fn energy(&self) -> Expr<'g> {
         match self {
             Kinetic::Cost(energy) | Kinetic::Lagrangian { energy, .. } => *energy,
         }

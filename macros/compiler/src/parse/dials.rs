@@ -23,6 +23,7 @@ pub struct Dials {
     pub(crate) summation: Option<Located<Summation>>,
     pub(crate) code: Option<Located<CodeForm>>,
     pub(crate) isotropy: Option<Located<Isotropy>>,
+    pub(crate) signature: Option<Located<Signature>>,
     pub(crate) emit: Emit,
     pub(crate) scalar: Option<Ident>,
     pub(crate) krate: Option<syn::Path>,
@@ -141,6 +142,16 @@ words! {
         Fixed "fixed",
         /// They are motions: `state()` takes any momentum.
         Free "free",
+    }
+}
+
+words! {
+    /// The signs that the kinetic energy ½ ξ·Σξ may have.
+    Signature {
+        /// It is positive for every velocity ξ but 0: others are `Error::IndefiniteKineticEnergy`.
+        Definite "definite",
+        /// It may be negative, as on Lorentz groups: extremals of the action are then no minima.
+        Indefinite "indefinite",
     }
 }
 

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use proc_macro2::{Ident, Span};
 
 use super::dials::{
-    ChartChoice, CodeForm, Dials, Discretization, Isotropy, Meanings, Order, Promise, Solver, Summation,
+    ChartChoice, CodeForm, Dials, Discretization, Isotropy, Meanings, Order, Promise, Signature, Solver, Summation,
     emitted_meanings, meanings,
 };
 use super::spelling::listed;
@@ -71,7 +71,7 @@ const ITERATED: &str = "an implicit momentum equation";
 
 /// All keys: the name, how the value is read, an example, the default, the needs, and the meaning.
 #[rustfmt::skip]
-pub(super) const KEYS: [Key; 27] = [
+pub(super) const KEYS: [Key; 28] = [
     key("action", Kind::Closure, "|F: SO<3>, R: SO<3>| …", "required, or `dynamics`", "",
         "The type of the first argument is the group, that of the second the space of configurations. The value is the moved configuration. Whether the action is left or right is found."),
     key("cost", Kind::Closure, "|h, F| …", "required, or `lagrangian`", "",
@@ -114,6 +114,8 @@ pub(super) const KEYS: [Key; 27] = [
         "How the code of a step is written."),
     key("isotropy", Dial(|dials, value| value.word(&mut dials.isotropy), |dials| text(&dials.isotropy), meanings::<Isotropy>), "free", "`fixed`", MECHANICS,
         "Motions of the group that move no configuration, such as turns about a point on a sphere."),
+    key("signature", Dial(|dials, value| value.word(&mut dials.signature), |dials| text(&dials.signature), meanings::<Signature>), "indefinite", "`definite`", MECHANICS,
+        "The signs that the kinetic energy may have. `stepper()` checks the inertia of the parameters; `state()` checks an inertia that depends on the configuration or the time."),
     key("emit", Dial(|dials, value| value.words(&mut dials.emit), |dials| dials.emit.text().map(somewhere), emitted_meanings), "[generated]", "`[]`", "",
         "Further items that the macro derives, a list of words."),
     key("scalar", Dial(|dials, value| value.ident(&mut dials.scalar), |dials| dials.scalar.as_ref().map(Ident::to_string).map(somewhere), Vec::new), "f64", "`f64`", "a struct whose closures read no field",

@@ -86,6 +86,7 @@ impl Declaration {
         let system = &self.dials;
         let dials = Dials {
             isotropy: system.isotropy.clone(),
+            signature: system.signature.clone(),
             // words that concern the system, and derivatives of its steps
             emit: Emit { generated: false, latex: false, ..system.emit },
             scalar: system.scalar.clone(),

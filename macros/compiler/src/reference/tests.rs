@@ -47,7 +47,7 @@ fn every_key_has_a_section() {
 
 #[test]
 fn every_word_of_a_dial_has_a_meaning() {
-    for dial in ["discretization", "chart", "solver", "summation", "code", "isotropy", "emit"] {
+    for dial in ["discretization", "chart", "solver", "summation", "code", "isotropy", "signature", "emit"] {
         let value = if dial == "emit" { "[unknownword]" } else { "unknownword" };
         let section = PAGE.split(&format!("\n## `{dial}`\n")).nth(1).and_then(|text| text.split("\n## ").next());
         for word in listed(&format!("{ACTION}, {LAGRANGIAN}, {dial} = {value}")) {

@@ -512,6 +512,7 @@ both!(
         action    = |F: Lorentz, q: Lorentz| q * F,
         cost      = |h, F| self.inertia * (4 - F.trace()) / (2 * h),
         potential = |q| self.field.dot(&(q * self.spin)),
+        signature = indefinite,
     )]
     struct Frame {
         pub inertia: f64,

@@ -82,6 +82,33 @@ proptest! {
         prop_assert!(is_refused);
     }
 
+    /// Σ = S A S has the signs of A, whatever the units S are (Sylvester's law of inertia).
+    #[test]
+    fn inertias_are_definite_by_their_eigenvalues(
+        a in matrix::<4, 4>(1.0), shift in -1.0_f64..2.0, units in vector::<4>(6.0), kappa in -2.0_f64..2.0,
+    ) {
+        let a = (a + a.transpose()) / 2.0 + Matrix4::identity() * shift;
+        let values = a.symmetric_eigenvalues();
+        prop_assume!(values.iter().all(|value| value.abs() > 1e-6));
+        match private::check_definite(&a) {
+            Err(Error::IndefiniteKineticEnergy { least_eigenvalue, largest_eigenvalue }) => {
+                prop_assert!(values.min() < 0.0);
+                prop_assert!((least_eigenvalue - values.min()).abs().max((largest_eigenvalue - values.max()).abs()) < 4.0 * NEAR);
+            }
+            other => prop_assert!(other.is_ok() && values.min() > 0.0),
+        }
+        // from 10⁻¹² to 10¹²
+        let units = units.map(|unit| 10.0_f64.powf(unit));
+        let scaled = Matrix4::from_fn(|i, j| units[i] * a[(i, j)] * units[j]);
+        prop_assert_eq!(private::check_definite(&scaled).is_ok(), values.min() > 0.0);
+        prop_assert_eq!(private::check_definite_at(&a).is_ok(), values.min() > 0.0);
+        // singular, with one eigenvalue 0 and the others positive
+        let (flat, wide) = (a.fixed_columns::<3>(0) * a.fixed_columns::<3>(0).transpose(), Matrix4::from_element(1.0));
+        prop_assert!(private::check_definite_at(&flat).is_ok() && private::check_definite_at(&wide).is_ok());
+        let told = Error::IndefiniteKineticEnergy { least_eigenvalue: kappa, largest_eigenvalue: kappa };
+        prop_assert_eq!(private::check_definite_uniform(&kappa).err(), (kappa < 0.0).then_some(told));
+    }
+
     /// exp A and φ(A) by their series, for |A| ≤ 3; exp(A) exp(−A) = I; A φ(A) = exp A − I.
     #[test]
     fn exponentials_are_their_series(a in matrix::<3, 3>(1.0)) {

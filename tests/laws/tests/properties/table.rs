@@ -75,6 +75,7 @@ pub const PROPERTIES: &[(&str, &[Property])] = &[
         ("linear_systems_are_solved_backward_stably",    &["solve_dense", "Orientation::of"]),
         ("symmetric_systems_are_solved_backward_stably", &["solve_symmetric"]),
         ("inverses_undo",                                &["invert", "inverse"]),
+        ("inertias_are_definite_by_their_eigenvalues",   &["check_definite", "check_definite_at", "check_definite_uniform"]),
         ("exponentials_are_their_series",                &["exponential", "phi"]),
         ("logarithms_are_those_of_rotations",            &["logarithm"]),
         ("stumpff_functions_are_trigonometric",          &["stumpff"]),
@@ -82,6 +83,10 @@ pub const PROPERTIES: &[(&str, &[Property])] = &[
         ("projections_are_orthogonal",                   &["annihilator_projection", "annihilator_defect"]),
         ("kinetic_energies_are_quadratic",               &["kinetic_energy", "kinetic_energy_at"]),
         ("compensated_sums_lose_nothing",                &["accumulate"]),
+    ]),
+    ("tests/laws/tests/signature/main.rs", &[
+        ("states_look_where_the_inertia_moves",        &["Clebsch::check_kinetic_energy"]),
+        ("sites_look_where_their_inertia_changes_with_the_time", &["Power::power_check_kinetic_energy"]),
     ]),
     ("tests/laws/tests/properties/paths.rs", &[
         ("motions_are_found_from_their_ends", &[

@@ -52,6 +52,7 @@ features! {
     Bounds "`bounds`",
     Endpoint "`endpoint`",
     Isotropy "`isotropy`",
+    Signature "`signature`",
     Order "`order`",
     Discretization "`discretization`",
     Chart "`chart`",

@@ -20,7 +20,7 @@ pub(super) const ROWS: [Row; 48] = [
     row(&[Dynamics], &[Controls],
         "there are `controls` and `dynamics`, but one thing moves a configuration", "",
         "keep `controls` for motions of a group, `dynamics` for any map of a vector space"),
-    row(&[Lagrangian, Potential, Force, ForceOn, Symmetry, Order, Tolerance, Iterations, Summation, Isotropy, Chart, Method], &[Controls, Dynamics],
+    row(&[Lagrangian, Potential, Force, ForceOn, Symmetry, Order, Tolerance, Iterations, Summation, Isotropy, Signature, Chart, Method], &[Controls, Dynamics],
         "a system with {beside} has no {refused}",
         "the inputs move the configuration directly, without mass, momentum or force",
         "leave it out, or leave out {beside}"),
