@@ -115,7 +115,8 @@ impl<'a, S: Variational<M, Scalar: Real>, B: Differentiated<S, M>, const M: usiz
     /// * [`Error::PathLength`], [`Error::NotFinite`], [`Error::OffOrbit`] for the arguments;
     /// * [`Error::IndefiniteKineticEnergy`] where the inertia depends on the configuration or the time, and is not positive at an end;
     /// * [`Error::UndeterminedDirection`] and [`Error::Unreachable`] where the target is opposite to the start or on another orbit;
-    /// * [`Error::NoExtremal`] where the work was not enough.
+    /// * [`Error::NoExtremal`] where the work was not enough;
+    /// * [`Error::NotStationary`] where momenta jump by more than round-off, as at a singularity of the potential.
     ///
     /// After an error the nodes hold some path from `start`.
     pub fn solve<'p>(

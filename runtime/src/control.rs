@@ -147,6 +147,7 @@ impl<S: Controlled<D, U, C, Scalar: Real>, const D: usize, const U: usize, const
     /// * [`Error::Uncontrollable`] where inputs do not move the end towards the target;
     /// * [`Error::Infeasible`] and [`Error::TargetMissed`] where bounds cannot be satisfied, or leave no way to the target;
     /// * [`Error::NoExtremal`] where the work was not enough;
+    /// * [`Error::NotStationary`] where slopes of the price do not cancel but for round-off, as near a singularity;
     /// * those of a step.
     ///
     /// After an error the stages hold the inputs of the guess.

@@ -228,6 +228,15 @@ errors! {
         } =>
             "no extremal was found in {iterations} linearisations (relative correction {correction:.1e}): give a \
              better guess, or go there by targets between; of a plan, check that its price cannot fall for ever";
+        /// The path or plan that was found is not critical: at a step, terms that should cancel do not.
+        NotStationary {
+            /// The largest jump of the momentum at a vertex. For a plan, the largest slope of the price along an input.
+            residual: f64,
+            /// The momentum, as the root of the mean of squares. For a plan, the largest term of a slope.
+            momentum: f64,
+        } =>
+            "what was found is no extremal: momenta jump by {residual:.3e}, beside {momentum:.3e} of their own, \
+             which is more than round-off; it may pass a singularity, so lead around it by another guess";
         /// To first order no input moves the end of the plan towards the target.
         Uncontrollable {
             /// The distance that is left, as the root of the sum of squares of all entries.

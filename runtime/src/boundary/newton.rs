@@ -4,12 +4,15 @@ use super::guess::Guess;
 use super::sweep::Search;
 use super::vertex::PathSummary;
 use crate::newton::{Curvature, adapted};
-use crate::{Differentiated, Error, Real, Variational};
+use crate::space::larger;
+use crate::{Differentiated, Error, Real, Space, Variational};
 
 /// The most backward sweeps of one solution.
 const SWEEPS: u32 = 200;
 /// Halvings of a step that makes the action larger.
 const HALVINGS: usize = 6;
+/// Units in the last place that rounding leaves of a residual, but for large terms that cancel.
+const ROUNDING: f64 = 1024.0;
 /// Damping beyond which no step goes downhill but for round-off.
 const DAMPING_LIMIT: f64 = 1e12;
 
@@ -24,18 +27,21 @@ impl<T: Real, const M: usize> PathSummary<T, M> {
         next.size <= T::from_ratio(1, 2) * self.size
     }
 
-    /// Whether no correction is left: it is round-off; or it is below √ε, and the residual is round-off. The residual counts where extremals
-    /// are not isolated, as between opposite points of a sphere: there corrections go astray. Rounding of large terms that cancel may leave
-    /// more of a residual; then corrections shrink no more although steadied.
+    /// Whether no correction is left. It is round-off, and so is the residual, or the last correction made it no smaller.
+    /// Or it is below √ε, and the residual is round-off. The residual counts where extremals are not isolated, as
+    /// between opposite points of a sphere: there corrections go astray. A large action hides residuals, as from an
+    /// offset of the potential. Rounding of large terms that cancel may leave more of a residual. Then corrections
+    /// shrink no more although steadied.
     #[inline]
     fn has_converged(&self, before: Option<&Self>, is_closed: bool, curvature: Curvature<T>) -> bool {
         let seen = T::EPSILON.sqrt();
         let is_stationary = |units| is_closed && self.is_stationary(units);
         let is_steadied = curvature == Curvature::exact(seen);
-        self.size <= self.round_off()
+        let is_settled = || before.is_some_and(|before| !before.is_halved_by(self));
+        self.size <= self.round_off() && (self.is_stationary(ROUNDING) || self.size == T::zero() || is_settled())
             || self.size <= seen
                 && match before.filter(|before| is_steadied && before.size <= seen) {
-                    Some(before) => !before.is_halved_by(self) || is_stationary(1024.0),
+                    Some(before) => !before.is_halved_by(self) || is_stationary(ROUNDING),
                     None => is_stationary(16.0),
                 }
     }
@@ -47,6 +53,13 @@ impl<T: Real, const M: usize> PathSummary<T, M> {
         let contraction = |before: &Self| self.size / before.size;
         self.size <= T::EPSILON.sqrt()
             && before.is_some_and(|before| self.size * contraction(before) * contraction(before) <= T::EPSILON)
+    }
+
+    /// The error where momenta do not agree at a vertex.
+    #[cold]
+    fn jump(&self) -> Error {
+        let momentum = (self.momenta / self.edges).sqrt();
+        Error::NotStationary { residual: self.residual_squared.sqrt().to_f64(), momentum: momentum.to_f64() }
     }
 
     /// Whether a full step is made next. Comparisons are written so that NaN is none.
@@ -82,8 +95,20 @@ impl<T: Real, S: Variational<M, Scalar = T>, B: Differentiated<S, M>, const M: u
     /// that fails too, the action is made smaller. The Hessian is then definite, and steps are halved (Armijo's rule).
     /// If that happens often, the Hessian is damped. Corrections are measured in the norm of the Hessian relative to
     /// the action, which no choice of units changes.
+    ///
+    /// Near a singularity of the potential the Hessian is so large that no residual needs a correction. So the residual
+    /// of the answer is compared with its own round-off.
     #[inline]
     pub fn newton(&mut self, guess: &Guess<T, M>) -> Result<(PathSummary<T, M>, u32), Error> {
+        let (found, sweeps) = self.converge(guess)?;
+        let half = T::EPSILON.sqrt().recip().to_f64();
+        let is_stationary = found.residual_squared.is_finite() && found.is_stationary(half);
+        if is_stationary || self.is_at_rest(&found) { Ok((found, sweeps)) } else { Err(found.jump()) }
+    }
+
+    /// The same without a look at the residual.
+    #[inline]
+    fn converge(&mut self, guess: &Guess<T, M>) -> Result<(PathSummary<T, M>, u32), Error> {
         self.prepare(guess)?;
         // A minimum is looked for where this is false.
         let mut any_index = *guess != Guess::Geodesic;
@@ -143,6 +168,23 @@ impl<T: Real, S: Variational<M, Scalar = T>, B: Differentiated<S, M>, const M: u
             }
         }
         Err(Error::NoExtremal { correction: size.to_f64(), iterations: SWEEPS })
+    }
+
+    /// Whether round-off of configurations explains the residual, as for a path at rest. That is ε of the largest entry
+    /// times the least stiffness of an edge. The stiffness near a singularity does not count.
+    #[cold]
+    #[inline(never)]
+    fn is_at_rest(&self, found: &PathSummary<T, M>) -> bool {
+        let mut next = &self.last;
+        let (mut least, mut scale) = (None, next.max_abs());
+        for (index, node) in self.path.iter().enumerate().rev() {
+            let stiffness = self.problem.edge(index, node, next).after_by_end.trace().abs();
+            least = least.filter(|least| *least <= stiffness).or(Some(stiffness));
+            next = &node.configuration;
+            scale = larger(scale, next.max_abs());
+        }
+        let unit = T::from_f64(ROUNDING) * T::EPSILON * scale * least.unwrap_or(T::zero());
+        found.residual_squared <= unit * unit && found.residual_squared.is_finite()
     }
 
     /// Makes a step that makes the action smaller, or a full one where the action has no digits left. Returns how often it was halved, if it was made.

@@ -51,7 +51,7 @@ impl<T: Real, S: Variational<M, Scalar = T>, B: Differentiated<S, M>, const M: u
     }
 
     #[inline(always)]
-    fn edge(&self, index: usize, node: &Node<S, M>, next: &S::Configuration) -> Edge<T, M> {
+    pub fn edge(&self, index: usize, node: &Node<S, M>, next: &S::Configuration) -> Edge<T, M> {
         let (t, edge) = self.place(index);
         let (q, d) = (&node.configuration, &node.increment);
         let u = S::Input::origin();

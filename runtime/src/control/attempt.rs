@@ -112,7 +112,11 @@ fn pattern<T: Real, const U: usize>(amplitudes: &SVector<T, U>, turns: T, index:
 fn may_be_found(error: &Error) -> bool {
     matches!(
         error,
-        Error::Infeasible { .. } | Error::TargetMissed { .. } | Error::NoExtremal { .. } | Error::Uncontrollable { .. }
+        Error::Infeasible { .. }
+            | Error::TargetMissed { .. }
+            | Error::NoExtremal { .. }
+            | Error::NotStationary { .. }
+            | Error::Uncontrollable { .. }
     )
 }
 

@@ -58,6 +58,14 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: usize
         (SVector::from_fn(|i, _| barrier / self.slack[i] + stiffness[i] * self.excess[i]), stiffness)
     }
 
+    /// Σ z |∂a/∂u|: how hard bounds push each input, without signs.
+    #[cold]
+    pub(super) fn pushes(&self, by_input: &SMatrix<T, C, U>) -> SVector<T, U> {
+        let present = |i: &usize| !is_none(self.slack[*i]);
+        let push = |j: usize| (0..C).filter(present).map(move |i| self.multipliers[i] * by_input[(i, j)].abs());
+        SVector::from_fn(|j, _| push(j).fold(T::zero(), |sum, push| sum + push))
+    }
+
     /// Adds ζ·a + ½ Σ (aδ)² with the curvature of z·a to the model of the step; in the last sweep z·a. Returns Σ a/s of violated bounds, and its slopes.
     #[inline]
     pub(super) fn add_bounds(

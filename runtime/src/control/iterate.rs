@@ -164,6 +164,13 @@ impl<T: Real, const D: usize> Iterate<T, D> {
         self.begin_again();
     }
 
+    /// Goes on with prices as they are now.
+    #[cold]
+    pub fn forget_prices(&mut self) {
+        self.largest = T::zero();
+        self.begin_again();
+    }
+
     /// Nothing is known any more of the corrections before.
     fn begin_again(&mut self) {
         (self.before, self.calm, self.is_cornered, self.is_probed) = (None, 0, false, false);

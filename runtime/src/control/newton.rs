@@ -68,7 +68,15 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: usize
                     self.settle(&change, now.settings.barrier)?;
                     // Where inputs need no correction, the multipliers may.
                     now.settings.multipliers += change;
-                    return self.finish(now);
+                    let found = self.finish(&now);
+                    let is_lenient = T::EPSILON.sqrt() * now.largest > summary.magnitude;
+                    if is_lenient && matches!(found, Err(Error::NotStationary { .. })) {
+                        // a price that the guess had made so large that corrections seemed to be round-off
+                        now.forget_prices();
+                        self.begin(now.settings.barrier);
+                        continue;
+                    }
+                    return found;
                 }
                 Verdict::Tighten => {
                     now.tighten(bounds, magnitude);
@@ -164,12 +172,20 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: usize
     }
 
     /// The last sweep: exact second derivatives as they are, for gains and the index.
-    fn finish<'p>(&mut self, now: Iterate<T, D>) -> Result<Optimum<'p, S, D, U, C>, Error> {
+    fn finish<'p>(&mut self, now: &Iterate<T, D>) -> Result<Optimum<'p, S, D, U, C>, Error> {
         let end = self.end();
         let settings = Settings { curvature: Curvature::exact(T::zero()), is_last: true, ..now.settings };
         // The weight of the target belongs to the search: costates are those of the multipliers alone.
         let closed = PlanEnd { lack: SVector::zeros(), ..end };
         let summary = self.eliminate(&closed, &settings)?;
+        // Near a singularity curvatures are so large that no residual needs a correction. Written so that NaN is an error.
+        let is_stationary = summary.residual <= T::EPSILON.sqrt() * summary.terms && summary.residual.is_finite();
+        // Without a price only the barrier is left in a slope, and that is round-off.
+        let is_free = summary.magnitude == T::zero();
+        if !is_stationary && !is_free {
+            let (residual, momentum) = (summary.residual.to_f64(), summary.terms.to_f64());
+            return Err(Error::NotStationary { residual, momentum });
+        }
         Ok(Optimum {
             stages: &[],
             step_size: self.problem.h,

@@ -1,12 +1,16 @@
 //! The quadratic model of one step in the backward sweep, and its elimination.
 
+use super::Stage;
 use super::end::PlanEnd;
 use super::sweep::Settings;
 use crate::linear::rows;
 use crate::newton::{Curvature, Equilibrated, Ldl, UNITS};
 use crate::space::larger;
-use crate::{EndpointExpansion, Expansion, Real};
+use crate::{Controlled, EndpointExpansion, Expansion, Real, Space};
 use nalgebra::{SMatrix, SVector};
+
+/// Units in the last place that rounding leaves of a residual.
+const ROUNDING: f64 = 1024.0;
 
 /// The slopes of a function of place and input.
 pub(super) type Slopes<T, const D: usize, const U: usize> = (SVector<T, D>, SVector<T, U>);
@@ -112,6 +116,29 @@ impl<T: Real, const D: usize, const U: usize> Policy<T, D, U> {
             yielding: -violation.dot(&pivot.against(&violation)),
         };
         (policy, value)
+    }
+}
+
+impl<T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: usize, const C: usize> Stage<S, D, U, C> {
+    /// The sizes of the terms of Q_u: |∂ℓ/∂u| + |B|ᵀ|p| + Σ z |∂a/∂u|. Where all of them vanish, as for a plan at rest,
+    /// round-off of inputs and places makes a residual. So a part of |Q_uu| |u| + |Q_ux| |x| counts as well.
+    #[cold]
+    pub(super) fn terms(
+        &self,
+        step: &Expansion<S::Place, T, D, U>,
+        costate: &SVector<T, D>,
+        pushes: Option<SVector<T, U>>,
+    ) -> SVector<T, U> {
+        let place = self.place.max_abs();
+        let part = T::from_f64(ROUNDING) * T::EPSILON.sqrt();
+        SVector::from_fn(|i, _| {
+            let carried = |sum, j: usize| sum + (step.by_input[(j, i)] * costate[j]).abs();
+            let by_place = |sum, j: usize| sum + step.mixed_curvature[(i, j)].abs() * place;
+            let by_input = |sum, j: usize| sum + (step.input_curvature[(i, j)] * self.input[j]).abs();
+            let forces = (0..D).fold(step.price_by_input[i].abs(), carried);
+            let moved = (0..U).fold((0..D).fold(T::zero(), by_place), by_input);
+            forces + pushes.map_or(T::zero(), |pushes| pushes[i]) + part * moved
+        })
     }
 }
 

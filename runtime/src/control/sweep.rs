@@ -72,6 +72,8 @@ pub(super) struct PlanSummary<T, const D: usize, const U: usize> {
     pub descent: T,
     /// The largest entry of Q_u.
     pub residual: T,
+    /// In the last sweep the largest sum of the sizes of the terms of such an entry.
+    pub terms: T,
     /// V_ν, the gap that inputs have still to close.
     pub lack: SVector<T, D>,
     /// Γ
@@ -149,6 +151,7 @@ impl<'a, T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: u
             magnitude: endpoint.price.abs(),
             descent: zero,
             residual: zero,
+            terms: zero,
             lack: -end.lack,
             gramian: SMatrix::zeros(),
             negative: 0,
@@ -161,6 +164,12 @@ impl<'a, T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: u
         for (index, stage) in self.stages.iter_mut().enumerate().rev() {
             let t = self.problem.time_after(index);
             let mut step = system.expand(constants, t, &stage.place, &stage.input, &(value.costate * settings.bend))?;
+            if settings.is_last {
+                let bounds = self.bounds > zero;
+                let pushes = bounds.then(|| system.bounds_expanded(t, &stage.place, &stage.input, &stage.multipliers));
+                let pushes = pushes.map(|bounds| stage.pushes(&bounds.by_input));
+                summary.terms = larger(summary.terms, stage.terms(&step, &value.costate, pushes).max_abs());
+            }
             let mut bounded = None;
             if self.bounds > zero {
                 let natural = step.input_curvature.diagonal();

@@ -4,6 +4,7 @@ mod direct;
 mod free_ends;
 mod limits;
 mod pairs;
+mod singular;
 mod systems;
 mod ways;
 

@@ -145,6 +145,23 @@ fn bounds_of_random_sizes_are_kept() {
     assert!(found > 200, "{found} of 400");
 }
 
+/// A guess that is dear by many orders hides no slope of the price: inputs are those of the plan from no guess.
+#[test]
+fn wild_guesses_are_forgotten() -> Result<(), Error> {
+    let mut random = Random::new(707);
+    for k in 0..100 {
+        let goal = Target::Place(Vector2::new(random.between(0.3, 1.0), random.between(-0.3, 0.3)));
+        let (start, wild) = (Vector2::zeros(), 10_f64.powi(k % 9) * random.number());
+        let control =
+            Cart { low: -random.between(5.0, 9.0), high: random.between(5.0, 9.0), fast: 1.5 }.control(0.05)?;
+        let [mut plan, mut other] = [0.0, wild].map(|u| [control.stage(&start).with_input(Vector1::new(u)); 20]);
+        let price = control.solve(&start, goal, &mut plan)?.price();
+        let found = control.solve(&start, goal, &mut other)?;
+        assert!((found.price() - price).abs() < 1e-6 * price, "{k}, {wild}: {found:?} after {price}");
+    }
+    Ok(())
+}
+
 /// An infinite parameter makes the plans of the declaration without the bound: the same work, the same price, to the last bit.
 #[test]
 fn an_infinite_bound_is_none() {
