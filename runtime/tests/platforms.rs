@@ -70,7 +70,7 @@ pub struct SplitTop<T: Scalar> {
     pub weight: T,
 }
 
-/// Steps of the runs, of which Miri, which interprets, makes the shorter ones.
+/// Steps of the runs; Miri interprets, and makes the shorter ones.
 const STEPS: [usize; 3] = [2, 20, 1000];
 
 /// FNV-1a of the bits of all states after the first, their energies and times.

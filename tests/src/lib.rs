@@ -1,4 +1,4 @@
-//! The accepted fixtures, compiled: what every test runs.
+//! The accepted fixtures, compiled: every test runs them.
 
 #![allow(missing_docs)]
 

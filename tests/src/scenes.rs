@@ -51,8 +51,8 @@ pub fn placed() -> Matrix4<f64> {
     placed
 }
 
-/// Calls the macro `$scenes` with a line for one fixture of each kind: a name, the system with its parameters, a configuration on its orbit and a
-/// step size. Lines behind `$scenes` are added to these.
+/// Calls the macro `$scenes` with a line for one fixture of each kind. The line has a name, the system with its
+/// parameters, a configuration on its orbit and a step size. Lines behind `$scenes` are added to these.
 ///
 /// The caller imports `clebsch_tests::fixtures::*`, `clebsch_tests::scenes::*` and `nalgebra::*`.
 #[rustfmt::skip]

@@ -1,7 +1,8 @@
-//! Steps of order 16 by collocation: what they keep over many steps, where they end, and that they agree with steps found in other ways.
+//! Steps of order 16 by collocation: their invariants over many steps, their results, and that they agree with steps
+//! found in other ways.
 //!
-//! Their order is measured with those of exact drifts, against equations of motion; their symplectic form, with those of all steps; their lanes,
-//! with those of all lanes.
+//! Their order is measured with those of exact drifts, against equations of motion. Their symplectic form is tested
+//! with those of all steps, and their lanes with those of all lanes.
 
 #![allow(missing_docs)]
 
@@ -158,8 +159,8 @@ fn representations_agree() -> Result<(), Error> {
     Ok(())
 }
 
-/// What 10⁵ steps of a fifth of a radian leave of the invariants: orbit, vertical momentum and energy are at round-off, whose sum grows like
-/// the root of the number of steps.
+/// The invariants after 10⁵ steps of a fifth of a radian: orbit, vertical momentum and energy are at round-off. Their
+/// sum grows like the root of the number of steps.
 #[test]
 fn invariants_stay_at_rounding() -> Result<(), Error> {
     const STEPS: u32 = 100_000;
@@ -182,7 +183,7 @@ fn invariants_stay_at_rounding() -> Result<(), Error> {
     Ok(())
 }
 
-/// Rests of sums are kept beside the state, as in other steps.
+/// Rounding errors of sums are stored with the state, as in other steps.
 #[test]
 fn compensated_sums_round_less() -> Result<(), Error> {
     let (plain, kept, exact) = (top!(sixteenth, f32), top!(compensated, f32), top!(sixteenth, f64));
@@ -202,7 +203,8 @@ fn compensated_sums_round_less() -> Result<(), Error> {
     Ok(())
 }
 
-/// A tolerance is what the step may miss: sweeps end earlier, and the difference to the settled step is below it.
+/// A tolerance is the error that the step may have: sweeps end earlier, and the difference to the settled step is below
+/// it.
 #[test]
 fn tolerances_end_sweeps() -> Result<(), Error> {
     let (settled, loose) = (top!(sixteenth, f64).into_stepper(0.25)?, top!(loose, f64).into_stepper(0.25)?);
@@ -213,7 +215,7 @@ fn tolerances_end_sweeps() -> Result<(), Error> {
     Ok(())
 }
 
-/// What cannot be stepped is an error, and the state before it is as it was.
+/// A state that cannot be stepped is an error, and stays as it was.
 #[test]
 fn failures_are_typed() -> Result<(), Error> {
     let top = top!(sixteenth, f64);

@@ -21,7 +21,7 @@ fn steps() -> usize {
     std::env::var("CLEBSCH_STEPS").ok().and_then(|text| text.parse().ok()).unwrap_or(1_000_000)
 }
 
-/// What a run found: the largest drift of each quantity in each of the windows (0, n/2^k].
+/// The results of a run: the largest drift of each quantity in each of the windows (0, n/2^k].
 struct Drifts {
     names: Vec<&'static str>,
     windows: Vec<(usize, Vec<f64>)>,
@@ -62,7 +62,7 @@ impl Drifts {
         (self.windows.last().map_or(f64::NAN, |(_, largest)| largest[quantity]), slope(&points))
     }
 
-    /// Each quantity is kept to round-off.
+    /// Each quantity stays to round-off.
     fn assert_round_off(&self, system: &str) {
         for (quantity, name) in self.names.iter().enumerate() {
             let (drift, slope) = self.of(quantity);
@@ -129,8 +129,8 @@ fn spherical_pendulum_keeps_its_vertical_momentum_and_stays_on_the_sphere() {
     assert_band("spherical pendulum", &stepper, (q, n), 7e-3);
 }
 
-/// Without gravity every step turns by the same angle: a cosine that is rounded once and multiplies q would change |q| in every step by as
-/// much, here by 10⁻¹¹ in all. What is added to q is rounded far below its last place.
+/// Without gravity every step turns by the same angle. A cosine that is rounded once and multiplies q would change |q|
+/// in every step by as much, here by 10⁻¹¹ in all. The increment of q is rounded far below its last place.
 #[test]
 fn a_geodesic_of_the_sphere_keeps_its_length() {
     let stepper = SphericalPendulum { mass: 1.0, length: 1.0, gravity: 0.0 }.stepper(0.01).expect("a pendulum");
@@ -195,7 +195,7 @@ fn two_bodies_keep_linear_and_angular_momentum() {
     assert_band("two bodies", &stepper, (x, mu), 1e-4);
 }
 
-/// The energy oscillates in a band that is as wide over the whole run as over its first tenth: no secular drift.
+/// The energy oscillates in a band that is as wide over the full run as over its first tenth: no secular drift.
 ///
 /// The band is of the size (hω)² for the fastest rate ω of the problem; for the pendulum an independent 60-digit run has [1.2422, 1.2500].
 fn assert_band<S: Clebsch<Scalar = f64>>(

@@ -162,7 +162,7 @@ fn negative_steps_undo_positive_ones() {
     assert!((back.momentum() - pi).amax() > 1e-4, "drift and kick do not commute");
 }
 
-/// Nothing moves without momentum and potential, and tiny momenta move a body by what they are.
+/// Nothing moves without momentum and potential, and tiny momenta move a body in proportion to their size.
 #[test]
 fn zero_and_tiny_momenta() {
     let random = &mut Random::new(93);
@@ -218,7 +218,8 @@ fn both_solvers_step_alike() {
     assert!(stepped > 100 && refused > 40, "{stepped} steps, {refused} refused");
 }
 
-/// What three linearisations solve has the bits that it has without a limit; the rest is an error that says what was done.
+/// A solution of three linearisations has the bits that it has without a limit; other solves are an error with their
+/// numbers.
 #[test]
 fn a_limit_of_iterations_is_kept() {
     let mut random = Random::new(98);

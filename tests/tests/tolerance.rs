@@ -1,4 +1,4 @@
-//! Steps whose equation is solved to a tolerance: what stays exact, what drifts and by how much.
+//! Steps whose equation is solved to a tolerance: exact quantities, and the drift of the others.
 //!
 //! `cargo test --release -p clebsch-tests --test tolerance -- --nocapture` prints drifts against tolerances after 1e5 steps.
 
@@ -10,7 +10,8 @@ use clebsch_tests::oracle::near::{assert_near, distance};
 use clebsch_tests::oracle::random::Random;
 use nalgebra::{Matrix3, Vector3};
 
-/// Declares a free body, the same body by fixed points, a top and one whose drifts are exact, at a tolerance or at none, in a module of its own.
+/// Declares a free body, the same body by fixed points, a top and one whose drifts are exact, in a module of its own.
+/// They have a tolerance, or none.
 macro_rules! systems {
     ($($module:ident $(($tolerance:literal))?;)*) => { $(
         pub mod $module {
@@ -93,7 +94,8 @@ fn start() -> (Matrix3<f64>, Vector3<f64>) {
     (Random::new(81).attitude::<3>(), Vector3::new(0.4, 1.2, -0.7))
 }
 
-/// What is lost after all steps from `spin` times the momentum: the largest relative errors of energy, spatial momentum about e3, and RᵀR − I.
+/// The losses after all steps from `spin` times the momentum: the largest relative errors of energy, spatial momentum
+/// about e3, and RᵀR − I.
 #[derive(Debug)]
 struct Lost {
     energy: f64,
@@ -120,7 +122,8 @@ where
     lost
 }
 
-/// Of all tolerances: what a free body loses, by Newton's method and by fixed points, a top, and one by free rotations.
+/// For all tolerances: the losses of a free body, by Newton's method and by fixed points, of a top, and of one by free
+/// rotations.
 fn all() -> Vec<(f64, [Lost; 4])> {
     macro_rules! lost_at {
         ($($module:ident $tolerance:expr;)*) => { vec![$({
@@ -153,9 +156,9 @@ fn inertia(mass_matrix: &Matrix3<f64>) -> Matrix3<f64> {
 const TOP: (Matrix3<f64>, f64, Vector3<f64>) =
     (Matrix3::new(1.2, 0.1, -0.2, 0.1, 0.8, 0.05, -0.2, 0.05, 0.5), 3.0, Vector3::new(0.1, -0.2, 0.7));
 
-/// F lies on the group and N⁺ is Ad* of N, whatever the tolerance: rotations stay rotations, and spatial momenta what they are, to the rounding of
-/// 1e5 steps. The step is not symplectic: the energy of a body goes astray, the further the larger the tolerance is, and by no more than the
-/// tolerance at each step.
+/// F lies on the group and N⁺ is Ad* of N, whatever the tolerance. So rotations stay rotations, and spatial momenta
+/// stay constant, to the rounding of 1e5 steps. The step is not symplectic. The energy of a body goes astray, the
+/// further the larger the tolerance is, and by no more than the tolerance at each step.
 #[test]
 fn momenta_stay_and_energies_drift() {
     let found = all();
@@ -194,7 +197,7 @@ fn momenta_stay_and_energies_drift() {
 
 /// The equation is missed by no more than the tolerance, but for the condition of Σ, and by more than rounding.
 ///
-/// What later corrections add up to is below 4/3 of the tolerance of |x|₁ ≤ √3 |x|, and |Σx| is between 1 and 2.8 of |x|.
+/// The sum of later corrections is below 4/3 of the tolerance of |x|₁ ≤ √3 |x|, and |Σx| is between 1 and 2.8 of |x|.
 #[test]
 fn equations_are_missed_by_the_tolerance() -> Result<(), Error> {
     fn missed<S>(stepper: &Stepper<S>, longest: f64) -> f64

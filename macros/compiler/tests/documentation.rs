@@ -1,4 +1,5 @@
-//! What the documentation of generated code shows is what is computed: each formula as the table has it, by its id.
+//! The documentation of generated code shows the formulas that are computed: each formula as the table has it, by its
+//! id.
 
 use std::path::Path;
 
@@ -12,7 +13,7 @@ use syn::{Attribute, Expr, ImplItem, Item, ItemImpl, Lit, Meta, PathArguments, S
 struct Documented {
     /// Its name.
     name: String,
-    /// The substep and the equation that it belongs to; `None` for those of the whole system.
+    /// The substep and the equation that it belongs to; `None` for those of the system.
     place: Option<(usize, Option<usize>)>,
     lines: Vec<String>,
 }
@@ -150,7 +151,7 @@ fn documented(program: Option<&MechanicsProgram<'_>>, items: Vec<Item>) -> Vec<D
     all
 }
 
-/// What the documentation of a program shows and the table does not say, or the other way round.
+/// Formulas that the documentation of a program shows and the table does not have, or the other way round.
 fn differences(table: &FormulaTable<'_>, program: Option<&MechanicsProgram<'_>>, items: Vec<Item>) -> Vec<String> {
     let mut found = Vec::new();
     for item in documented(program, items) {

@@ -1,4 +1,4 @@
-//! Every fixture does what its folder says: the accepted ones compile, the rejected ones have errors that say what to write.
+//! Every fixture fits its folder: the accepted ones compile, the rejected ones have errors with the text to write.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -19,7 +19,7 @@ fn fixtures(folder: &str) -> Vec<PathBuf> {
     files
 }
 
-/// What the compiler says about the item of a file: nothing, or its errors.
+/// The answer of the compiler about the item of a file: nothing, or its errors.
 fn errors(file: &Path) -> Option<String> {
     compile(&Graph::new(), item(file)).err().map(|errors| errors.to_string())
 }
@@ -49,7 +49,7 @@ fn accepted_fixtures_compile() {
     }
 }
 
-/// What people declare is far from what is too large: no fixture takes a twentieth of the budget.
+/// Declarations of people are far from the limit: no fixture takes a twentieth of the budget.
 #[test]
 fn accepted_fixtures_stay_far_within_the_budget() {
     let mut most = (0, String::new());
@@ -158,7 +158,7 @@ fn constants(file: &Path) -> Vec<(String, String)> {
     shared.into_iter().filter(|(name, _)| names.contains(name)).collect()
 }
 
-/// What inputs move has no constants.
+/// A configuration that inputs move has no constants.
 fn names_of_constants<'p>(program: &'p Program<'_>) -> &'p [String] {
     program.mechanics().map_or(&[], |program| &program.constant_names)
 }
@@ -182,7 +182,7 @@ fn no_constant_is_the_negative_of_another() {
     assert!(seen > 300, "{seen} constants");
 }
 
-/// `k7` is the name of what has no short one.
+/// `k7` is the name of a constant that has no short one.
 #[test]
 fn constants_are_named_by_their_formulas() {
     let is_numbered = |name: &str| name.strip_prefix('k').is_some_and(|rest| rest.parse::<usize>().is_ok());

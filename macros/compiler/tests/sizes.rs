@@ -1,4 +1,5 @@
-//! Declarations of every size have an integrator or an error that says so: no gap between what is small and what is large.
+//! Declarations of every size have an integrator or an error that says so: there is no gap between small and large
+//! ones.
 
 use clebsch_compiler::{Graph, compile};
 
@@ -24,7 +25,8 @@ fn point(n: usize) -> String {
     )
 }
 
-/// Points on S¹² to S¹⁵ were refused once, between those that were written out and those whose symmetries are looked for one by one.
+/// Points on S¹² to S¹⁵ were refused once. They lie between those that were unrolled and those whose symmetries are
+/// looked for one by one.
 #[test]
 fn points_of_all_dimensions() {
     for n in (2..=10).chain(12..=20).chain([33, 64]) {

@@ -272,8 +272,8 @@ fn slopes_of_exponentials_are_their_differences() {
     }
 }
 
-/// exp Z₊ exp Z₋ by four Stumpff functions against the power series of exp Z, and the increment beside it; simple rotations and such in
-/// which one half is at rest too.
+/// exp Z₊ exp Z₋ by four Stumpff functions against the power series of exp Z, with the increment. Simple rotations, and
+/// such with one half at rest, are among them.
 #[test]
 fn rotations_in_four_dimensions_are_two_in_three() {
     let graph = Graph::new();

@@ -35,7 +35,8 @@ fn values_stay_as_they_are() {
     }
 }
 
-/// (W − I)J_m + b m cᵀ, the rotational part of the momentum of a body in space, holds the blocks of its mass matrix and nothing else.
+/// (W − I)J_m + b m cᵀ is the rotational part of the momentum of a body in space. It contains the blocks of its mass
+/// matrix and nothing else.
 #[test]
 fn zeros_are_not_multiplied() {
     let graph = Graph::new();

@@ -1,4 +1,4 @@
-//! Bounds: the box of an input, against the dual of the problem, and what is not possible.
+//! Bounds: the box of an input, against the dual of the problem, and impossible bounds.
 
 use crate::linear::{Linear, bounded_integrator};
 use clebsch::{Control, Controlled, Error, Optimum, Stage, Target};
@@ -202,8 +202,8 @@ fn braked(h: f64, steps: usize, wall: f64) -> (f64, f64) {
     (h * lack.dot(&multiplier) / 2.0, furthest)
 }
 
-/// A car brakes from (0, 1) to rest at a wall that it may not pass before: the bound of a place is one of the input two steps earlier.
-/// At 0.15 and 0.2 the wall is reached a step before it pushes.
+/// A car brakes from (0, 1) to rest at a wall that it may not pass before. The bound of a place is one of the input two
+/// steps earlier. At 0.15 and 0.2 the wall is reached a step before it pushes.
 #[test]
 fn a_wall_is_not_passed() -> Result<(), Error> {
     let (plans, walls) = if cfg!(miri) { (1, 1) } else { (3, 25) };

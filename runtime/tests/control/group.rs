@@ -22,7 +22,7 @@ pub fn unicycle() -> Group<2> {
     Group { basis: [unit(0, 2), turn, unit(1, 2)], dual: [unit(0, 2), turn * 0.5, unit(1, 2)] }
 }
 
-/// Rotations, of which those about the first two axes are driven.
+/// Rotations; those about the first two axes are driven.
 pub fn attitude() -> Group<2> {
     let hat = |v: Vector3<f64>| v.cross_matrix();
     let basis = [hat(Vector3::x()), hat(Vector3::y()), hat(Vector3::z())];
@@ -41,7 +41,7 @@ fn constant(matrix: &Matrix3<f64>) -> JetMatrix {
     core::array::from_fn(|i| core::array::from_fn(|j| Jet::constant(matrix[(i, j)])))
 }
 
-/// Zeros, of which such matrices are full, take no work.
+/// Such matrices are full of zeros, which take no work.
 fn product(a: &JetMatrix, b: &JetMatrix) -> JetMatrix {
     core::array::from_fn(|i| {
         core::array::from_fn(|j| {

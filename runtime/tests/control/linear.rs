@@ -3,7 +3,8 @@
 use clebsch::{Arrival, BoundsExpansion, Controlled, EndpointExpansion, Error, Expansion};
 use nalgebra::{SMatrix, SVector};
 
-/// x⁺ = A x + B u at the price ½ x·Qx + ½ u·Ru, at last ½ x·Sx, under G x + H u ≤ b; the first M components are the configuration.
+/// x⁺ = A x + B u at the price ½ x·Qx + ½ u·Ru, at last ½ x·Sx, under G x + H u ≤ b. The first M components are the
+/// configuration.
 #[derive(Clone, Debug)]
 pub struct Linear<const D: usize, const U: usize, const C: usize, const M: usize> {
     pub a: SMatrix<f64, D, D>,

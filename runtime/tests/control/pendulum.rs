@@ -139,7 +139,7 @@ fn a_weak_motor_swings_the_pendulum_up() -> Result<(), Error> {
     Ok(())
 }
 
-/// Not enough time: what is left is told.
+/// Not enough time: the error gives the remaining distance.
 #[test]
 #[cfg_attr(miri, ignore = "too long to interpret: a search until it is given up")]
 fn a_motor_too_weak_misses() -> Result<(), Error> {
@@ -153,7 +153,8 @@ fn a_motor_too_weak_misses() -> Result<(), Error> {
     Ok(())
 }
 
-/// From rest to rest over the distance d in N steps of h: c N h + 6 d²/(h³ N (N² − 1)), least for h⁴ = 18 d²/(c N² (N² − 1)).
+/// From rest to rest over the distance d in N steps of h the price is c N h + 6 d²/(h³ N (N² − 1)). It is least for
+/// h⁴ = 18 d²/(c N² (N² − 1)).
 #[test]
 fn the_time_that_is_worth_its_price() -> Result<(), Error> {
     let (distance, hurry, steps) = (2.0, 0.5, if cfg!(miri) { 6 } else { 60 });

@@ -1,4 +1,4 @@
-//! What is refused, with its numbers.
+//! Refused problems, with their numbers.
 
 use crate::group::unicycle;
 use crate::linear::{Linear, double_integrator};
@@ -36,7 +36,7 @@ fn numbers_must_be_finite() -> Result<(), Error> {
     Ok(())
 }
 
-/// Two masses of which one is driven, seen from an oblique frame: half of the places are out of reach.
+/// Two masses, one driven, seen from an oblique frame: half of the places are out of reach.
 #[test]
 fn what_no_input_moves_is_not_controllable() -> Result<(), Error> {
     let frame = SMatrix::<f64, 2, 2>::new(0.8, -0.6, 0.6, 0.8);

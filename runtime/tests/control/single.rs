@@ -71,7 +71,8 @@ impl Controlled<1, 1, 2> for Tank {
     }
 }
 
-/// From 2 to 0: as fast as allowed until the exponential decay needs less. The condition of first order is written out in doubles.
+/// From 2 to 0: as fast as allowed until the exponential decay needs less. The condition of first order is computed in
+/// doubles.
 #[test]
 fn single_precision_is_enough() -> Result<(), Error> {
     let control = Tank.control(0.05)?;

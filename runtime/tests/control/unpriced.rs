@@ -1,4 +1,4 @@
-//! Guesses that cost nothing and violate bounds: neither their price nor its unit tells what it costs to keep a bound.
+//! Guesses that cost nothing and violate bounds: neither their price nor its unit tells the cost of satisfying a bound.
 
 use crate::bounded::Bounded;
 use crate::linear::bounded_integrator;
@@ -8,7 +8,7 @@ use nalgebra::{SMatrix, Vector2};
 use std::vec;
 use std::vec::Vec;
 
-/// The least inputs by which what these rows make of them is what lacks, and their multipliers.
+/// The least inputs that these rows map to the lacks, and their multipliers.
 fn least(h: f64, steps: usize, rows: &[Vec<f64>], lacks: &[f64]) -> (Vec<f64>, Vec<f64>) {
     let product = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>() / h;
     let gramian = rows.iter().map(|a| rows.iter().map(|b| product(a, b)).collect()).collect();
@@ -17,13 +17,13 @@ fn least(h: f64, steps: usize, rows: &[Vec<f64>], lacks: &[f64]) -> (Vec<f64>, V
     ((0..steps).map(input).collect(), multipliers)
 }
 
-/// What the inputs of double integrators add to x_k.
+/// The share of the inputs of double integrators in x_k.
 fn row_of_place(h: f64, steps: usize, k: usize) -> Vec<f64> {
     (0..steps).map(|j| if j < k { h * h * (k as f64 - j as f64 - 0.5) } else { 0.0 }).collect()
 }
 
-/// The inputs from (0, 1) on that keep x_k ≤ wall at least price: that one or two bounds push is found by trying, and proved by the conditions of
-/// Karush, Kuhn and Tucker, which are enough since the problem is convex.
+/// The inputs from (0, 1) on that satisfy x_k ≤ wall at least price. That one or two bounds push is found by trying.
+/// The conditions of Karush, Kuhn and Tucker prove it, as the problem is convex.
 fn stopped(h: f64, steps: usize, wall: f64) -> Option<Vec<f64>> {
     let rows: Vec<Vec<f64>> = (0..steps).map(|k| row_of_place(h, steps, k)).collect();
     let place = |k: usize, inputs: &[f64]| h * k as f64 + rows[k].iter().zip(inputs).map(|(b, u)| b * u).sum::<f64>();

@@ -267,7 +267,8 @@ fn the_number_of_steps_hardly_matters() -> Result<(), Error> {
     Ok(())
 }
 
-/// A long body is far from a free motion when it turns about a fixed axis once more than it has to: the action has to go downhill.
+/// A long body is far from a free motion when it turns about a fixed axis once more than it has to. The action has to
+/// go downhill.
 #[test]
 #[cfg_attr(miri, ignore = "too long to interpret: dozens of iterations over thousands of nodes")]
 fn the_number_of_steps_hardly_matters_far_from_the_extremal() -> Result<(), Error> {

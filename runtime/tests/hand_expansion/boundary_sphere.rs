@@ -125,7 +125,8 @@ fn paths_go_downhill_to_a_minimum() -> Result<(), Error> {
     Ok(())
 }
 
-/// In the plane of symmetry no gradient leads out of it: what is least there is critical, and its index tells whether least at all.
+/// In the plane of symmetry no gradient leads out of it. The least action there is critical, and its index tells
+/// whether it is least at all.
 #[test]
 fn symmetric_problems_end_in_symmetric_extremals() -> Result<(), Error> {
     let pendulum = DrivenPendulum { mass: 2.0, length: 0.5, gravity: 9.81, shake: 0.0, rate: 0.0 };

@@ -179,7 +179,7 @@ const _: () = {
         type Moves = ::clebsch::__private::ByCoordinates;
         const IS_SHORT: bool = true;
 
-        /// What is solved for is F − I itself.
+        /// The solution is F − I itself.
         #[inline]
         fn increment(&self, d: &SMatrix<f64, 3, 3>) -> SMatrix<f64, 3, 3> {
             *d

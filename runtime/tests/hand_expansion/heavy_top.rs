@@ -29,7 +29,7 @@ const _: () = {
         inertia_inverse: SMatrix<f64, 3, 3>,
         /// (h/2)·weight·center
         moment: SVector<f64, 3>,
-        /// Sign of det 2J, kept along the branch of solutions.
+        /// Sign of det 2J, constant along the branch of solutions.
         orientation: ::clebsch::__private::Orientation,
     }
 
@@ -360,8 +360,8 @@ const _: () = {
         fn slopes(&self, _: &Constants, _: f64, _: ::clebsch::Ends<'_, Self>) {}
     }
 
-    /// The implicit equation h π^ = F𝒥 − 𝒥Fᵀ in the Cayley chart F = (I − Z)⁻¹(I + Z), Z = c^, c = tan(θ/2) n, cleared of
-    /// denominators: (I − Z)(F𝒥 − 𝒥Fᵀ − hπ^)(I + Z) = ρ^ with
+    /// The implicit equation h π^ = F𝒥 − 𝒥Fᵀ in the Cayley chart F = (I − Z)⁻¹(I + Z), Z = c^, c = tan(θ/2) n. Cleared
+    /// of denominators it is (I − Z)(F𝒥 − 𝒥Fᵀ − hπ^)(I + Z) = ρ^ with
     ///
     /// ρ(c) = 2Jc − a + c×a − (a·c)c, a = hπ.
     struct Equation<'a> {

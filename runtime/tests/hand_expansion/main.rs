@@ -1,5 +1,5 @@
-//! Two systems expanded by hand in the shape of the derive macro's output, and what every stepper promises, tested on them:
-//! a heavy top (implicit, on a group) and a driven pendulum (in closed form, with time, on a sphere).
+//! Two systems expanded by hand in the shape of the derive macro's output, and the promises of every stepper, tested on
+//! them. They are a heavy top (implicit, on a group) and a driven pendulum (in closed form, with time, on a sphere).
 
 mod boundary;
 mod boundary_sphere;
@@ -202,7 +202,8 @@ fn a_body_at_rest_stays() -> Result<(), Error> {
     Ok(())
 }
 
-/// The impulse that a state brings along is for the step size of its maker; a stepper of −h has to lead back all the same.
+/// The impulse that a state brings along is for the step size of its maker. A stepper of −h has to lead back all the
+/// same.
 #[test]
 fn a_state_goes_on_with_another_step_size() -> Result<(), Error> {
     let (forth, back) = (top().into_stepper(0.01)?, top().into_stepper(-0.01)?);

@@ -1,4 +1,4 @@
-//! What a stepper promises where the time matters, and where not all momenta are those of motions.
+//! The promises of a stepper where the time matters, and where not all momenta are those of motions.
 
 use crate::driven_pendulum::DrivenPendulum;
 use crate::heavy_top::HeavyTop;

@@ -2,7 +2,7 @@
 
 use nalgebra::{Quaternion, SMatrix};
 
-/// What is made of numbers.
+/// Values that are made of numbers.
 pub trait Flat {
     /// Its numbers: vectors from their first entry on, matrices row by row, quaternions as (i, j, k, w).
     fn numbers(&self) -> Vec<f64>;

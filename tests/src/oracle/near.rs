@@ -1,4 +1,4 @@
-//! Comparison of what two computations give.
+//! Comparison of the results of two computations.
 
 use nalgebra::SMatrix;
 

@@ -2,9 +2,9 @@
 //! to 30 digits.
 //!
 //! A [`Problem`](problem::Problem) gives an action and a discrete Lagrangian as functions of any [`Real`](real::Real)
-//! number; [`step`](step::step) solves F⁻ℓd(q, F) = N for F and returns (Φ_F q, F⁺ℓd(q, F)). Derivatives are those of
-//! dual numbers, numbers are pairs of `f64`, and no formula is simplified: what the macro derives is held against this,
-//! and nothing is shared with it.
+//! number. [`step`](step::step) solves F⁻ℓd(q, F) = N for F and returns (Φ_F q, F⁺ℓd(q, F)). Derivatives are those of
+//! dual numbers, numbers are pairs of `f64`, and no formula is simplified. Derived steps are compared with this, and
+//! nothing is shared with the macro.
 //!
 //! ```
 //! use clebsch_tests::oracle::precise::problem::{Factor, Problem, right};

@@ -1,5 +1,5 @@
-//! Extremals against a direct minimisation of the action, which knows no momentum, no tangent map and no elimination: vertex after vertex is
-//! moved to where the action of its two edges is least, by differences, until nothing moves.
+//! Extremals against a direct minimisation of the action, which knows no momentum, no tangent map and no elimination.
+//! Vertex after vertex moves to the least action of its two edges, by differences, until nothing moves.
 
 use super::systems::Top;
 use clebsch::{Clebsch, Error, Guess};
@@ -13,7 +13,7 @@ fn turned(r: &Matrix3<f64>, xi: Vector3<f64>) -> Matrix3<f64> {
     r * Rotation3::from_scaled_axis(xi).matrix()
 }
 
-/// tr(𝕄(F − I)(F − I)ᵀ)/(2h) − h/2 (V(R) + V(R⁺)), written out.
+/// tr(𝕄(F − I)(F − I)ᵀ)/(2h) − h/2 (V(R) + V(R⁺)), entry by entry.
 fn edge(r: &Matrix3<f64>, next: &Matrix3<f64>) -> f64 {
     let d = r.transpose() * next - Matrix3::identity();
     let kinetic = (0..3).map(|i| MASS[i] * d.row(i).norm_squared()).sum::<f64>() / (2.0 * H);

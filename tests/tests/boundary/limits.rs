@@ -1,5 +1,5 @@
-//! Fixed endpoints at the ends of what can be asked: few steps, tiny ones, steps at the bound of solvability, endpoints that coincide, that
-//! are opposite or out of reach, other scalars and representations.
+//! Fixed endpoints at the ends of the possible: few steps, tiny ones, steps at the bound of solvability. Then endpoints
+//! that coincide, that are opposite or out of reach, other scalars and representations.
 
 use super::pairs::{Bob, Body4};
 use super::systems::{AnyTop, QuaternionTop, Swivel, Top};
@@ -72,7 +72,7 @@ fn one_step_and_two() -> Result<(), Error> {
     Ok(())
 }
 
-/// What is thrown to come back where it was.
+/// Bodies that are thrown to come back to their start.
 #[test]
 fn endpoints_that_coincide() -> Result<(), Error> {
     for steps in [1, 7, 40, 200] {
@@ -141,8 +141,8 @@ fn tiny_steps() -> Result<(), Error> {
     Ok(())
 }
 
-/// A bob turns by less than a quarter in a step of a given momentum, and up to there each path is found; beyond, a path is an extremal
-/// too, but of a momentum that steps take otherwise.
+/// A bob turns by less than a quarter in a step of a given momentum, and up to there each path is found. Beyond, a path
+/// is an extremal too, but of a momentum that steps take otherwise.
 #[test]
 fn steps_at_the_bound_of_solvability() -> Result<(), Error> {
     let stepper = Bob { gravity: 0.0 }.into_stepper(0.1)?;

@@ -165,9 +165,10 @@ fn straight_lines() -> Result<(), Error> {
     Ok(())
 }
 
-/// All but one of a thousand pairs away from the cut locus are joined by a path at least; the others are told by an error of their own.
+/// All but one of a thousand pairs away from the cut locus are joined by a path at least. The others have an error of
+/// their own.
 ///
-/// `CLEBSCH_RANDOM=10000` takes as many pairs of each system, and `-- --nocapture` shows what became of them.
+/// `CLEBSCH_RANDOM=10000` takes as many pairs of each system, and `-- --nocapture` shows their outcome.
 #[test]
 fn random_endpoints() {
     let count = std::env::var("CLEBSCH_RANDOM").map_or(500, |count| count.parse().expect("a count of pairs"));

@@ -37,7 +37,7 @@ pub struct Body4 {
     pub mass: Vector4<f64>,
 }
 
-/// What became of the pairs of one system.
+/// The outcome of the pairs of one system.
 #[derive(Default)]
 pub struct Line {
     pub system: &'static str,
@@ -54,7 +54,7 @@ pub struct Line {
     /// Linearisations of all solutions and of the longest.
     pub iterations: u64,
     pub most: u32,
-    /// What was said of the others.
+    /// The errors of the others.
     pub errors: BTreeMap<String, u64>,
 }
 

@@ -32,7 +32,7 @@ fn half_a_turn_either_way() -> Result<(), Error> {
     Ok(())
 }
 
-/// Great circles the short way, the long way, and with whole turns more: Morse's indices are 0, 1, 2, 3.
+/// Great circles the short way, the long way, and with full turns more: Morse's indices are 0, 1, 2, 3.
 #[test]
 fn great_circles_with_windings() -> Result<(), Error> {
     let stepper = Bead.into_stepper(0.02)?;
@@ -53,8 +53,8 @@ fn great_circles_with_windings() -> Result<(), Error> {
     Ok(())
 }
 
-/// Between opposite points the extremals are a family, along which the action does not bend: the one that is found is a great circle
-/// all the same, q_k = cos(kφ) q_0 + sin(kφ) e, whose direction e is told by its middle vertex.
+/// Between opposite points the extremals are a family, along which the action does not bend. The one that is found is a
+/// great circle all the same, q_k = cos(kφ) q_0 + sin(kφ) e. Its middle vertex tells the direction e.
 #[test]
 fn half_circles_to_the_opposite_point() -> Result<(), Error> {
     let random = &mut Random::new(96);
@@ -89,7 +89,7 @@ fn half_circles_to_the_opposite_point() -> Result<(), Error> {
     Ok(())
 }
 
-/// The same beside a straight line, in whatever units of mass.
+/// The same together with a straight line, in whatever units of mass.
 #[test]
 fn half_circles_beside_other_motions() -> Result<(), Error> {
     let random = &mut Random::new(97);

@@ -1,4 +1,5 @@
-//! Steps that are composed of others: their measured orders, what they keep, and the step size that gives a wished error.
+//! Steps that are composed of others: their measured orders, their invariants, and the step size that gives a wished
+//! error.
 
 #![allow(missing_docs)]
 

@@ -1,6 +1,8 @@
-//! Steps of order 4, 6 and 8: measured orders on nonlinear problems, against exact motions, and what every order keeps.
+//! Steps of order 4, 6 and 8: measured orders on nonlinear problems, against exact motions, and the invariants of every
+//! order.
 //!
-//! Errors lie between 1e-12 and 1e-1: above round-off, and below where the next power of h shows by more than a tenth of an order or two.
+//! Errors lie between 1e-12 and 1e-1. This is above round-off, and below where the next power of h shows by more than a
+//! tenth of an order or two.
 
 use crate::flat;
 use clebsch::{Clebsch, Error};
@@ -136,7 +138,8 @@ macro_rules! orders {
                 assert_order(&Damped { inertia, damping }, start, &torque, &counts($order), error);
             }
 
-            /// The vertical momentum and the group are kept to rounding, the step is reversible, and (q, p) goes where (q, N) goes.
+            /// The vertical momentum and the group stay to rounding, the step is reversible, and (q, p) goes where (q,
+            /// N) goes.
             #[test]
             fn what_is_kept() -> Result<(), Error> {
                 let inertia = Matrix3::from_diagonal(&Vector3::new(1.0, 2.0, 2.6));

@@ -1,4 +1,4 @@
-//! Bounds of any size: what is found keeps them all, a large one changes no other, and an infinite one is none.
+//! Bounds of any size: plans satisfy them all, a large one changes no other, and an infinite one is none.
 
 use clebsch::{Clebsch, Controlled, Error, Optimum, Space, Target};
 use clebsch_tests::fixtures::steered_body::SteeredBody;
@@ -88,7 +88,7 @@ where
     Ok(())
 }
 
-/// What a plan from this guess takes and costs; an error, but for one that says that none was found.
+/// The work and the price of a plan from this guess; an error, but for one that says that none was found.
 fn solved<S, const D: usize, const U: usize, const C: usize, const N: usize>(
     system: S,
     h: f64,

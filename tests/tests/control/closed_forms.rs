@@ -24,7 +24,8 @@ pub struct Dido;
 )]
 pub struct Pointer;
 
-/// Curves of N straight pieces: the regular polygon of area A has the perimeter 2√(N A tan(π/N)), and the least price is its square over 2T.
+/// Curves of N straight pieces: the regular polygon of area A has the perimeter 2√(N A tan(π/N)). The least price is
+/// its square over 2T.
 #[test]
 fn polygons_enclose_most() -> Result<(), Error> {
     for steps in [3, 4, 10, 40] {
@@ -49,7 +50,8 @@ fn polygons_enclose_most() -> Result<(), Error> {
     Ok(())
 }
 
-/// From the pole along a meridian: a turn about a horizontal axis, at no more than the price of its angle, exact for any number of steps.
+/// From the pole along a meridian: a turn about a horizontal axis, at no more than the price of its angle. It is exact
+/// for any number of steps.
 #[test]
 fn a_pointer_leaves_the_pole_along_a_meridian() -> Result<(), Error> {
     for steps in [1, 2, 30] {
@@ -82,8 +84,8 @@ fn a_pointer_leaves_the_pole_along_a_meridian() -> Result<(), Error> {
 )]
 pub struct TwoWheels;
 
-/// To a turn by φ about the third axis: R = exp(t(p + c e₃)) exp(−t c e₃) with |p + c e₃| = 2π and c = 2π − φ after a time of one, so that the
-/// least price is (4πφ − φ²)/2. Steps with constant inputs come near it to second order.
+/// To a turn by φ about the third axis, in a time of one: R = exp(t(p + c e₃)) exp(−t c e₃). Here |p + c e₃| = 2π and
+/// c = 2π − φ. So the least price is (4πφ − φ²)/2. Steps with constant inputs come near it to second order.
 #[test]
 fn two_wheels_turn_about_the_third_axis() -> Result<(), Error> {
     let angle = 0.9_f64;

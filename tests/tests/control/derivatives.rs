@@ -1,4 +1,5 @@
-//! What is derived for the choice of inputs against differences of steps and prices, in exponential coordinates of the places.
+//! The derived formulas of the choice of inputs against differences of steps and prices, in exponential coordinates of
+//! the places.
 
 use clebsch::{Controlled, Space};
 use clebsch_tests::fixtures::regulator::Regulator;

@@ -1,5 +1,5 @@
-//! NaN, infinities and numbers from the least to the largest in everything that a plan is given: what is found is finite and keeps its
-//! bounds, or there is an error that says so without such numbers; the guess is given back.
+//! NaN, infinities and numbers from the least to the largest in every input of a plan. The plan is finite and satisfies
+//! its bounds, or there is an error that says so without such numbers. The guess is given back.
 
 use clebsch::{Controlled, Error, Space, Target};
 use clebsch_tests::fixtures::regulator::Regulator;
@@ -53,7 +53,7 @@ impl Case<3, 2, 3> for Unicycle {
     }
 }
 
-/// What is wrong with the plan of these numbers, if anything is, and whether it was found.
+/// The mistake in the plan of these numbers, if there is one, and whether it was found.
 fn judge<S: Case<D, U, C>, const D: usize, const U: usize, const C: usize>(
     numbers: &[f64],
     is_free: bool,

@@ -8,7 +8,7 @@ use clebsch_tests::oracle::random::Random;
 use nalgebra::{Matrix2, Matrix3, Vector2, Vector3};
 use std::f64::consts::PI;
 
-/// The Riccati recursion P = Q + Aᵀ(P − PB(R + BᵀPB)⁻¹BᵀP)A, written out.
+/// The Riccati recursion P = Q + Aᵀ(P − PB(R + BᵀPB)⁻¹BᵀP)A, by hand.
 #[test]
 fn a_regulator_has_the_gains_of_riccati() {
     let (h, system) = (0.1, Regulator { mass: 1.3, stiffness: 2.0, price: 0.5 });
@@ -142,7 +142,7 @@ fn place(angle: f64, x: f64, y: f64) -> Matrix3<f64> {
     Matrix3::new(cos, -sin, x, sin, cos, y, 0.0, 0.0, 1.0)
 }
 
-/// What many problems took: the sum and the largest number of linearisations.
+/// The work of many problems: the sum and the largest number of linearisations.
 #[derive(Default, Debug)]
 struct Census {
     sum: u32,
@@ -179,8 +179,8 @@ fn a_unicycle_drives_anywhere() {
     assert!(census.sum < 30 * 101 && census.most < 200, "{census:?}");
 }
 
-/// From standing still, where it drives along its axis and turns, and no first derivative leads to the side; also next to there, and
-/// turned around. The mirror image of a problem has the same least price.
+/// From standing still, where it drives along its axis and turns, and no first derivative leads to the side. Also from
+/// next to there, and turned around. The mirror image of a problem has the same least price.
 #[test]
 fn a_unicycle_moves_sideways() {
     let start = Matrix3::identity();

@@ -1,8 +1,8 @@
-//! Each derivative three ways: the symbolic formula evaluated, the code that came of it, and central differences of the declared
-//! closure, written out by hand.
+//! Each derivative three ways: the symbolic formula evaluated, the code that came of it, and central differences of the
+//! declared closure, written by hand.
 //!
-//! Differences of fourth order with a step of 1e-3 are good to 1e-11 for functions of order ten; formula and code agree to 1e-13
-//! times what they are divided by (h = 0.1), relative to entries beyond a hundred.
+//! Differences of fourth order with a step of 1e-3 are good to 1e-11 for functions of order ten. Formula and code agree
+//! to 1e-13 times their divisor (h = 0.1), relative to entries beyond a hundred.
 
 mod by_hand;
 mod jacobians;
@@ -46,7 +46,7 @@ fn rows<const R: usize, const C: usize>(a: &SMatrix<f64, R, C>) -> Vec<f64> {
     a.transpose().as_slice().to_vec()
 }
 
-/// What is done with closures written by hand.
+/// The check of closures written by hand.
 type Check<'a, const N: usize, const C: usize> = &'a dyn Fn(ByHand<'_, N, C>);
 
 /// Holds the formulas of a fixture with one factor against its generated code and against its closures by hand.

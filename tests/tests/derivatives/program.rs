@@ -23,7 +23,7 @@ pub fn program<'g>(graph: &'g Graph, text: &str) -> Option<MechanicsProgram<'g>>
 }
 
 impl Values {
-    /// Random numbers that keep what is promised of each symbol; the step is 0.1.
+    /// Random numbers that keep the promises about each symbol; the step is 0.1.
     pub fn random(program: &MechanicsProgram<'_>, random: &mut Random) -> Values {
         let formulas = &program.formulas;
         let (model, symbols) = (&formulas.model, &formulas.symbols);

@@ -82,7 +82,7 @@ macro_rules! assert_alone {
     }};
 }
 
-/// Whole chunks and ragged ones, fewer bodies than lanes, one, none.
+/// Full chunks and ragged ones, fewer bodies than lanes, one, none.
 #[test]
 fn bodies_are_stepped_as_if_alone() {
     for count in [0, 1, 3, 8, 9, 16, 37, 200] {

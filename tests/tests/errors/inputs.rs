@@ -1,4 +1,4 @@
-//! Entry points beside steps, given numbers that are broken or extreme: a typed error, or a finite result.
+//! Entry points other than steps, given numbers that are broken or extreme: a typed error, or a finite result.
 
 use clebsch::{Clebsch, Controlled, Error, Guess, Space, Target};
 use clebsch_tests::fixtures::gravity_gradient::GravityGradient;

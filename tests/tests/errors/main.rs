@@ -1,4 +1,4 @@
-//! Every error, provoked by a declared system in use: its text gives the names and numbers, and says what to change.
+//! Every error, provoked by a declared system in use: its text gives the names and numbers, and the advice.
 
 #![allow(missing_docs)]
 
@@ -11,11 +11,11 @@ use clebsch::Error;
 use proc_macro2::{Delimiter, TokenTree};
 use scenes::scenes;
 
-/// A scene that fails, and what a person has to be told.
+/// A scene that fails, and the facts that a person has to be told.
 pub struct Scene {
     /// Where the error comes from.
     pub error: Error,
-    /// What its text has to contain: names, numbers, and what to do.
+    /// The required parts of its text: names, numbers, and the advice.
     pub told: &'static [&'static str],
 }
 

@@ -1,4 +1,4 @@
-//! What every step keeps, and what belongs together.
+//! The invariants of every step, and the relations between steps.
 
 use crate::systems::{eighth, fourth, sixth};
 use clebsch::{Clebsch, Conserved, Conserves, Error, Stepper};

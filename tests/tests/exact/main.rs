@@ -1,5 +1,5 @@
-//! Exact drifts: the free motion of bodies without an error in h, and what splittings make of it: measured orders on nonlinear problems,
-//! against equations of motion integrated in tiny steps, and the laws that every step keeps.
+//! Exact drifts: the free motion of bodies without an error in h, and its splittings. Orders are measured on nonlinear
+//! problems, against equations of motion integrated in tiny steps. The laws of every step are tested too.
 
 #![allow(missing_docs)]
 

@@ -1,4 +1,5 @@
-//! Every entry point of a system, with numbers replaced: an error that names what is wrong, or results that are finite and on the space of configurations.
+//! Every entry point of a system, with numbers replaced. The result is an error that names the mistake, or it is finite
+//! and on the space of configurations.
 //!
 //! The walk over places and numbers knows systems as a `dyn Trial` and is compiled once.
 
@@ -9,10 +10,11 @@ use crate::trial::{FORMULAS, Size, Trial};
 use clebsch::Error;
 use clebsch_tests::oracle::random::Random;
 
-/// What no computation can go on with.
+/// Numbers that no computation can go on with.
 pub const BROKEN: [f64; 3] = [f64::NAN, f64::INFINITY, f64::NEG_INFINITY];
 
-/// What is a number, and too large or too small for squares, products or sums. Single precision takes its own largest and smallest.
+/// Numbers that are too large or too small for squares, products or sums. Single precision takes its own largest and
+/// smallest.
 pub const EXTREME: [f64; 14] = [
     1e19,
     1e150,
@@ -37,7 +39,7 @@ const TOGETHER: usize = if cfg!(feature = "heavy") { 4000 } else { 40 };
 
 const GRADIENT: &str = "the gradient of the potential at the configuration";
 
-/// What has failed.
+/// The failures.
 pub struct Report {
     scene: &'static str,
     pub failures: Vec<String>,
@@ -79,12 +81,12 @@ impl Report {
         false
     }
 
-    /// An entry point that takes what the trial holds.
+    /// An entry point that takes the numbers of the trial.
     fn entry(&mut self, place: &str, entry: &str, trial: &mut dyn Trial) -> bool {
         self.call((place, entry), &mut || trial.call(entry))
     }
 
-    /// A formula that has no error to give: it may pass on what it is given.
+    /// A formula that has no error to give: it may pass on its input.
     fn formula(&mut self, place: &str, entry: &str, trial: &mut dyn Trial) {
         if matches!(outcome(&mut || trial.call(entry)), Outcome::Panicked) {
             self.fail(place, &format!("`{entry}` panicked"));
@@ -108,7 +110,7 @@ impl Report {
         }
     }
 
-    /// Entry points that have to refuse what the trial holds.
+    /// Entry points that have to refuse the numbers of the trial.
     fn all_refused(&mut self, place: &str, entries: &[&str], trial: &mut dyn Trial, named: &str) {
         for entry in entries {
             self.refused((place, entry), &mut || trial.call(entry), named);
@@ -288,8 +290,9 @@ fn step_sizes(report: &mut Report, trial: &mut dyn Trial, value: f64) {
     }
 }
 
-/// Many numbers of the scene at once: parameters, configuration, momentum, input and step size of sizes that have nothing to do with each other. Nothing is
-/// refused for being so; what is, is refused by an error that is checked as all others are.
+/// Many numbers of the scene at once: parameters, configuration, momentum, input and step size of sizes that have
+/// nothing to do with each other. Nothing is refused for being so; each refusal is an error that is checked as all
+/// others are.
 fn together(report: &mut Report, trial: &mut dyn Trial) {
     let random = &mut Random::new(9_001);
     let fields = trial.fields();

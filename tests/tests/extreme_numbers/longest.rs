@@ -1,4 +1,5 @@
-//! Steps that are too long are told the longest one that has a solution, whatever a potential, a force or the cost makes of the step size.
+//! The error of a step that is too long gives the longest one that has a solution. This holds whatever a potential, a
+//! force or the cost makes of the step size.
 
 use crate::slots::Part;
 use crate::trial::{Size, Trial};

@@ -36,7 +36,7 @@ pub enum Part {
     Input,
 }
 
-/// What is made of numbers.
+/// Values that are made of numbers.
 pub trait Slots {
     /// Visits all of them, in an order of its own.
     fn slots(&mut self) -> Vec<Slot<'_>>;

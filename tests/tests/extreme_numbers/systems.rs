@@ -70,7 +70,8 @@ macro_rules! modules {
 
 clebsch_tests::every_scene!(modules);
 
-/// What is not stepped here: `regulator` and `unicycle` are planned, in the tests of control, and `annotated_body` has private fields.
+/// Systems that are not stepped here: `regulator` and `unicycle` are planned, in the tests of control, and
+/// `annotated_body` has private fields.
 const OTHERS: [&str; 3] = ["annotated_body", "regulator", "unicycle"];
 
 #[test]

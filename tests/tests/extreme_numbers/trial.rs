@@ -1,4 +1,4 @@
-//! What is compiled for each system: its entry points, each called in one place.
+//! The code that is compiled for each system: its entry points, each called in one place.
 
 use crate::slots::{Part, Slot, Slots};
 use clebsch::__private::Scheme;
@@ -18,7 +18,7 @@ pub trait Scene: Clebsch<Scalar: Real, Configuration: Slots, Momentum: Slots, In
     fn with_field(self, field: &str, place: usize, value: f64) -> Self;
 }
 
-/// What is evaluated as it stands.
+/// The formulas that are evaluated as they stand.
 pub const FORMULAS: [&str; 6] = ["momentum_map", "momentum_matrix", "potential", "legendre", "legendre_next", "act"];
 
 /// Round-off of a configuration after some steps, in units of ε.
@@ -56,8 +56,8 @@ pub trait Trial {
     fn call(&mut self, entry: &str) -> Result<bool, Error>;
     /// Whether all bodies of the ensemble are finite, and whether those whose first step failed are where they were.
     fn bodies(&self) -> [bool; 2];
-    /// Whether a step that is too long names the longest one: none is tried where each would take constants of kilobytes, but for free
-    /// motions, where it is known.
+    /// Whether a step that is too long names the longest one. None is tried where each would take constants of
+    /// kilobytes, but for free motions, where it is known.
     fn knows_the_longest(&self) -> bool;
 }
 

@@ -3,7 +3,7 @@
 use clebsch::Scalar;
 use nalgebra::{Quaternion, SMatrix};
 
-/// What can be written in another scalar.
+/// Values that can be written in another scalar.
 pub trait Lift {
     type In<T: Scalar>;
     fn lift<T: Scalar>(self, number: impl Fn(f64) -> T + Copy) -> Self::In<T>;

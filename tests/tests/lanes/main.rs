@@ -1,5 +1,5 @@
-//! Steps in lanes are, bit for bit, those of single numbers: whatever the number of iterations is in each lane, and whatever happens in the
-//! others.
+//! Steps in lanes are, bit for bit, those of single numbers. Neither the number of iterations in each lane nor the
+//! outcome in the others matters.
 
 mod lift;
 mod side_by_side;
@@ -65,7 +65,7 @@ fn center() -> Vector3<f64> {
     Vector3::new(0.1, -0.2, 0.7)
 }
 
-/// Where all of a thousand states are stepped, nothing of what is claimed of failures has been seen.
+/// If all of a thousand states are stepped, no claim about failures has been tested.
 fn assert_mixed(count: Count) {
     assert!(
         count.stepped > STATES * STEPS / 2 && count.failed > STATES / 20 && count.spared > STATES / 20,
@@ -91,7 +91,7 @@ fn free_bodies_in_single_precision() {
     }));
 }
 
-/// Rests travel with their lanes: the bits show what they were, after a step.
+/// Rounding errors travel with their lanes: the bits show them, after a step.
 #[test]
 fn bodies_with_compensated_sums() {
     assert_mixed(compare!(F64x8, CompensatedBody { moments: moments() }, H, |random| {
@@ -232,7 +232,7 @@ fn parameters_of_each_lane() {
     assert_mixed(count);
 }
 
-/// Steps whose last ended with another size in some lanes: the impulse is made anew there, and kept in the others.
+/// Steps whose last ended with another size in some lanes: the impulse is computed anew there, and stays in the others.
 #[test]
 fn impulses_are_those_of_each_lane() {
     let top = |h: F64x8| {
@@ -253,7 +253,7 @@ fn impulses_are_those_of_each_lane() {
     }
 }
 
-/// Checks of parameters and states name what is wrong in any lane, with its numbers.
+/// Checks of parameters and states name the mistake in any lane, with its numbers.
 #[test]
 fn what_is_wrong_in_one_lane_is_refused() {
     let one = F64x8::splat(1.0);
@@ -299,7 +299,7 @@ fn what_else_a_stepper_tells() {
     }
 }
 
-/// Positions beyond any bound overflow: such lanes fail by what is not finite.
+/// Positions beyond any bound overflow: such lanes fail by the quantity that is not finite.
 #[test]
 fn products_some_of_which_overflow() {
     let count = compare!(F64x8, Flyer { mass: 2.0, inertia: mass_matrix(), arm: center() }, H, |random| {

@@ -4,7 +4,7 @@ use clebsch::{Body, Clebsch, Error, F32x8, F64x4, F64x8, Mask, Scalar, Space, St
 use clebsch_tests::oracle::bits::Bits;
 use std::cell::RefCell;
 
-/// Steps in lanes of this type, for what is written for any.
+/// Steps in lanes of this type, for code that is written for any.
 pub trait Lanes: Scalar<Lane: Bits> {}
 
 impl Lanes for F64x8 {}

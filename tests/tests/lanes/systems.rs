@@ -84,7 +84,7 @@ pub struct SixthTop<T: Scalar> {
     pub center: Vector3<T>,
 }
 
-/// A motion without an error in h, of which each state brings along what it keeps.
+/// A motion without an error in h; each state brings along its constants.
 #[derive(Clebsch, Clone, Debug)]
 #[clebsch(
     action         = |F: SO<3>, R: SO<3>| R * F,

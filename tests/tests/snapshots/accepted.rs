@@ -9,13 +9,14 @@ use insta::assert_snapshot;
 
 use crate::fixture::{Fixture, root, with_snapshots};
 
-/// A snapshot that is longer helps nobody; what is longer is shown by its operation counts.
+/// A longer snapshot helps nobody; a longer text is shown by its operation counts.
 const MOST_LINES: usize = 150;
 
 /// Whose formulas are shown in LaTeX too.
 const IN_LATEX: [&str; 2] = ["heavy_top", "two_pendulums"];
 
-/// Whose generated code is shown as a whole, for people to review: the shortest expansions, and one of each kind that is written most.
+/// The fixtures whose generated code is shown in full, for people to review: the shortest expansions, and one of each
+/// kind that is written most.
 const GENERATED: [&str; 6] =
     ["free_particle", "planar_pendulum", "heavy_top", "spherical_pendulum", "rigid_body4", "spin_chain"];
 

@@ -23,7 +23,7 @@ const FORMULAS: [&str; 11] = [
     "conserved",
 ];
 
-/// What each column adds up.
+/// The sum of each column.
 const COLUMNS: [(&str, Wanted); 5] = [
     ("once", is_computed_once),
     ("iteration", is_iterated),

@@ -14,7 +14,7 @@ use syn::{Attribute, Item};
 pub struct Fixture {
     /// The name of the file, without its extension.
     pub name: String,
-    /// What it holds.
+    /// Its text.
     pub source: String,
 }
 

@@ -1,4 +1,4 @@
-//! What is said about every mistake, and where.
+//! The message about every mistake, and its place.
 
 use std::fmt::Write;
 
@@ -46,7 +46,7 @@ fn messages_keep_to_the_style() {
     });
 }
 
-/// What the compiler says; a fixture that it accepts has no place here.
+/// The message of the compiler; a fixture that it accepts has no place here.
 fn errors(fixture: &Fixture) -> Diagnostics {
     let graph = Graph::new();
     compile(&graph, fixture.item()).err().unwrap_or_else(|| panic!("{} is accepted", fixture.name))

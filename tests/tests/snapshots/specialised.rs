@@ -1,4 +1,5 @@
-//! Only what a scene asks for: one rigid body, declared with less and less, costs less and less, and holds nothing of the rest.
+//! Only the code that a scene asks for: one rigid body, declared with less and less, costs less and less, and has
+//! nothing else.
 
 use clebsch_compiler::lower::{Cost, Program};
 
@@ -12,7 +13,7 @@ const INERTIAS: [(&str, &str); 4] = [
     ("self.moment", "pub moment: f64"),
 ];
 
-/// What moves: an attitude, or a direction seen from the body; and its weight.
+/// The configuration: an attitude, or a direction seen from the body; and its weight.
 const PLACES: [(&str, &str); 2] = [
     ("|F: SO<3>, R: SO<3>| R * F", "|R| self.weight * (R * self.center).z"),
     ("|F: SO<3>, Gamma: Unit<Vector3>| F.transpose() * Gamma", "|Gamma| self.weight * Gamma.dot(&self.center)"),

@@ -74,7 +74,7 @@ fn v<T: Scalar, const N: usize>(entries: [f64; N]) -> SVector<T, N> {
     entries.map(T::from_f64).into()
 }
 
-/// Of each system: what single precision is off by from double precision, with plain and with compensated sums.
+/// For each system: the error of single precision relative to double precision, with plain and with compensated sums.
 fn errors() -> Vec<(&'static str, [f64; 2])> {
     macro_rules! of {
         ($($name:ident { $($field:ident: $value:expr),* } from ($q:expr, $mu:expr);)*) => { vec![$({
@@ -106,7 +106,7 @@ fn errors() -> Vec<(&'static str, [f64; 2])> {
     }
 }
 
-/// What rounding does in 20 000 steps of 1/128 s, of bodies that turn by about a radian a second.
+/// The rounding errors of 20 000 steps of 1/128 s, of bodies that turn by about a radian a second.
 #[test]
 fn errors_are_those_of_increments() {
     let found = errors();
@@ -121,7 +121,7 @@ fn errors_are_those_of_increments() {
     }
 }
 
-/// What rounding leaves of the group and of the momentum in double precision: two digits more than plain sums keep.
+/// The errors of the group and of the momentum in double precision: two digits better than with plain sums.
 #[test]
 fn momenta_and_rotations_stay() -> Result<(), Error> {
     const STEPS: usize = 200_000;
@@ -146,7 +146,7 @@ fn momenta_and_rotations_stay() -> Result<(), Error> {
     Ok(())
 }
 
-/// Steps of two sizes in turn: what the one has left is added by the other.
+/// Steps of two sizes in turn: the rounding error of the one is added by the other.
 #[test]
 fn rests_outlive_a_change_of_the_step_size() -> Result<(), Error> {
     fn end<T: Scalar, Q: Numbers, S>(make: impl Fn() -> S, q: Q) -> Result<[Vec<f64>; 2], Error>
@@ -216,7 +216,7 @@ fn tangent_maps_and_covectors_are_those_of_the_step() -> Result<(), Error> {
     Ok(())
 }
 
-/// `plain` is what is there without the key, token for token; `DERIVATION` says what is not plain.
+/// `plain` is the code without the key, token for token; `DERIVATION` names the part that is not plain.
 #[test]
 fn plain_sums_are_the_default() {
     // sums are called plain too

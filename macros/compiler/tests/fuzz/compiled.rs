@@ -1,7 +1,8 @@
-//! What is accepted is Rust that compiles: changed declarations without errors, as rustc sees them.
+//! Accepted declarations give Rust that compiles: changed declarations without errors, as rustc sees them.
 //!
-//! It takes minutes and is asked for: `CLEBSCH_FUZZ_CHECK=2000 cargo test -p clebsch-compiler --test fuzz accepted -- --nocapture` changes
-//! two thousand declarations and checks those that have an integrator, in a crate of their own below the target folder.
+//! It takes minutes and runs only on request, by
+//! `CLEBSCH_FUZZ_CHECK=2000 cargo test -p clebsch-compiler --test fuzz accepted -- --nocapture`. This changes two
+//! thousand declarations and checks those that have an integrator, in a crate of their own below the target folder.
 
 use std::path::Path;
 use std::process::Command;
@@ -12,7 +13,7 @@ use crate::mutation::{Choices, mutated};
 use crate::seeds;
 use crate::verdict::{declaration, verdict};
 
-/// What no macro can know: names that are not there, traits that a type of the user's has not.
+/// Facts that no macro can know: names that are not there, traits that a type of the user's has not.
 const UNKNOWN: [&str; 13] = [
     "E0412", "E0425", "E0433", "E0432", "E0405", "E0277", "E0106", "E0261", "E0392", "E0107", "E0204", "E0404", "E0573",
 ];
@@ -65,7 +66,8 @@ fn accepted(count: u64) -> Vec<String> {
     (0..count).map(change).filter(|text| matches!(verdict(text), Ok(None))).filter_map(|text| item(&text)).collect()
 }
 
-/// The item of a text as a module has it; `None` of what rustc would not give to a macro, and of potentials whose methods stand beside the item.
+/// The item of a text as a module has it. `None` if rustc would not give it to a macro, and for potentials whose
+/// methods stand outside of the item.
 fn item(text: &str) -> Option<String> {
     let mut item: syn::DeriveInput = syn::parse2(declaration(text.parse().ok()?)).ok()?;
     // other attributes are not ours to read

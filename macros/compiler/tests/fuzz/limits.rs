@@ -1,4 +1,5 @@
-//! What is too deep, too long or too large: refused at its place, on the small stack that tests have, with what to write instead.
+//! Texts that are too deep, too long or too large are refused at their place, on the small stack that tests have. The
+//! message gives the replacement.
 
 use std::fmt::Display;
 
@@ -41,7 +42,7 @@ fn lets(step: &str, times: usize) -> String {
     format!("{{ let b = x.x; {} b }}", format!("let b = {step};").repeat(times))
 }
 
-/// What stands in the text of a verdict: a part of the message, or nothing where it is compiled.
+/// The expected text of a verdict: a part of the message, or nothing where it is compiled.
 #[rustfmt::skip]
 fn table() -> Vec<(&'static str, String, Option<&'static str>)> {
     vec![
@@ -163,7 +164,8 @@ fn what_is_too_much_is_refused_at_its_place() {
     assert!(failures.is_empty(), "{} failures\n\n{}", failures.len(), failures.join("\n\n"));
 }
 
-/// A body in four dimensions in a chart whose derivatives are long: what exhausts the budget is refused where its cost stands.
+/// A body in four dimensions in a chart whose derivatives are long: a declaration that exhausts the budget is refused
+/// at its cost.
 #[test]
 fn what_exhausts_its_budget_is_refused_at_its_cost() {
     let cost = "(F - I).dot(&self.weight.component_mul(&(F - I))) / (2 * h)";
@@ -204,7 +206,7 @@ fn what_exhausts_the_budget_is_told_at_its_own_closure() {
         let said = errors.to_string();
         assert!(
             said.starts_with(&format!(
-                "error: `P` is too large to expand: what is derived from {what} takes more than {WORK} terms"
+                "error: `P` is too large to expand: the formulas of {what} take more than {WORK} terms"
             )),
             "{said}"
         );

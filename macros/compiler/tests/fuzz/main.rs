@@ -1,7 +1,8 @@
 //! Any text at all: an integrator, or errors that help, never a panic, and an end within bounds.
 //!
-//! What fuzzing found is replayed here with every run, and some hundred declarations are changed at random; `tests/fuzz` has the targets
-//! that go on for hours. `CLEBSCH_FUZZ=20000 cargo test -p clebsch-compiler --test fuzz` changes as many declarations as it says.
+//! The findings of fuzzing are replayed here with every run, and some hundred declarations are changed at random.
+//! `tests/fuzz` has the targets that go on for hours. `CLEBSCH_FUZZ=20000 cargo test -p clebsch-compiler --test fuzz`
+//! changes as many declarations as it says.
 
 mod compiled;
 mod limits;
@@ -13,7 +14,7 @@ mod verdict;
 use mutation::{Choices, mutated};
 use verdict::verdict;
 
-/// What fuzzing found, and the declarations that it began with.
+/// The findings of fuzzing, and the declarations that it began with.
 #[test]
 fn seeds_are_refused_or_compiled() {
     let failures: Vec<String> = ["fixtures/reject", "fuzz/seeds"]
@@ -30,7 +31,7 @@ fn changed_declarations_are_refused_or_compiled() {
     changed(0);
 }
 
-/// The other half, beside the first.
+/// The other half of the run.
 #[test]
 fn changed_declarations_are_refused_or_compiled_too() {
     changed(1);

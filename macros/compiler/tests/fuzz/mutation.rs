@@ -46,7 +46,7 @@ const WORDS: &[&str] = &[
     ".component_mul(&q)", "+", "-", "*", "/", "..",
 ];
 
-/// What a part is put into; the part stands where `@` is.
+/// The wrappings of a part; the part stands where `@` is.
 #[rustfmt::skip]
 const WRAPPINGS: &[&str] = &[
     "( @ )", "- ( @ )", "( @ ) . norm ( )", "( @ ) . sin ( )", "( @ ) . powi ( 7 )", "( @ ) . sqrt ( )", "( @ , @ )", "[ @ ; 2 ]",
@@ -122,7 +122,7 @@ fn number(words: &mut [String], choices: &mut Choices) {
     }
 }
 
-/// What lies between two commas of the donor, a whole key, in front of a comma or in place of what lies between two.
+/// A key of the donor, the text between two commas. It is put in front of a comma, or in place of the text between two.
 fn key(words: &mut Vec<String>, donor: &[String], choices: &mut Choices) {
     let (from, into) = (stretches(donor), stretches(words));
     if let (false, false) = (from.is_empty(), into.is_empty()) {
@@ -133,7 +133,8 @@ fn key(words: &mut Vec<String>, donor: &[String], choices: &mut Choices) {
     }
 }
 
-/// The stretches that end with a comma and start behind one at the same level, which is that of the keys where brackets are two deep.
+/// The stretches that end with a comma and start behind one at the same level. It is the level of the keys where
+/// brackets are two deep.
 fn stretches(words: &[String]) -> Vec<std::ops::Range<usize>> {
     let (mut depth, mut start, mut found) = (0_usize, None, Vec::new());
     for (at, word) in words.iter().enumerate() {
@@ -153,7 +154,7 @@ fn stretches(words: &[String]) -> Vec<std::ops::Range<usize>> {
     found
 }
 
-/// A word, or a bracket with what is in it.
+/// A word, or a bracket with its content.
 fn part(words: &[String], choices: &mut Choices) -> std::ops::Range<usize> {
     if words.is_empty() {
         return 0..0;

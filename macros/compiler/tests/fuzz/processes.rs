@@ -9,7 +9,7 @@ use crate::{seeds, verdict};
 
 /// Set where this program has been started by itself.
 const CHILD: &str = "CLEBSCH_CHILD";
-/// What precedes the list in the child's output.
+/// The text before the list in the child's output.
 const MARK: &str = "expansions:";
 
 /// A number for the expansion of every fixture that is the same in every process.

@@ -1,4 +1,4 @@
-//! What mutations start from: the fixtures, and the declarations of `tests/fuzz/seeds`.
+//! The start of mutations: the fixtures, and the declarations of `tests/fuzz/seeds`.
 //!
 //! The tests and the fuzz target `declarations` include this file.
 

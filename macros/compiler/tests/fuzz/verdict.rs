@@ -1,4 +1,5 @@
-//! What may become of any text at all: an integrator that is Rust, or errors that help; the same again the second time, and no panic.
+//! The possible outcomes of any text at all: an integrator that is Rust, or errors that help. The second time it is the
+//! same, and there is no panic.
 //!
 //! The tests and the fuzz targets of `tests/fuzz` include this file.
 
@@ -8,7 +9,7 @@ use clebsch_compiler::diagnostic::Diagnostics;
 use clebsch_compiler::{Graph, compile, expand};
 use proc_macro2::{Delimiter, TokenStream, TokenTree};
 
-/// What the compiler says of the first declaration in a text: nothing, or errors that help.
+/// The answer of the compiler about the first declaration in a text: nothing, or errors that help.
 ///
 /// # Errors
 /// A panic, other tokens the second time, code that is no Rust, or an error without message, help or place.

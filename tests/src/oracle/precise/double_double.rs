@@ -1,8 +1,8 @@
 //! Numbers of 106 bits, 32 digits: the unevaluated sum of two `f64`.
 //!
-//! The algorithms are those of Dekker (1971) and of Joldeș, Muller and Popescu, *Tight and rigorous error bounds for basic
-//! building blocks of double-word arithmetic* (2017), each with a relative error of a few units of 2⁻¹⁰⁶ ≈ 1.2e-32; the
-//! functions are Taylor series.
+//! The algorithms are those of Dekker (1971). Those of Joldeș, Muller and Popescu are in *Tight and rigorous error bounds
+//! for basic building blocks of double-word arithmetic*, 2017. Each has a relative error of a few units of 2⁻¹⁰⁶ ≈ 1.2e-32.
+//! The functions are Taylor series.
 
 use std::f64::consts::{FRAC_PI_2, LN_2};
 use std::num::ParseFloatError;

@@ -99,7 +99,7 @@ pub(super) fn constant<R: Real>(matrices: &[Matrix<R>]) -> Vec<Matrix<Dual<R>>> 
     matrices.iter().map(|matrix| matrix.map(Dual::constant)).collect()
 }
 
-/// Matrices of which one changes.
+/// Matrices, one of them moving.
 pub(super) fn moving<R: Real>(matrices: &[Matrix<R>], k: usize, slope: &Matrix<R>) -> Vec<Matrix<Dual<R>>> {
     let mut duals = constant(matrices);
     let (rows, columns) = slope.shape();
@@ -107,7 +107,7 @@ pub(super) fn moving<R: Real>(matrices: &[Matrix<R>], k: usize, slope: &Matrix<R
     duals
 }
 
-/// Numbers of which one changes.
+/// Numbers, one of them moving.
 pub(super) fn along<R: Real>(numbers: &[R], i: usize) -> Vec<Dual<R>> {
     let slope = |j| if i == j { R::one() } else { R::zero() };
     (0..numbers.len()).map(|j| Dual { value: numbers[j], slope: slope(j) }).collect()

@@ -1,8 +1,9 @@
 //! Matrix groups, given by the basis of the algebra in which momenta have their components.
 //!
-//! Every element is a square matrix, translations and quaternions too: a ∈ Rⁿ is (I a; 0 1), so [`Matrix::translation`] is
-//! the vector, and a unit quaternion is the 4×4 matrix of multiplication by it from the left on (i, j, k, 1), so its last
-//! column is the quaternion. Signs, order and scale of the bases are those that the macro documents.
+//! Every element is a square matrix, translations and quaternions too. A translation a ∈ Rⁿ is (I a; 0 1), so
+//! [`Matrix::translation`] is the vector. A unit quaternion is the 4×4 matrix of multiplication by it from the left on
+//! (i, j, k, 1). So its last column is the quaternion. Signs, order and scale of the bases are those that the macro
+//! documents.
 
 use super::matrix::Matrix;
 use super::real::Real;

@@ -1,5 +1,5 @@
-//! A group that acts on itself, whatever the group: one problem, so that its steps are compiled once, here, where they are optimised, and not
-//! by each test that holds a system against it.
+//! A group that acts on itself, whatever the group. It is one problem, so that its steps are compiled once, here, where
+//! they are optimised, and not by each test that uses it.
 
 use super::double_double::DoubleDouble;
 use super::equation::{Equation, NoSolution};
@@ -9,7 +9,7 @@ use super::problem::{Factor, Problem, right};
 use super::real::Real;
 use super::step::{State, composed_trajectory, trajectory};
 
-/// What an element is in a declaration: square matrices alone are known here.
+/// The kind of an element in a declaration; here all are square matrices.
 #[derive(Copy, Clone, Debug, PartialEq, Eq)]
 pub enum Kind {
     /// The matrix itself.
@@ -48,7 +48,7 @@ pub enum Kinetic {
 pub struct OnItself {
     /// The group.
     pub group: Group,
-    /// What its elements are.
+    /// The kind of its elements.
     pub kind: Kind,
     /// Its kinetic energy.
     pub kinetic: Kinetic,

@@ -1,4 +1,4 @@
-//! What is given: a group, its action and a discrete Lagrangian.
+//! The input: a group, its action and a discrete Lagrangian.
 
 use super::group::Group;
 use super::matrix::Matrix;

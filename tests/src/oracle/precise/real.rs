@@ -1,4 +1,4 @@
-//! What a number must do.
+//! The operations of a number.
 
 use std::fmt::Debug;
 use std::ops::{Add, Div, Mul, Neg, Sub};

@@ -1,4 +1,4 @@
-//! Steps, trajectories, and their comparison with what another integrator gives.
+//! Steps, trajectories, and their comparison with the results of another integrator.
 
 use super::dual::{Dual, along, constant};
 use super::equation::{Equation, NoSolution};
