@@ -35,7 +35,7 @@ pub const EXTREME: [f64; 14] = [
 /// Powers of ten by which ordinary numbers are multiplied where many are replaced at once, at most: ratios are up to 10¹⁵ within one part.
 const RATIOS: f64 = 7.5;
 /// How often many numbers are replaced at once.
-const TOGETHER: usize = if cfg!(feature = "heavy") { 4000 } else { 40 };
+const TOGETHER: usize = if cfg!(feature = "heavy") { 1000 } else { 40 };
 
 const GRADIENT: &str = "the gradient of the potential at the configuration";
 
