@@ -169,7 +169,8 @@ impl<S: Scene> Trial for Of<S> {
             "inverse_legendre" => {
                 let f = stepper.inverse_legendre_at(zero, &q, &mu)?;
                 let is_of_group = self.is_on_space_from(&S::configuration(), &stepper.act(&f, &S::configuration()));
-                return Ok(f.is_finite() && is_of_group);
+                // of other momenta than those of states F is no motion
+                return Ok(f.is_finite() && (is_of_group || stepper.state(q, mu).is_err()));
             }
             "cotangent_state" => self.cotangent = Some(stepper.cotangent_state(q, q)?),
             "covector" => self.cotangent = Some(stepper.cotangent_state(S::configuration(), q)?),
