@@ -7,7 +7,7 @@ use nalgebra::SMatrix;
 
 /// Whether an inertia Σ, symmetric and regular, is positive definite.
 ///
-/// The units of its rows do not matter. With the square roots S of its diagonal Σ = S H S, and an eigenvalue of H down to
+/// The units of its rows do not matter. Let S be the square roots of its diagonal, and Σ = S H S. An eigenvalue of H down to
 /// −16 N ε is a rounding error. An inertia that is not finite passes: other checks name the number.
 ///
 /// Source: Higham, *Accuracy and Stability of Numerical Algorithms*, theorem 10.7.
@@ -66,10 +66,10 @@ fn with_diagonal<T: Scalar, const N: usize>(a: &SMatrix<T, N, N>, entry: impl Fn
 #[inline(never)]
 fn indefinite<T: Real, const N: usize>(inertia: &SMatrix<T, N, N>) -> Error {
     let values = Spectrum::of(inertia).values;
-    let [least_eigenvalue, largest_eigenvalue] = [|a: T, b: T| a < b, |a: T, b: T| b < a].map(|is_first| {
-        let first = values.iter().copied().reduce(|a, b| if is_first(a, b) { a } else { b });
-        first.map_or(0.0, Scalar::to_f64)
-    });
+    let first = values.iter().next().map_or(T::zero(), |value| *value);
+    let least = values.iter().fold(first, |least, value| if *value < least { *value } else { least });
+    let largest = values.iter().fold(first, |largest, value| if *value > largest { *value } else { largest });
+    let (least_eigenvalue, largest_eigenvalue) = (least.to_f64(), largest.to_f64());
     Error::IndefiniteKineticEnergy { least_eigenvalue, largest_eigenvalue }
 }
 
