@@ -219,6 +219,20 @@ fn is_near<T: Scalar, V: Space<T>>(found: &V, made: &V, size: T) -> T::Mask {
     made.finite() & difference.reduce(T::Mask::everywhere(), |entry| entry.at_most(most), |a, b| a & b)
 }
 
+/// Whether a long run looks at its state after the step with this number: every 1024 steps, so that NaN ends it soon.
+#[inline(always)]
+fn is_due(number: usize) -> bool {
+    number % 1024 == 1023
+}
+
+/// Whether a state is finite. Its sum tells sooner, but may overflow.
+#[cold]
+#[inline(never)]
+fn look<T: Scalar>(q: &impl Space<T>, held: &impl Space<T>) -> Result<(), Error> {
+    let is_finite = q.is_finite() && held.is_finite();
+    if is_finite { Ok(()) } else { Err(Error::NotFinite { name: "the state after a step" }) }
+}
+
 /// Steps, one after the other.
 #[inline]
 fn one_by_one<S: Clebsch, P: Scheme<S, M>, M: Method<S>>(
@@ -230,10 +244,15 @@ fn one_by_one<S: Clebsch, P: Scheme<S, M>, M: Method<S>>(
 ) -> Stepped<S, P, M> {
     let mut state = (*q, *held, *left);
     let mut clock = Clock::at(at.t);
-    for _ in 0..steps {
+    for number in 0..steps {
         let (q, held, left) = &state;
         state = P::step(At { t: clock.now(), ..at }, (q, held, left), u)?;
         clock = clock.after_step(h);
+        if is_due(number) {
+            // A copy, as a reference would force the state into memory in every step.
+            let (q, held, _) = state;
+            look(&q, &held)?;
+        }
     }
     Ok(state)
 }

@@ -2,7 +2,7 @@
 
 use super::sequence::{Carry, From, InSequence, Sequence, To};
 use super::substep::Moving;
-use super::{At, is_near};
+use super::{At, is_due, is_near, look};
 use crate::parts::{FreeMotion, Mu, Q, Substep, T, U};
 use crate::{Error, Method, Scalar, Space};
 
@@ -48,8 +48,12 @@ impl<S: Substep<0, M> + FreeMotion<M>, M: Method<S>> Sequence<S, M> for Order {
 
     fn steps(at: At<'_, S, M>, _: T<S>, steps: usize, (q, mu, left): From<'_, S, M, Kept>, _: &U<S>) -> To<S, M, Kept> {
         let (mut state, kept) = Moving::<S, M>::start::<Kept>(q, mu, left);
-        for _ in 0..steps {
+        for number in 0..steps {
             follow(at, kept, &mut state)?;
+            if is_due(number) {
+                let (q, mu) = (state.q, state.mu);
+                look(&q, &mu)?;
+            }
         }
         Ok(state.end::<Kept>(*kept))
     }

@@ -2,7 +2,7 @@
 
 use super::sequence::{Apart, Shared};
 use super::substep::{inverse_legendre, plus};
-use super::{At, Before, Pair, Scheme, Stepped};
+use super::{At, Before, Pair, Scheme, Stepped, is_due, look};
 use crate::matrices::skew_outer;
 use crate::orbit::length_defect;
 use crate::parts::{GreatCircles, T, U};
@@ -141,6 +141,9 @@ impl<S: GreatCircles<M, Configuration = Point<S, N>>, M: Method<S>, const N: usi
             *gradient = <Self as Turns<S, M, N>>::gradient(at, q);
             // between two steps both kicks are one
             push(q, w, gradient, if left > 0 { two } else { one });
+            if is_due(left) {
+                look(q, w)?;
+            }
         }
         Ok(())
     }
@@ -163,13 +166,16 @@ impl<S: GreatCircles<M, Configuration = Point<S, N>>, M: Method<S>, const N: usi
     ) -> Result<(), Error> {
         let At { system, constants, t, .. } = at;
         let a = S::turn(constants);
-        for _ in 0..steps {
+        for number in 0..steps {
             if let Some(gradient) = system.start_gradient(constants, t, q) {
                 push(q, w, &gradient, One::one());
             }
             turn_great_circle(a, q, w)?;
             if let Some(gradient) = system.end_gradient(constants, t, q) {
                 push(q, w, &gradient, One::one());
+            }
+            if is_due(number) {
+                look(q, w)?;
             }
         }
         Ok(())
@@ -192,7 +198,10 @@ impl<S: GreatCircles<M>, M: Method<S>, const N: usize> Turns<S, M, N> for Unpush
         (): &mut (),
     ) -> Result<(), Error> {
         let a = S::turn(at.constants);
-        (0..steps).try_for_each(|_| turn_freely(a, plane, q))
+        (0..steps).try_for_each(|number| {
+            turn_freely(a, plane, q)?;
+            if is_due(number) { look(q, plane) } else { Ok(()) }
+        })
     }
 }
 

@@ -1,6 +1,6 @@
 //! Equal sites, moved one after the other between kicks of all of them.
 
-use super::{At, Before, Pair, Scheme, Stepped};
+use super::{At, Before, Pair, Scheme, Stepped, is_due, look};
 use crate::parts::{F, Mu, Q};
 use crate::power::{Power, SiteScheme};
 use crate::space::plus;
@@ -116,12 +116,15 @@ impl<S: Power<N>, K: SiteKicks<S, N>, const N: usize> Scheme<S> for SitesInTurn<
         let mut gradient = [Space::origin(); N];
         let mut room = [Space::origin(); N];
         let mut clock = Clock::at(t);
-        for _ in 0..steps {
+        for number in 0..steps {
             system.drift_in_place(constants, clock.now(), &mut q, &mut mu, K::kick(&left))?;
             clock = clock.after_step(constants.h);
             if K::END != 0.0 {
                 let kick = K::place(&mut left, &mut room);
                 system.kick_into(clock.now(), &q, constants.part(K::END), &mut gradient, kick, &mut mu);
+            }
+            if is_due(number) {
+                look(&q, &mu)?;
             }
         }
         Ok((q, mu, left))

@@ -18,7 +18,7 @@
 
 use super::sequence::{Apart, From, InSequence, Sequence, To};
 use super::substep::{Moving, moved};
-use super::{At, Pair};
+use super::{At, Pair, is_due, look};
 use crate::parts::{Mu, Q, Solved, SplitKicks, Substep, T, U};
 use crate::{Clock, Error, Method, Scalar, Space, Time};
 use core::marker::PhantomData;
@@ -119,8 +119,12 @@ impl<S: Substep<0, M> + SplitKicks<M>, M: Method<S>, Z: Kicks<K>, const K: usize
             state.on_space();
             Ok(state)
         };
+        let looked = |state: &Moving<S, M>| {
+            let (q, mu) = (state.q, state.mu);
+            look(&q, &mu)
+        };
         let size = (at.t, S::step_size(at.constants), steps);
-        Ok(split(&Z::KICKS, size, start, drifted, kicked)?.end::<Apart>(()))
+        Ok(split(&Z::KICKS, size, start, drifted, kicked, looked)?.end::<Apart>(()))
     }
 
     fn step_symmetric(at: At<'_, S, M>, q: &Q<S>, p: &Q<S>) -> Result<Pair<S>, Error> {
@@ -135,7 +139,7 @@ impl<S: Substep<0, M> + SplitKicks<M>, M: Method<S>, Z: Kicks<K>, const K: usize
             Ok((q, at.system.lift(&q, &p, &d)))
         };
         let size = (at.t, S::step_size(at.constants), 1);
-        split(&Z::KICKS, size, (*q, *p), drifted, kicked)
+        split(&Z::KICKS, size, (*q, *p), drifted, kicked, |_| Ok(()))
     }
 }
 
@@ -148,7 +152,7 @@ fn solve<S: Substep<0, M>, M: Method<S>>(at: At<'_, S, M>, part: T<S>, q: &Q<S>,
 }
 
 /// The state after `steps` steps of size `h` from the time `t`. Where one step ends and the next starts, their drifts are one. `drift` takes
-/// a part of the step and the state, `kick` a time, b_i, g_i and the state.
+/// a part of the step and the state, `kick` a time, b_i, g_i and the state. `look` ends a long run of NaN.
 #[inline]
 pub fn split<T: Scalar, S, const K: usize>(
     kicks: &[Kick; K],
@@ -156,6 +160,7 @@ pub fn split<T: Scalar, S, const K: usize>(
     start: S,
     drift: impl Fn(T, S) -> Result<S, Error>,
     kick: impl Fn(T, T, T, S) -> S,
+    look: impl Fn(&S) -> Result<(), Error>,
 ) -> Result<S, Error> {
     let Some(first) = kicks.first().filter(|_| steps > 0) else { return Ok(start) };
     // the same forwards and backwards: the last drift is as long as the first
@@ -175,6 +180,9 @@ pub fn split<T: Scalar, S, const K: usize>(
             }
             None => {
                 left -= 1;
+                if is_due(left) {
+                    look(&state)?;
+                }
                 (begun, parts) = (begun.after_step(h), kicks.iter());
                 (size, passed) = (if left == 0 { end } else { end + end }, end);
             }

@@ -3,10 +3,14 @@
 use crate::scheme::Held;
 use crate::{Body, Clebsch, Error, Failure, Mask, Method, Scalar, Space, State, Stepper, Time};
 use alloc::vec::Vec;
+use core::ops::Range;
 use num_traits::Zero;
 
 /// Chunks that take turns: while one waits for a result, the processor works on another.
 pub const TOGETHER: usize = 4;
+
+/// Steps after which chunks whose bodies have all failed are noticed.
+const TURNS: u64 = 1024;
 
 /// As many bodies as there are lanes, or fewer: then the last one is in the lanes that are left too.
 #[derive(Debug)]
@@ -103,7 +107,35 @@ impl<S: Clebsch, M: Method<S>> Chunk<State<S, M>> {
     /// `steps` steps of a few chunks, which take turns, by the one stepper or by one each; `first` have been made.
     #[inline]
     pub fn advance(chunks: &mut [Self], steppers: &[Stepper<S, M>], first: u64, steps: u64) {
-        let numbers = first..first.saturating_add(steps);
+        let mut first = first;
+        let end = first.saturating_add(steps);
+        while first < end {
+            let next = first.saturating_add(TURNS).min(end);
+            if chunks.iter().all(|chunk| chunk.live == 0) {
+                return Self::wait(chunks, steppers, end - first);
+            }
+            Self::together(chunks, steppers, first..next);
+            first = next;
+        }
+    }
+
+    /// The time goes on where all bodies have failed, for those that are put in their place.
+    #[cold]
+    fn wait(chunks: &mut [Self], steppers: &[Stepper<S, M>], steps: u64) {
+        if size_of::<S::Time>() == 0 {
+            return;
+        }
+        for (number, chunk) in chunks.iter_mut().enumerate() {
+            let stepper = if let [stepper] = steppers { Some(stepper) } else { steppers.get(number) };
+            if let Some(stepper) = stepper {
+                let time = (0..steps).fold(chunk.state.time, |time, _| time.after_step(stepper.h));
+                chunk.state.time = time;
+            }
+        }
+    }
+
+    #[inline]
+    fn together(chunks: &mut [Self], steppers: &[Stepper<S, M>], numbers: Range<u64>) {
         match steppers {
             [stepper] => numbers.for_each(|step| chunks.iter_mut().for_each(|chunk| chunk.step(stepper, step))),
             each => {
