@@ -151,6 +151,18 @@ macro_rules! systems {
                 pub moments: Vector3<T>,
             }
 
+            /// A body to which an inertia about the vertical is attached: the cost couples.
+            #[derive(Clebsch, Clone, Debug)]
+            #[clebsch(
+                action     = |F: SO<3>, R: SO<3>| R * F,
+                lagrangian = |R, omega| (omega.component_mul(&omega).dot(&self.moments) + (R * omega).z.powi(2)) / 2,
+                potential  = |R| R[(2, 2)],
+                $(summation = $summation,)?
+            )]
+            pub struct Attached<T: Scalar> {
+                pub moments: Vector3<T>,
+            }
+
             /// A group whose inverses are no transposes.
             #[derive(Clebsch, Clone, Debug)]
             #[clebsch(

@@ -19,8 +19,8 @@ pub struct MomentumEquation<'g> {
     pub residual: Expr<'g>,
     /// Dρ(x)·δ.
     pub directional: Expr<'g>,
-    /// Whether the congruence with I ∓ Z has freed it of denominators.
-    pub cleared: bool,
+    /// How the residual is written.
+    pub form: Form,
     /// How it is solved.
     pub solution: Solution,
     /// x, where a formula gives it that is not the predictor; the coordinates of equations before it may occur in it.
@@ -38,6 +38,15 @@ pub struct MomentumEquation<'g> {
     pub is_inertial: bool,
     /// Whether it depends on the configuration or on the time.
     pub moves: bool,
+}
+
+/// How a residual is written.
+#[derive(Copy, Clone, Default)]
+pub struct Form {
+    /// Whether the congruence with I ∓ Z has freed it of denominators.
+    pub cleared: bool,
+    /// Whether it is written with D(x) = F − I, after terms have cancelled. Then no products are distributed.
+    pub is_near: bool,
 }
 
 /// How an equation is solved.
@@ -97,6 +106,8 @@ pub(super) struct Momentum<'g> {
     pub(super) coupling: Option<Vec<Expr<'g>>>,
     /// −r(q, I) for each factor; `None` if it vanishes.
     pub(super) rest: Option<Vec<Expr<'g>>>,
+    /// Whether the cost couples configuration and group element.
+    pub(super) couples: bool,
     /// Whether a force that depends on the velocity joins the equations: then Σ alone gives no coordinate.
     pub(super) is_forced: bool,
 }
@@ -115,7 +126,7 @@ impl<'g> MomentumEquation<'g> {
         system: &SystemFormulas<'g>,
         components: Vec<usize>,
         residual: Expr<'g>,
-        cleared: bool,
+        form: Form,
     ) -> MomentumEquation<'g> {
         let symbols = &system.symbols;
         let blocks: Vec<_> = symbols.blocks_of(&components).into_each(|i| symbols.blocks[i]);
@@ -124,13 +135,13 @@ impl<'g> MomentumEquation<'g> {
         let directions: Vec<_> = blocks.each(|block| (block.coordinates, block.direction));
         let moves = system.is_moving(residual);
         let slope = residual.differential(&directions);
-        let kept = factors.iter().any(|&k| is_kept(symbols.charts[k], moves));
+        let kept = form.is_near || factors.iter().any(|&k| is_kept(symbols.charts[k], moves));
         MomentumEquation {
             components,
             factors,
             residual,
             directional: if kept { slope } else { slope.expand() },
-            cleared,
+            form,
             solution: Solution::Newton,
             formula: None,
             sine_squared: None,

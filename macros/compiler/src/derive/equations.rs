@@ -4,22 +4,24 @@ use clebsch_symbolic::{Chart, Elements, Expr, IntoList, Shape, identity, indexed
 
 use super::clearing;
 use super::closed_form::{closed_form, is_solved_by_predictor};
-use super::equation::{Momentum, MomentumEquation, Solution, Sources, is_diagonal, is_kept};
+use super::equation::{Form, Momentum, MomentumEquation, Solution, Sources, is_diagonal, is_kept};
 use super::{ChartBlock, exact, structure};
 
 pub(super) fn equations<'g>(sources: &Sources<'_, 'g>, momentum: &Momentum<'g>) -> Vec<MomentumEquation<'g>> {
     let (model, symbols) = (sources.model, &sources.symbols);
     let is_free_rotation = |block: &ChartBlock<'g>| exact::is_free_rotation(model, block.factor);
+    let late = late(sources, momentum);
     let mut residuals: Vec<Residual<'g>> = Vec::new();
     for k in 0..model.factors.len() {
         let (residual, cleared) = if exact::is_free_rotation(model, k) {
             (model.graph.zero(symbols.momenta[k].shape()), true)
         } else {
-            residual(sources, momentum, k)
+            residual(sources, momentum, (k, &late))
         };
         residuals.extend(symbols.blocks.iter().filter(|block| block.factor == k).map(|block| {
             let start = block.offset - model.offset(k);
-            Residual { rows: residual.block(start, 0, block.coordinates.shape()), cleared }
+            let is_near = momentum.couples && late.iter().any(|(d, _)| residual.depends_on(*d));
+            Residual { rows: residual.block(start, 0, block.coordinates.shape()).substitute(&late), cleared, is_near }
         }));
     }
     if !momentum.is_forced {
@@ -27,7 +29,7 @@ pub(super) fn equations<'g>(sources: &Sources<'_, 'g>, momentum: &Momentum<'g>) 
     }
     for (residual, block) in residuals.iter_mut().zip(&symbols.blocks).filter(|(_, block)| !is_free_rotation(block)) {
         if let Some(rows) = clearing::of_rotation(sources, block, residual.rows) {
-            *residual = Residual { rows, cleared: true };
+            *residual = Residual { rows, cleared: true, ..*residual };
         }
     }
     let depends = |i: usize, j: usize| residuals[i].rows.depends_on(symbols.blocks[j].coordinates);
@@ -43,6 +45,8 @@ pub(super) fn equations<'g>(sources: &Sources<'_, 'g>, momentum: &Momentum<'g>) 
 struct Residual<'g> {
     rows: Expr<'g>,
     cleared: bool,
+    /// Whether it is written with D(x).
+    is_near: bool,
 }
 
 /// A block whose equation is linear is solved at once, x = s·h·Σ⁻¹μ. Its solution is substituted into the others, where
@@ -71,6 +75,7 @@ fn explicit<'g>(sources: &Sources<'_, 'g>, residuals: &[Residual<'g>], i: usize)
     let holds_others = || (0..residuals.len()).any(|j| j != i && rows.depends_on(symbols.blocks[j].coordinates));
     if exact::is_free_rotation(sources.model, block.factor)
         || holds_others()
+        || residuals[i].is_near
         || is_kept(symbols.charts[block.factor], sources.is_moving(rows))
     {
         return None;
@@ -86,24 +91,45 @@ fn explicit<'g>(sources: &Sources<'_, 'g>, residuals: &[Residual<'g>], i: usize)
     Some(graph.stack(block.coordinates.shape(), indexed(block.dimension(), entry)))
 }
 
+/// The increments D(x) that are substituted last, with their symbols. Terms that cancel in F − I do so before.
+///
+/// They belong to charts with roots and to exponentials. If the cost couples, they belong to Cayley's chart too, unless a denominator
+/// depends on F.
+fn late<'g>(sources: &Sources<'_, 'g>, momentum: &Momentum<'g>) -> Vec<(Expr<'g>, Expr<'g>)> {
+    let (model, symbols) = (sources.model, &sources.symbols);
+    let parts = || momentum.before.iter().map(|before| before.array).chain(momentum.coupling.iter().flatten().copied());
+    let is_polynomial = |k: usize| !parts().any(|part| part.has_poles_in(&[model.factors[k].symbol]));
+    let is_late = |k: &usize| match symbols.charts[*k] {
+        Chart::Cayley | Chart::Product => momentum.couples && is_polynomial(*k),
+        chart => is_kept(chart, momentum.coupling.is_some()),
+    };
+    (0..model.factors.len()).filter(is_late).map(|k| (symbols.increments[k], sources.chart_increment(k))).into_list()
+}
+
 /// ρ_k(x): the components of T* ∂_F K − J(q, ∂_q K), less their value at F = I, less μ.
 ///
-/// They are freed of denominators by A (…) C where that is possible. The second value says whether they were.
-fn residual<'g>(sources: &Sources<'_, 'g>, momentum: &Momentum<'g>, k: usize) -> (Expr<'g>, bool) {
+/// They are freed of denominators by A (…) C where that is possible. The second value says whether they were. Increments that are
+/// substituted late are symbols in them.
+fn residual<'g>(
+    sources: &Sources<'_, 'g>,
+    momentum: &Momentum<'g>,
+    (k, late): (usize, &[(Expr<'g>, Expr<'g>)]),
+) -> (Expr<'g>, bool) {
     let (model, symbols) = (sources.model, &sources.symbols);
     let Momentum { before, coupling, rest, .. } = momentum;
     let group = model.factors[k].group;
-    // F = I + D in a chart with roots: terms that cancel in F − I do so before the substitution of D(x)
-    let is_late = |j: &usize| is_kept(symbols.charts[*j], coupling.is_some());
-    let late = (0..model.factors.len()).filter(is_late).map(|j| (symbols.increments[j], sources.chart_increment(j)));
-    let late: Vec<(Expr<'g>, Expr<'g>)> = late.into_list();
+    let is_late = |j: &usize| late.iter().any(|(d, _)| *d == symbols.increments[*j]);
     let by_increment = |j: usize| model.factors[j].group.identity(model.graph) + symbols.increments[j];
     let element = |j: usize| if is_late(&j) { by_increment(j) } else { sources.chart_element(j) };
     let mut elements: Vec<_> = indexed(model.factors.len(), |j| (model.factors[j].symbol, element(j)));
     elements.extend((0..model.factors.len()).map(|j| (symbols.logarithms[j], symbols.stacked_coordinates(j))));
+    elements.extend((0..model.factors.len()).filter_map(|j| sources.cayley_coordinates(j, is_late(&j))));
     let array = before[k].array.substitute(&elements).expand();
     let mu = rest.as_ref().map_or(symbols.momenta[k], |rest| symbols.momenta[k] - rest[k]);
     let mut plain = group.components(array).expand() - mu;
+    if let Some(rational) = before[k].rational {
+        plain = plain + rational.substitute(&elements).expand();
+    }
     if symbols.charts[k] == Chart::Product {
         plain = plain.blockwise().expand();
     }
@@ -122,10 +148,10 @@ fn residual<'g>(sources: &Sources<'_, 'g>, momentum: &Momentum<'g>, k: usize) ->
         let (gradient, slope) = (gradient.substitute(&elements), slope.substitute(&elements));
         let freed = slope.transpose() * plain;
         let expanded = || gradient.expand() + freed.expand();
-        return (if late.is_empty() { expanded() } else { (gradient + freed).substitute(&late) }, true);
+        return (if late.is_empty() { expanded() } else { gradient + freed }, true);
     }
     if coupling.is_some() || !late.is_empty() {
-        return (plain.substitute(&late), false);
+        return (plain, false);
     }
     match clearing::by_congruence(sources, k, (array, mu, plain)) {
         Some(cleared) => (cleared, true),
@@ -149,7 +175,8 @@ fn equation<'g>(
     let rows: Vec<_> = blocks.each(|&i| residuals[i].rows);
     let residual = sources.model.graph.below(&rows);
     let cleared = blocks.iter().all(|&i| residuals[i].cleared);
-    let mut equation = MomentumEquation::new(sources, components, residual, cleared);
+    let is_near = blocks.iter().any(|&i| residuals[i].is_near);
+    let mut equation = MomentumEquation::new(sources, components, residual, Form { cleared, is_near });
     if let [only] = blocks[..]
         && !equation.moves
         && !momentum.is_forced

@@ -2,7 +2,7 @@
 
 use clebsch_symbolic::{Expr, Graph, Group, IntoList, Property, Role, Shape, indexed};
 
-use super::equation::{MomentumEquation, Solution, Sources, is_diagonal};
+use super::equation::{Form, MomentumEquation, Solution, Sources, is_diagonal};
 use super::velocity;
 use crate::diagnostic::Diagnostics;
 use crate::model::features::{self, Feature, Found};
@@ -87,7 +87,12 @@ pub(super) fn equation<'g>(sources: &Sources<'_, 'g>, i: usize) -> MomentumEquat
         let d = letter("d", Shape::square(3), Property::Symmetric);
         d * block.coordinates - Group::SpecialOrthogonal(3).wedge(m) * block.coordinates - m
     };
-    let equation = MomentumEquation::new(sources, block.components().into_list(), residual, true);
+    let equation = MomentumEquation::new(
+        sources,
+        block.components().into_list(),
+        residual,
+        Form { cleared: true, is_near: false },
+    );
     MomentumEquation { solution: Solution::FreeRotation, ..equation }
 }
 

@@ -169,7 +169,7 @@ impl MechanicsFormulas<'_> {
             && substep.unchanged[0]
             && substep.rest.is_none()
             && substep.force.is_none()
-            && substep.other.is_none()
+            && substep.coupling.is_none()
             && !self.is_timed()
             && !self.is_compensated()
     }

@@ -110,17 +110,20 @@ impl<'g> MechanicsFormulas<'g> {
         self.displacements().into_each(|added| added.substitute(&inverses))
     }
 
-    /// M⁺ = Ad*_{F⁻¹} M for a left action, Ad*_F M for a right one, with F = I + D. If the cost couples, it is the
-    /// other trivialisation of ∂_F K. With compensated sums, the increment of the momentum that was solved for. `None`
-    /// where M does not change.
+    /// M⁺ = Ad*_{F⁻¹} M for a left action, Ad*_F M for a right one, with F = I + D and the momentum M of ∂_F K. With
+    /// compensated sums, the increment of the momentum that was solved for. `None` where M does not change.
     pub(super) fn momentum_after(&self, substep: &Substep<'g>) -> Option<Vec<Expr<'g>>> {
-        if let Some(other) = &substep.other {
-            return Some(self.at_increments(other));
-        }
         if self.is_compensated() {
             return self.momentum_increments(substep);
         }
-        self.carried_on(substep).map(|carried| self.at_increments(&carried))
+        if self.small_change(substep).is_some() {
+            return self.carried_on(substep).map(|carried| self.at_increments(&carried));
+        }
+        // the move is linear in M: M, which may be long, is substituted last
+        let momenta = self.momenta_of_move(substep)?;
+        let momenta: Vec<_> = self.symbols.momenta.iter().copied().zip(self.at_increments(&momenta)).into_list();
+        let carried = self.at_increments(&self.carried_by_move(substep));
+        Some(carried.into_each(|carried| carried.substitute(&momenta)))
     }
 
     /// q⁺ = q + α x_Q(q) + β x_Q(x_Q(q)) of vectors that turn in one plane, without the matrix of the turn.

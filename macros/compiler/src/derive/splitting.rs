@@ -27,7 +27,7 @@ pub(super) fn drifts_exactly(model: &Mechanics<'_>, symbols: &Symbols<'_>, subst
         equation.solution == Solution::FreeRotation
             || equation.solution == Solution::Explicit && equation.formula.is_none() && follows_velocity
     };
-    let rests = substep.rest.is_none() && substep.other.is_none() && substep.force.is_none();
+    let rests = substep.rest.is_none() && substep.coupling.is_none() && substep.force.is_none();
     rests && model.force.is_none() && !substep.lagrangian.couples && substep.equations.iter().all(is_known)
 }
 

@@ -9,7 +9,7 @@ mod sylvester;
 
 use clebsch_symbolic::{Elements, Expr, IntoElements, IntoList, Shape, identity};
 
-use super::equation::{MomentumEquation, Solution, Sources};
+use super::equation::{Form, MomentumEquation, Solution, Sources};
 use super::symbols::{ChartBlock, rows_at};
 use pattern::Pattern;
 pub(super) use pattern::connected;
@@ -131,15 +131,16 @@ impl<'a, 'b, 'g> Reduced<'a, 'b, 'g> {
             graph.stack(Shape::vector(positions.len()), positions.iter().enumerate().map(value).into_list())
         };
         let own = identity::without_vanishing_terms(rows_at(whole.residual, positions));
-        let own = MomentumEquation::new(sources, gone.clone(), own, whole.cleared);
+        let own = MomentumEquation::new(sources, gone.clone(), own, whole.form);
         let mut eliminated = self.eliminated.clone();
         eliminated.push(MomentumEquation { solution: Solution::Explicit, formula: Some(formula), ..own });
         let left: Vec<usize> = (0..self.columns.len()).filter(|i| !positions.contains(i)).into_list();
         let residual = self.with(&gone, formula, rows_at(whole.residual, &left)).expand();
         let residual = identity::without_vanishing_terms(residual);
         let left = left.into_each(|i| whole.components[i]);
-        let cleared = whole.cleared || whole.residual.has_inverse() && !residual.has_inverse();
-        let left = Reduced::new(sources, MomentumEquation::new(sources, left, residual, cleared));
+        let cleared = whole.form.cleared || whole.residual.has_inverse() && !residual.has_inverse();
+        let left =
+            Reduced::new(sources, MomentumEquation::new(sources, left, residual, Form { cleared, ..whole.form }));
         Some(Reduced { eliminated, ..left })
     }
 
@@ -223,7 +224,7 @@ impl<'a, 'b, 'g> Reduced<'a, 'b, 'g> {
         let residual = self.with(&others, absent, rows_at(whole.residual, positions)).expand();
         let residual = identity::without_vanishing_terms(residual);
         let components = positions.each(|&i| whole.components[i]);
-        let part = MomentumEquation::new(sources, components, residual, whole.cleared);
+        let part = MomentumEquation::new(sources, components, residual, whole.form);
         let part = Reduced::new(sources, MomentumEquation { is_inertial: whole.is_inertial, ..part });
         part.substituted().unwrap_or_else(|| part.whole())
     }

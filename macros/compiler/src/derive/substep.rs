@@ -1,12 +1,14 @@
 //! A substep: one discrete Lagrangian with the formulas of its step.
 
-use clebsch_symbolic::{Chart, Elements, Expr, IntoElements, IntoList, identity, indexed};
+use clebsch_symbolic::{Chart, Elements, Expr, IntoList, identity, indexed};
 
 use super::equation::{Momentum, MomentumEquation, Solution, Sources};
 use super::force::total;
-use super::symbols::identities;
+use super::symbols::{at_zero, identities};
 use super::trivialisation::{self, Covector};
-use super::{DiscreteLagrangian, EdgeDerivatives, EdgeForce, Symbols, SystemFormulas, equations, exact, variation};
+use super::{
+    DiscreteLagrangian, EdgeDerivatives, EdgeForce, Symbols, SystemFormulas, cayley, equations, exact, variation,
+};
 use crate::diagnostic::{Diagnostics, bail};
 use crate::model::features::{self, Feature, Found};
 use crate::model::{ChartChoice, Discretization, Factor, Mechanics, System};
@@ -30,15 +32,33 @@ pub struct Substep<'g> {
     pub end: Option<Vec<Expr<'g>>>,
     /// The momentum equations, each for the factors that depend on each other.
     pub equations: Vec<MomentumEquation<'g>>,
-    /// For each factor: whether N⁺ = M, because both trivialisations of ∂_F K agree and the cost does not couple.
+    /// For each factor: whether both trivialisations of ∂_F K agree, so that the move leaves it as it is.
     pub unchanged: Vec<bool>,
-    /// The momentum after the move for each factor, the other trivialisation of ∂_F K at (q, F). It is there if the
-    /// cost couples, or if r(I) changes with the time.
-    pub other: Option<Vec<Expr<'g>>>,
+    /// The momenta that a coupled cost adds in a move; `None` for other costs.
+    pub coupling: Option<Coupling<'g>>,
     /// The force in addition to the potential; `None` if there is none.
     pub force: Option<EdgeForce<'g>>,
     /// Second derivatives of the discrete Lagrangian, where they are asked for.
     pub variation: Option<EdgeDerivatives<'g>>,
+}
+
+/// The momenta that a coupled cost K(q, F) adds in a move.
+pub struct Coupling<'g> {
+    /// J(q, ∂_q K) for each factor, which r(F) lacks of ∂_F K.
+    pub kick: Vec<Expr<'g>>,
+    /// r⁺(F) − r(F) for each factor, with the other trivialisation r⁺ of ∂_F K.
+    pub change: Vec<Expr<'g>>,
+}
+
+impl<'g> Coupling<'g> {
+    fn new(sources: &Sources<'_, 'g>, kinetic: Expr<'g>) -> Coupling<'g> {
+        let model = sources.model;
+        let (before, after) = trivialisation::of_all(model, kinetic);
+        let (before, after) = (trivialisation::components(model, &before), trivialisation::components(model, &after));
+        let kick = sources.momenta_of(sources.gradients(kinetic));
+        let change = (0..model.factors.len()).map(|k| (after[k] - before[k] + kick[k]).expand()).into_list();
+        Coupling { kick, change }
+    }
 }
 
 impl<'g> Substep<'g> {
@@ -51,9 +71,12 @@ impl<'g> Substep<'g> {
         force: Option<EdgeForce<'g>>,
     ) -> Substep<'g> {
         let model = sources.model;
-        let (before, after) = trivialisation::of_all(model, lagrangian.kinetic);
-        let coupling = lagrangian.couples.then(|| sources.coupling(lagrangian.kinetic));
-        // the part of the force that depends on the velocity joins the equation, at the time at which the step starts
+        // no congruence clears the denominators of coupled costs: their Cayley coordinates are letters
+        let letters = if lagrangian.couples { cayley::replacements(model) } else { Vec::new() };
+        let kinetic = lagrangian.kinetic.substitute(&letters);
+        let (before, after) = trivialisation::of_all(model, kinetic);
+        let coupling = lagrangian.couples.then(|| sources.coupling(kinetic));
+        // the part of the force that depends on the velocity joins the equation, at the time at which the whole step starts
         let moving = force
             .as_ref()
             .and_then(|force| force.start_moving.as_ref())
@@ -62,14 +85,13 @@ impl<'g> Substep<'g> {
         let coupling = total(coupling, moving);
         let rest = at_rest(model, &before, coupling.as_deref());
         let unchanged: Vec<bool> = indexed(model.factors.len(), |k| agree(model, (&before, &after), k));
-        let momentum = Momentum { before, coupling, rest: rest.clone(), is_forced };
-        // impulses are functions of the time of the configuration, K of the time at which the step starts
+        let momentum = Momentum { before, coupling, rest: rest.clone(), couples: lagrangian.couples, is_forced };
+        // impulses are functions of the time of the configuration, K of the time at which the whole step starts
         let earlier = |rest: &Vec<Expr<'g>>| rest.each(|part| sources.later(*part, -begins));
-        let changes = rest.iter().flatten().any(|part| part.depends_on(model.time));
-        let other = lagrangian.couples || changes;
         let ends = begins + model.step_size / sources.divisor;
         Substep {
-            unchanged: unchanged.into_each(|unchanged| !other && unchanged),
+            unchanged,
+            coupling: lagrangian.couples.then(|| Coupling::new(&sources, kinetic)),
             variation: model
                 .has_variations()
                 .then(|| variations.variation(&lagrangian, (begins, ends), force.as_ref())),
@@ -84,7 +106,6 @@ impl<'g> Substep<'g> {
             },
             end: sources.impulse(lagrangian.end),
             equations: equations::equations(&sources, &momentum),
-            other: other.then(|| trivialisation::components(model, &after)),
             rest,
             force,
             lagrangian,
@@ -113,7 +134,11 @@ pub(super) fn check_unmoved<'g>(model: &System<'g>, lagrangian: &DiscreteLagrang
 
 /// −r(q, I), of a cost that couples or of a Lagrangian with a term that is linear in the velocity; `None` if it vanishes.
 fn at_rest<'g>(model: &System<'g>, before: &[Covector<'g>], coupling: Option<&[Expr<'g>]>) -> Option<Vec<Expr<'g>>> {
-    let at_identity = identities(model);
+    let mut at_identity = identities(model);
+    if coupling.is_some() {
+        let letters = (0..model.factors.len()).map(|k| cayley::symbol(model, k));
+        at_identity.extend(at_zero(letters));
+    }
     let of_factor = |(k, factor): (usize, &Factor<'g>)| {
         let kinetic = before[k].components(factor.group);
         let whole = coupling.map_or(kinetic, |coupling| kinetic + coupling[k]);

@@ -8,9 +8,10 @@
 //!
 //! Source: Hairer, Lubich and Wanner, *Geometric Numerical Integration*, §VIII.5 (compensated summation, Kahan 1965, Møller 1965).
 
-use clebsch_symbolic::{Expr, IntoList, Property, Role, WordTerm, identity};
+use clebsch_symbolic::{Expr, Graph, IntoElements, IntoList, Property, Role, WordTerm, identity, integer};
 
 use super::moves::inverse_by;
+use super::symbols::at_zero;
 use super::{MechanicsFormulas, Substep};
 use crate::diagnostic::Diagnostics;
 use crate::model::Factor;
@@ -24,29 +25,74 @@ impl<'g> MechanicsFormulas<'g> {
 
     /// The increment of the momentum M by the move, for each factor; `None` if it is zero.
     pub(super) fn momentum_increments(&self, substep: &Substep<'g>) -> Option<Vec<Expr<'g>>> {
+        if let Some(change) = self.small_change(substep) {
+            return Some(self.at_increments(change));
+        }
         let inverses = self.inverses();
+        let coupling = substep.coupling.as_ref().map(|coupling| self.at_increments(&coupling.kick));
         let added = |(k, m): (usize, &Expr<'g>)| {
             let change = || self.beside(self.carried(k, *m), *m).substitute(&inverses);
-            if substep.unchanged[k] { self.model.graph.zero(m.shape()) } else { change() }
+            let change = if substep.unchanged[k] { self.model.graph.zero(m.shape()) } else { change() };
+            let Some(coupling) = &coupling else { return change };
+            change.substitute(&[(*m, *m + coupling[k])]) + coupling[k]
         };
-        substep.unchanged.contains(&false).then(|| self.symbols.momenta.iter().enumerate().map(added).into_list())
+        let changes = coupling.is_some() || substep.unchanged.contains(&false);
+        changes.then(|| self.symbols.momenta.iter().enumerate().map(added).into_list())
     }
 
     /// Whether the move leaves the momentum as it is.
     pub(super) fn keeps_momentum(&self, substep: &Substep<'g>) -> bool {
-        let carries = substep.unchanged.contains(&false) || (substep.rest.is_some() && !self.is_compensated());
-        substep.other.is_none() && !carries
+        let adds = substep.coupling.is_some() || (substep.rest.is_some() && !self.is_compensated());
+        !adds && !substep.unchanged.contains(&false)
     }
 
-    /// M⁺ = Ad*_{F⁻¹} M for a left action, Ad*_F M for a right one, of M = μ + r(I) for each factor; `None` where it is μ.
+    /// M⁺ = Ad*_{F⁻¹} M for a left action, Ad*_F M for a right one, of the momenta M of ∂_F K; `None` where it is μ.
     pub(super) fn carried_on(&self, substep: &Substep<'g>) -> Option<Vec<Expr<'g>>> {
-        let carried = |(k, mu): (usize, &Expr<'g>)| {
-            // the equation is solved for M − r(I)
-            let m = substep.rest.as_ref().map_or(*mu, |rest| *mu - rest[k]);
-            if substep.unchanged[k] { m } else { self.carried(k, m) }
+        if let Some(change) = self.small_change(substep) {
+            let momenta = self.symbols.momenta.iter().zip(change).map(|(mu, change)| *mu + *change);
+            let momenta = momenta.enumerate().map(|(k, m)| substep.rest.as_ref().map_or(m, |rest| m - rest[k]));
+            return Some(momenta.into_list());
+        }
+        let momenta: Vec<_> = self.symbols.momenta.iter().copied().zip(self.momenta_of_move(substep)?).into_list();
+        Some(self.carried_by_move(substep).into_each(|carried| carried.substitute(&momenta)))
+    }
+
+    /// r⁺(F) − r(F) of a cost that couples, where each of its terms is of second order in D = F − I or has a factor h.
+    ///
+    /// Then it is added to μ. The tolerance of the solve changes no conserved momentum. Elsewhere terms of first order cancel each other,
+    /// but their rounding does not.
+    pub(super) fn small_change<'a>(&self, substep: &'a Substep<'g>) -> Option<&'a [Expr<'g>]> {
+        let change = substep.coupling.as_ref()?.change.as_slice();
+        self.at_increments(change).into_iter().all(|change| self.is_small(change)).then_some(change)
+    }
+
+    fn is_small(&self, change: Expr<'g>) -> bool {
+        let (model, symbols) = (&self.model, &self.symbols);
+        let along = |(k, factor): (usize, &Factor<'g>)| (symbols.increments[k], factor.group.wedge(symbols.algebra[k]));
+        let directions: Vec<_> = model.factors.iter().enumerate().map(along).into_list();
+        let near = at_zero(symbols.increments.iter().copied());
+        let is_small = |term: WordTerm<'g>| {
+            let term = expression(term, change.graph());
+            term.least_exponent(model.step_size).is_some_and(|least| least >= integer(1))
+                || identity::vanishes(term.differential(&directions).substitute(&near))
         };
-        let changes = substep.unchanged.contains(&false) || substep.rest.is_some();
-        changes.then(|| self.symbols.momenta.iter().enumerate().map(carried).into_list())
+        change.word_terms().into_iter().all(is_small)
+    }
+
+    /// M⁺ of M = μ, which is μ itself where both trivialisations of ∂_F K agree.
+    pub(super) fn carried_by_move(&self, substep: &Substep<'g>) -> Vec<Expr<'g>> {
+        let momenta = self.symbols.momenta.iter().enumerate();
+        momenta.map(|(k, mu)| if substep.unchanged[k] { *mu } else { self.carried(k, *mu) }).into_list()
+    }
+
+    /// M = μ + r(I) + J(q, ∂_q K), the components of ∂_F K where r(F) = μ + r(I); `None` where the move leaves μ as it is.
+    pub(super) fn momenta_of_move(&self, substep: &Substep<'g>) -> Option<Vec<Expr<'g>>> {
+        let changes = substep.unchanged.contains(&false) || substep.rest.is_some() || substep.coupling.is_some();
+        let momentum = |(k, mu): (usize, &Expr<'g>)| {
+            let all = substep.rest.as_ref().map_or(*mu, |rest| *mu - rest[k]);
+            substep.coupling.as_ref().map_or(all, |coupling| all + coupling.kick[k])
+        };
+        changes.then(|| self.symbols.momenta.iter().enumerate().map(momentum).into_list())
     }
 
     /// Φ_{I+D}(q) − q for each leaf of the configuration, where letters stand for F⁻¹.
@@ -98,9 +144,6 @@ pub(super) fn check(formulas: &MechanicsFormulas<'_>) -> Result<(), Diagnostics>
     };
     features::check((Feature::Summation, Found::at(summation.span)), |feature| match feature {
         Feature::FreeMotionOfFourSpace => Found::when(formulas.turns_whole()),
-        Feature::CoupledCost => {
-            Found::when(formulas.substeps.iter().take(formulas.stepped).any(|substep| substep.other.is_some()))
-        }
         Feature::OtherSum => {
             // Ad*_F M = Fᵀ M F⁻ᵀ always does: M cancels with F = I + D and F⁻¹ = I − D S
             let near = formulas.symbols.increments.as_slice();
@@ -115,9 +158,12 @@ pub(super) fn check(formulas: &MechanicsFormulas<'_>) -> Result<(), Diagnostics>
 /// Whether `from` is in no term without D, or cancels in their sum.
 fn cancels<'g>(added: Expr<'g>, from: Expr<'g>, increments: &[Expr<'g>]) -> bool {
     let graph = added.graph();
-    let term = |term: WordTerm<'g>| term.word.iter().fold(term.scale(graph), |product, letter| product * *letter);
-    let terms = added.word_terms().into_iter().map(term);
+    let terms = added.word_terms().into_iter().map(|term| expression(term, graph));
     let left = terms.filter(|term| !increments.iter().any(|d| term.depends_on(*d)));
     let left = graph.total(added.shape(), left);
     identity::equal(&[left], &[left.substitute(&[(from, graph.zero(from.shape()))])])
+}
+
+fn expression<'g>(term: WordTerm<'g>, graph: &'g Graph) -> Expr<'g> {
+    term.word.iter().fold(term.scale(graph), |product, letter| product * *letter)
 }

@@ -4,11 +4,11 @@
 use std::cell::OnceCell;
 use std::rc::Rc;
 
-use clebsch_symbolic::{Elements, Expr, IntoElements, IntoList, identity, indexed};
+use clebsch_symbolic::{Chart, Elements, Expr, IntoElements, IntoList, identity, indexed};
 
 use super::choice::{Endpoint, Steering};
 use super::symbols::{identities, of_columns};
-use super::{ChartBlock, FormulaTable, Symbols};
+use super::{ChartBlock, FormulaTable, Symbols, cayley};
 use crate::model::{Discretization, Side, System};
 
 /// The formulas of the action, and of the prices of inputs and of the end.
@@ -48,8 +48,15 @@ impl<'g> SystemFormulas<'g> {
         self.symbols.charts[factor].increment(self.model.factors[factor].group, &self.symbols.coordinates(factor))
     }
 
-    /// s·h/c with s = dx/dξ at the identity in a block. To first order, x is this factor times a velocity in one of c
-    /// parts of a step.
+    /// The value of the letters for Cayley coordinates of a factor: x in Cayley's chart, else a function of D.
+    pub(super) fn cayley_coordinates(&self, k: usize, by_increment: bool) -> Option<(Expr<'g>, Expr<'g>)> {
+        let increment = if by_increment { self.symbols.increments[k] } else { self.chart_increment(k) };
+        let (letter, value) = cayley::of_increment(&self.model, k, increment)?;
+        let is_own = self.symbols.charts[k] == Chart::Cayley;
+        Some((letter, if is_own { self.symbols.stacked_coordinates(k) } else { value }))
+    }
+
+    /// s·h/c with s = dx/dξ at the identity in a block: x is that times a velocity, to first order in one of c parts of a step.
     pub(super) fn chart_step(&self, block: usize, divisor: i64) -> Expr<'g> {
         let ChartBlock { factor, block, .. } = self.symbols.blocks[block];
         let blocks = self.model.graph.blocks(self.model.factors[factor].group);

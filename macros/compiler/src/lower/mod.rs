@@ -101,7 +101,7 @@ fn mechanics(formulas: MechanicsFormulas<'_>) -> Result<MechanicsProgram<'_>, Di
 fn of_steps(formulas: &MechanicsFormulas<'_>) -> Vec<Id> {
     let lift = formulas.collocation.as_ref().map(|_| Id::Lift);
     let map = formulas.model.power.as_ref().map(|_| Id::MomentumMap);
-    let coupled = (0..formulas.substeps.len()).filter(|&index| formulas.substeps[index].other.is_some());
+    let coupled = (0..formulas.substeps.len()).filter(|&index| formulas.substeps[index].coupling.is_some());
     lift.into_iter().chain(map).chain(coupled.map(Id::MomentumAfter)).into_list()
 }
 

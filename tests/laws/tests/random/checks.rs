@@ -53,7 +53,7 @@ pub fn check(problem: &Declared, seed: u64) -> Result<Found, String> {
         let program = mechanics(&graph, tokens).map_err(|errors| format!("refused:\n{errors}"))?;
         let found = compiled(problem, &program, &mut Random::new(seed ^ 0x5eed))?;
         let collocated = collocated(problem, seed)?;
-        match (seed / 2).is_multiple_of(2) && !found.couples {
+        match (seed / 2).is_multiple_of(2) {
             true => Ok(Found { compensated: compensated(problem, seed)?, collocated, ..found }),
             false => Ok(Found { collocated, ..found }),
         }
@@ -193,7 +193,7 @@ fn increments(mut free: Declared, random: &mut Random) -> Result<(), String> {
         let iterates = equation.solution == Solution::Newton;
         // a shift that is put in, where it shares inertia with the turn
         let shift_from_turn = has(Chart::Product) && !iterates && is_cost;
-        iterates && (has(Chart::Cayley) && !equation.cleared || has(Chart::Exponential) && !by_logarithm)
+        iterates && (has(Chart::Cayley) && !equation.form.cleared || has(Chart::Exponential) && !by_logarithm)
             || shift_from_turn
     };
     // a cost may have a potential in it

@@ -18,7 +18,7 @@ pub(super) fn part<'g>(formulas: &MechanicsFormulas<'g>, equation: &MomentumEqua
 
 /// How an equation is solved, and in which chart.
 pub(super) fn how(formulas: &MechanicsFormulas<'_>, equation: &MomentumEquation<'_>, iteration: &Iteration) -> String {
-    let (own_chart, cleared) = (formulas.symbols.charts[equation.factors[0]], equation.cleared);
+    let (own_chart, cleared) = (formulas.symbols.charts[equation.factors[0]], equation.form.cleared);
     let chart = match own_chart {
         Chart::Cayley if cleared => {
             "the Cayley chart, denominators cleared by the congruence with I − x^ (I + x^ for a left action)"

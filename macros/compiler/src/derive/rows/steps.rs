@@ -17,13 +17,8 @@ impl<'g> MechanicsFormulas<'g> {
         for number in 0..substep.equations.len() {
             rows.extend(self.rows_of_equation(names, index, number));
         }
-        rows.push(match &substep.other {
-            Some(other) => Formula::shorter(Id::MomentumUpdate(index), "M⁺", other.clone()),
-            None => {
-                let update = self.carried_on(substep).unwrap_or_else(|| self.symbols.momenta.clone());
-                Formula::new(Id::MomentumUpdate(index), "M⁺", update)
-            }
-        });
+        let update = self.carried_on(substep).unwrap_or_else(|| self.symbols.momenta.clone());
+        rows.push(Formula::new(Id::MomentumUpdate(index), "M⁺", update));
         let after = self.momentum_after(substep).filter(|_| !self.turns_whole()).unwrap_or_default();
         let symbol = if self.is_compensated() { "M⁺ − μ" } else { "M⁺" };
         let rest = substep.rest.clone().unwrap_or_default();
@@ -41,7 +36,7 @@ impl<'g> MechanicsFormulas<'g> {
         ]);
         if let Some(force) = &substep.force {
             // the part that depends on the velocity, in the chart
-            let moving = force.start_moving.as_deref().filter(|_| substep.other.is_none()).unwrap_or_default();
+            let moving = force.start_moving.as_deref().unwrap_or_default();
             let start = at(substep.begins, &force.start);
             let moving = self.in_chart(&self.as_of_start(substep.begins, moving));
             let end = self.in_chart(&self.as_of_start(substep.ends, &force.end));

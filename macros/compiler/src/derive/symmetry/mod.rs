@@ -214,7 +214,7 @@ impl<'g> MechanicsFormulas<'g> {
     /// value at (Φ_F q, M⁺) as at (q, M) if M⁺ is computed from M. Kicks leave them as they are.
     pub(in crate::derive) fn conserved_by_any_element(&self) -> Vec<&ConservedMomentum<'g>> {
         let substeps = || self.substeps.iter().take(self.stepped);
-        if substeps().any(|substep| substep.other.is_some()) {
+        if substeps().any(|substep| substep.coupling.is_some()) {
             return Vec::new();
         }
         let move_of = |substep: &Substep<'g>| -> Vec<(Expr<'g>, Expr<'g>)> {

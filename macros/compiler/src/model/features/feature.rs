@@ -98,7 +98,6 @@ features! {
     VaryingEnergy "a kinetic energy that is no constant quadratic form of the velocity of each factor",
     NoMassMatrix "a Lagrangian without a Moser–Veselov form",
     NoDistributionOfMass "a kinetic energy on `SO<4>` that no distribution of mass has",
-    CoupledCost "a cost that couples the configuration and the group element",
     AdjointPair "a step that is composed of two",
     // the equation of a step
     ExplicitEquation "a step that is solved without iteration",

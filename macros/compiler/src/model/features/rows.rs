@@ -15,7 +15,7 @@ const WITHOUT_MATRICES: &[Feature] =
 
 /// The refused features, the others, the message, the reason, and the replacement.
 #[rustfmt::skip]
-pub(super) const ROWS: [Row; 48] = [
+pub(super) const ROWS: [Row; 47] = [
     // inputs move the configuration
     row(&[Dynamics], &[Controls],
         "there are `controls` and `dynamics`, but one thing moves a configuration", "",
@@ -177,10 +177,6 @@ pub(super) const ROWS: [Row; 48] = [
     row(&[Summation], &[FreeMotionOfFourSpace],
         "the free motion on `SO<4>` finds the next momentum from the group element, so there is no sum to compensate",
         "it takes steps of any size: with longer ones there are fewer to round",
-        NO_SUM),
-    row(&[Summation], &[CoupledCost],
-        "this cost makes the momentum anew in each step, so there is no sum to compensate",
-        "where a cost couples the configuration and the group element, N⁺ is the other trivialisation of its slope, and not N with something added",
         NO_SUM),
     row(&[Summation], &[OtherSum],
         "the action does not add to `{name}`, so there is no sum to compensate",
