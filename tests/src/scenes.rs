@@ -63,6 +63,7 @@ macro_rules! scenes_of_each_kind {
             a_collocated_top: collocated_top::CollocatedTop { moments: principal(), weight: 1.3 }, quaternion(), 0.1;
             a_compensated_top: compensated_top::CompensatedTop { mass_matrix: inertia(), weight: 1.3, center: centre() }, turned(), 0.05;
             a_damped_body: damped_body::DampedBody { inertia: inertia(), damping: 0.1 }, turned(), 0.1;
+            a_double_pendulum: double_pendulum::DoublePendulum { mass: [1.0, 0.7], length: [1.0, 0.8], gravity: 9.81 }, [unit(), Vector3::x()], 0.05;
             an_exact_body: exact_body::ExactBody { moments: principal() }, turned(), 0.1;
             an_exact_body_in_four_dimensions: exact_body4::ExactBody4 { mass: four() }, Matrix4::identity(), 0.1;
             a_first_order_top: first_order_top::FirstOrderTop { mass_matrix: inertia(), weight: 1.3, center: centre() }, turned(), 0.05;
@@ -76,6 +77,7 @@ macro_rules! scenes_of_each_kind {
             a_heavy_top: heavy_top::HeavyTop { mass_matrix: inertia(), weight: 1.3, center: centre() }, turned(), 0.05;
             a_reduced_heavy_top: heavy_top_reduced::HeavyTopReduced { mass_matrix: inertia(), moment: centre() }, unit(), 0.05;
             a_planar_pendulum: planar_pendulum::PlanarPendulum { 0: 1.2, 1: 0.8 }, Vector2::new(0.6, -0.8), 0.05;
+            a_natural_pendulum: natural_pendulum::NaturalPendulum { mass: 0.7, weight: 1.3 }, unit(), 0.05;
             a_spherical_pendulum: spherical_pendulum::SphericalPendulum { mass: 0.7, length: 1.3, gravity: 9.81 }, unit(), 0.05;
             a_spin_chain: spin_chain::SpinChain<3> { exchange: 0.7, field: centre() }, [unit(), Vector3::x(), -unit()], 0.05;
             a_split_top: split_top::SplitTop { inertia: inertia(), weight: 1.3, center: centre() }, turned(), 0.1;

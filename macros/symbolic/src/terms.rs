@@ -331,6 +331,9 @@ impl Graph {
         match word {
             [only] => return self.expr(*only),
             [a, b] => {
+                if let (ExprNode::Literal(a), ExprNode::Literal(b)) = (&*self.node(*a), &*self.node(*b)) {
+                    return self.number(a.iter().zip(b).map(|(a, b)| a * b).sum());
+                }
                 let is_square = *self.node(*a) == ExprNode::Of(Operation::Transpose, *b);
                 if is_square && self.expr(*b).property() == Property::Unit {
                     return self.integer(1);

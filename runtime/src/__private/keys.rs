@@ -148,7 +148,7 @@ pub mod code {
     pub mod matrices {}
 }
 
-/// Motions of the group that move no configuration, such as turns about a point on a sphere.
+/// Motions of the group that move no configuration, such as turns about a point on a sphere. With `fixed` the kinetic energy may omit them, as |Φ_F(q) − q|² does: a vertical term is added, which does not change the motion of q.
 ///
 /// Example: `isotropy = free`
 pub mod isotropy {

@@ -178,6 +178,8 @@ catalogue! {
     Force = listed("force", Hot);
     /// K(h, F).
     DiscreteLagrangian = listed("discrete Lagrangian", Cold);
+    /// W(h, q, F), or W(q, ξ).
+    VerticalTerm = listed("vertical term", Cold);
     /// U₀(h, q).
     StartPotential = listed("", Cold);
     /// U₁(h, q⁺).

@@ -42,6 +42,7 @@ pub fn derivation(formulas: &MechanicsFormulas<'_>, lowered: &Lowered) -> String
         sites(formulas, lowered),
         frames(model),
         energy(formulas, lowered),
+        vertical(formulas),
         conserved::forces(formulas),
         conserved::conserved(formulas),
     ];
@@ -185,6 +186,21 @@ fn energy(formulas: &MechanicsFormulas<'_>, lowered: &Lowered) -> String {
     let to_second_order = if formulas.energy.general.is_some() { " to second order" } else { "" };
     let linear = if formulas.energy.gyroscopic.is_zero() { "" } else { ", and a part that is linear in the velocity" };
     format!("Kinetic energy in these coordinates{to_second_order}: {terms}{linear}. It is {signature}.{symmetric}\n")
+}
+
+/// The reason for a vertical term.
+fn vertical(formulas: &MechanicsFormulas<'_>) -> String {
+    let Some(vertical) = &formulas.vertical else { return String::new() };
+    let names = vertical.factors.each(|&k| formulas.model.factors[k].name.as_str()).join(", ");
+    let (depends, when, alone) = if formulas.model.kinetic.discretization().is_some() {
+        ("Lagrangian depends on the velocity through ξ_Q(q) alone", "along every motion", "Lagrangian")
+    } else {
+        ("cost depends on F through Φ_F(q) alone", "in every step", "cost")
+    };
+    format!(
+        "The {depends}: motions of {names} that leave q unchanged, ξ in 𝔤_q, have no kinetic energy. The vertical term W gives it to them. \
+         Momenta lie in 𝔤_q^⊥, so W and its derivative are 0 {when}: q moves as by the {alone} without it.\n"
+    )
 }
 
 /// Whether no sum stands outside of brackets.

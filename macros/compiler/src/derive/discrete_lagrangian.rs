@@ -123,11 +123,14 @@ impl<'g> DiscreteLagrangian<'g> {
 /// The discrete Lagrangians whose steps make one step, with the number of parts of the step. If ℓd has the required
 /// order, it is ℓd itself. Otherwise the parts are half a step of ℓd and half a step of its adjoint. ℓd itself follows
 /// them, since its Legendre transform is inverted.
+///
+/// The order is a property of the motion of q, so it is that of the declared Lagrangian, without a vertical term.
 pub(super) fn substeps<'g>(
     model: &Mechanics<'g>,
     lagrangian: &DiscreteLagrangian<'g>,
+    declared: &DiscreteLagrangian<'g>,
 ) -> Vec<(i64, DiscreteLagrangian<'g>)> {
-    if model.order == Order::First || lagrangian.is_time_symmetric(model) {
+    if model.order == Order::First || declared.is_time_symmetric(model) {
         return vec![(1, *lagrangian)];
     }
     let (half, now) = (model.step_size / 2, model.graph.integer(0));

@@ -4,7 +4,7 @@ use clebsch_symbolic::{Elements, Expr, IntoList, Shape, identity, integer};
 
 use super::symbols::{at_zero, identities};
 use super::symmetric::vanishing_for_symmetric;
-use super::{DiscreteLagrangian, Symbols, SystemFormulas, naming};
+use super::{DiscreteLagrangian, Symbols, SystemFormulas, degenerate};
 use crate::diagnostic::{Diagnostics, bail};
 use crate::model::{Factor, Kinetic, Mechanics, System};
 
@@ -19,15 +19,14 @@ pub struct Energy<'g> {
 }
 
 /// The kinetic part of the continuous Lagrangian.
-pub(super) fn kinetic<'g>(
-    model: &Mechanics<'g>,
-    system: &SystemFormulas<'g>,
-    cost: Expr<'g>,
-) -> Result<Energy<'g>, Diagnostics> {
-    if let Kinetic::Lagrangian { energy, velocities, .. } = &model.kinetic {
-        let replaced: Vec<_> = velocities.iter().copied().zip(system.symbols.algebra.iter().copied()).into_list();
-        return declared(model, system, energy.substitute(&replaced));
-    }
+pub(super) fn kinetic<'g>(model: &Mechanics<'g>, system: &SystemFormulas<'g>) -> Result<Energy<'g>, Diagnostics> {
+    let cost = match &model.kinetic {
+        Kinetic::Cost(cost) => *cost,
+        Kinetic::Lagrangian { energy, velocities, .. } => {
+            let replaced: Vec<_> = velocities.iter().copied().zip(system.symbols.algebra.iter().copied()).into_list();
+            return declared(model, system, energy.substitute(&replaced));
+        }
+    };
     let derivatives = along_exponential(system, cost);
     let second = (model.step_size * derivatives[1] / 2).expand();
     let gyroscopic = gyroscopic(model, derivatives[0])?;
@@ -38,7 +37,6 @@ pub(super) fn kinetic<'g>(
     }
     let kinetic = check_scaling(model, second)?;
     let general = if is_quadratic(model, &derivatives) { None } else { Some(general(system, cost)?) };
-    check_rank(system, kinetic)?;
     Ok(Energy { kinetic, gyroscopic, general })
 }
 
@@ -80,7 +78,6 @@ fn declared<'g>(
     if quadratic {
         check_order(model, algebra, kinetic, gyroscopic)?;
     }
-    check_rank(system, kinetic)?;
     let general = (!quadratic).then(|| lagrangian - lagrangian.substitute(&rest));
     Ok(Energy { kinetic, gyroscopic, general })
 }
@@ -219,35 +216,18 @@ fn check_order<'g>(
         note "systems of first order, as point vortices and guiding centres are, cannot be declared yet");
 }
 
-fn check_rank<'g>(system: &SystemFormulas<'g>, energy: Expr<'g>) -> Result<(), Diagnostics> {
-    let (model, inertia) = (&system.model, inertia(&system.symbols, energy));
-    if is_multiple_of_identity(inertia) {
-        return Ok(());
-    }
-    let (rank, dimension) = (identity::rank(inertia), inertia.shape().rows);
-    if rank == dimension {
-        return Ok(());
-    }
-    let (place, name, shape) = (model.spans.kinetic.place, &model.factors[0].name, Shape::vector(dimension));
-    let mass = &model.spans.mass;
-    for leaf in model.configurations.iter().filter(|leaf| rank > 0 && leaf.shape == shape) {
-        if identity::vanishes(inertia * leaf.symbol) {
-            let axis = &leaf.name;
-            bail!(place, "the cost does not fix the rotation about `{axis}`";
-                note "its Hessian at {name} = I has rank {rank} of {dimension}: the cost is unchanged by rotations about {axis}";
-                help "use the chord of the group: `{mass} * ({name} - I).norm_squared() / (4 * h)`, which has the same motion");
-        }
-    }
-    let is_lost = |j: &usize| rank > 0 && identity::vanishes(inertia.block(0, *j, shape));
-    let directions: Vec<_> = (0..dimension).filter(is_lost).map(|j| naming::basis_direction(model, j)).into_list();
-    let why = format!("has rank {rank} of {dimension}, so the momentum cannot be inverted for {name}");
-    if directions.is_empty() {
-        bail!(place, "the cost does not fix the group element";
-            note "its Hessian at the identity {why}"; help "add a term such as `({name} - I).norm_squared() / (2 * h)`");
-    }
-    bail!(place, "the cost does not depend on {}", directions.join(" and ");
-        help "add the chord of the group, as in `… + {mass} * ({name} - I).norm_squared() / (4 * h)`";
-        note "its Hessian at the identity {why}");
+/// Whether Σ is regular for general values of its symbols.
+pub(super) fn is_regular(inertia: Expr<'_>) -> bool {
+    is_multiple_of_identity(inertia) || identity::rank(inertia) == inertia.shape().rows
+}
+
+/// Σ is to be regular, so that a momentum determines a velocity.
+pub(super) fn check_rank<'g>(
+    model: &Mechanics<'g>,
+    system: &SystemFormulas<'g>,
+    inertia: Expr<'g>,
+) -> Result<(), Diagnostics> {
+    if is_regular(inertia) { Ok(()) } else { Err(degenerate::error(model, system, inertia).into()) }
 }
 
 /// Whether a matrix is written as a multiple of the identity that does not vanish.

@@ -8,7 +8,7 @@ use clebsch_symbolic::{Chart, Expr, Group, IntoList};
 use super::energy::is_multiple_of_identity;
 use super::{
     Collocation, DiscreteLagrangian, Energy, FormulaTable, InputStep, MomentumEquation, Quantity, SiteTerm, Splitting,
-    Substep, SymmetricParts, Symmetries, SystemFormulas, exact, signature,
+    Substep, SymmetricParts, Symmetries, SystemFormulas, Vertical, exact, signature,
 };
 use crate::model::{Isotropy, LeafSpace, Mechanics, Signature, Steered};
 
@@ -63,7 +63,9 @@ pub struct MechanicsFormulas<'g> {
     pub links: Vec<SiteTerm<'g>>,
     /// The conserved quantities.
     pub symmetries: Symmetries<'g>,
-    /// The declared discrete Lagrangian.
+    /// The vertical term; `None` where the declared kinetic energy is regular.
+    pub vertical: Option<Vertical<'g>>,
+    /// The discrete Lagrangian, with the vertical term.
     pub lagrangian: DiscreteLagrangian<'g>,
     /// F⁻ℓd(q, F) for each factor: T* ∂_F K − J(q, ∂_q K) − J(q, ∂U₀).
     pub legendre: Vec<Expr<'g>>,

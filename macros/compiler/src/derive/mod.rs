@@ -12,6 +12,7 @@ mod clearing;
 mod closed_form;
 mod collocation;
 mod control;
+mod degenerate;
 mod derivation;
 mod discrete_lagrangian;
 mod energy;
@@ -21,6 +22,7 @@ mod exact;
 mod force;
 mod formula;
 mod formulas;
+mod isotropy;
 mod latex;
 mod matrices;
 mod moves;
@@ -41,7 +43,7 @@ mod trivialisation;
 mod variation;
 mod velocity;
 
-use clebsch_symbolic::IntoList;
+use clebsch_symbolic::{Expr, IntoList};
 use std::rc::Rc;
 
 use crate::diagnostic::{Diagnostics, bail};
@@ -61,6 +63,7 @@ pub use force::EdgeForce;
 pub use formula::{Formula, FormulaTable};
 use formulas::is_timed;
 pub use formulas::{Formulas, MechanicsFormulas, SteeredFormulas};
+pub use isotropy::Vertical;
 pub use matrices::MatrixForm;
 pub use power::{Home, SiteTerm, Stencil, stencil};
 use rows::MOST_LISTED;
@@ -83,21 +86,21 @@ pub fn derive(model: Model<'_>) -> Result<Formulas<'_>, Diagnostics> {
     }
 }
 
-fn mechanics(model: Mechanics<'_>) -> Result<MechanicsFormulas<'_>, Diagnostics> {
+fn mechanics(mut model: Mechanics<'_>) -> Result<MechanicsFormulas<'_>, Diagnostics> {
     variation::check(&model)?;
     let mut system = system(model.system.clone(), model.kinetic.discretization());
-    let cost = discrete_lagrangian::cost(&model)?;
-    let energy = energy::kinetic(&model, &system, cost)?;
+    let KineticPart { declared, cost, energy, inertia, vertical } = kinetic_part(&mut model, &system)?;
     let lagrangian = discrete_lagrangian::separate(&model, cost);
+    // symmetries and Legendre transforms are those of the declared cost
+    let declared = if declared == cost { lagrangian } else { discrete_lagrangian::separate(&model, declared) };
     substep::check_unmoved(&model, &lagrangian)?;
-    let potential_energy = energy::potential(&model, &lagrangian)?;
-    let inertia = energy::inertia(&system.symbols, energy.kinetic);
+    let potential_energy = energy::potential(&model, &declared)?;
     let is_timed = is_timed(&model, &lagrangian);
     let quantities = if model.emit.tangent { variation::quantities(&model, is_timed) } else { Vec::new() };
     let variations = variation::Source { system: &system, quantities: &quantities };
     let sources = |divisor| Sources { model: &model, system: &system, inertia, divisor };
     let covector = force::covector(&model, &system);
-    let mut edges = discrete_lagrangian::substeps(&model, &lagrangian);
+    let mut edges = discrete_lagrangian::substeps(&model, &lagrangian, &declared);
     let stepped = if edges.len() == 1 { 1 } else { 2 };
     if let Some(control) = model.control.as_ref().filter(|_| stepped == 2) {
         let price = (Feature::Effort, Found::at(control.written.place));
@@ -115,12 +118,12 @@ fn mechanics(model: Mechanics<'_>) -> Result<MechanicsFormulas<'_>, Diagnostics>
     };
     let mut substeps: Vec<Substep<'_>> = edges.into_iter().enumerate().map(substep).into_list();
     let legendre_kick = system.impulse(lagrangian.end);
-    let (legendre, legendre_next) = substep::legendre(&model, &system, &lagrangian);
+    let (legendre, legendre_next) = substep::legendre(&model, &system, &declared);
     let is_first = model.order == Order::First;
     let stagger = if is_first { system.impulse((lagrangian.end - lagrangian.start) / 2) } else { None };
-    let is_staggered = stagger.is_some() && model.force.is_none() && lagrangian.balanced().is_time_symmetric(&model);
+    let is_staggered = stagger.is_some() && model.force.is_none() && declared.balanced().is_time_symmetric(&model);
     let links = power::links(&model);
-    let symmetries = symmetry::find(&sources(1), &lagrangian, (covector.as_deref(), &links));
+    let symmetries = symmetry::find(&sources(1), &declared, (covector.as_deref(), &links));
     check_offers(&model, &symmetries)?;
     let splitting = splitting::splitting(&sources(1), &lagrangian, &substeps);
     let is_exact = potential_energy.is_zero() && splitting::drifts_exactly(&model, &system.symbols, &substeps);
@@ -159,9 +162,43 @@ fn mechanics(model: Mechanics<'_>) -> Result<MechanicsFormulas<'_>, Diagnostics>
         collocation,
         is_exact,
         covector,
+        vertical,
     };
     summation::check(&formulas)?;
     Ok(formulas)
+}
+
+/// The kinetic part of a model.
+struct KineticPart<'g> {
+    /// The cost K as declared.
+    declared: Expr<'g>,
+    /// The cost with the vertical term.
+    cost: Expr<'g>,
+    /// The continuous Lagrangian, with the vertical term.
+    energy: Energy<'g>,
+    /// Its Σ, which is regular.
+    inertia: Expr<'g>,
+    vertical: Option<Vertical<'g>>,
+}
+
+/// The kinetic part of a model, with the vertical term where its kinetic energy vanishes on the isotropy.
+fn kinetic_part<'g>(model: &mut Mechanics<'g>, system: &SystemFormulas<'g>) -> Result<KineticPart<'g>, Diagnostics> {
+    let declared = discrete_lagrangian::cost(model);
+    let energy = energy::kinetic(model, system);
+    let Some(vertical) = energy.as_ref().ok().and_then(|energy| isotropy::vertical(model, system, energy)) else {
+        let (cost, energy) = (declared?, energy?);
+        let inertia = energy::inertia(&system.symbols, energy.kinetic);
+        energy::check_rank(model, system, inertia)?;
+        return Ok(KineticPart { declared: cost, cost, energy, inertia, vertical: None });
+    };
+    vertical.fill(model);
+    let cost = discrete_lagrangian::cost(model)?;
+    // a Lagrangian has the vertical term before it is discretised
+    let declared = if model.kinetic.discretization().is_some() { cost } else { declared? };
+    let energy = energy::kinetic(model, system)?;
+    let inertia = energy::inertia(&system.symbols, energy.kinetic);
+    energy::check_rank(model, system, inertia)?;
+    Ok(KineticPart { declared, cost, energy, inertia, vertical: Some(vertical) })
 }
 
 /// The formulas of the action and of prices alone.

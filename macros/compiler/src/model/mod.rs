@@ -131,7 +131,7 @@ pub fn model<'g>(graph: &'g Graph, declaration: &Declaration) -> Result<Model<'g
             action: closures::written(&declaration.action),
             kinetic: closures::written(declaration.kinetic.closure()),
             order: dials.order.as_ref().map(|order| order.span),
-            mass: parse::mass(&declaration.fields, None),
+            mass: parse::declared_mass(&declaration.fields, None),
         },
     };
     let kinetic = match formulas.mover {

@@ -375,8 +375,8 @@ pub struct Spans {
     pub kinetic: Written,
     /// The order's, where it is written.
     pub order: Option<Span>,
-    /// A mass, as messages show it: `self.mass`, or a field of the user's.
-    pub mass: String,
+    /// A mass among the fields, as messages show it: `self.mass`; `None` if no field is one.
+    pub mass: Option<String>,
 }
 
 /// An expression as the user wrote it.

@@ -40,6 +40,12 @@ const INERTIAS: [&str; 2] = ["inertia", "moment"];
 /// The mass that messages show: `self.name` of the first field that is called one, `self.mass` where there is none. With a size, the inertia,
 /// a square matrix of that size.
 pub(crate) fn mass(fields: &[Field], size: Option<usize>) -> String {
+    let usual = if size.is_some() { "self.inertia" } else { "self.mass" };
+    declared_mass(fields, size).unwrap_or_else(|| usual.to_string())
+}
+
+/// The same; `None` where no field is called one.
+pub(crate) fn declared_mass(fields: &[Field], size: Option<usize>) -> Option<String> {
     let fits = |ty: &Type| {
         let text = spell_type(ty);
         let name = text.rsplit("::").next().unwrap_or_default();
@@ -54,8 +60,7 @@ pub(crate) fn mass(fields: &[Field], size: Option<usize>) -> String {
         let is_mass = size.is_none() && name.contains("mass");
         fits(&field.ty) && (is_mass || INERTIAS.iter().any(|word| name.contains(word)))
     };
-    let usual = if size.is_some() { "inertia" } else { "mass" };
-    format!("self.{}", fields.iter().find(is_mass).map_or(usual.to_string(), Field::name))
+    fields.iter().find(is_mass).map(|field| format!("self.{}", field.name()))
 }
 
 /// Reads a field and its `#[clebsch(…)]`.

@@ -113,7 +113,7 @@ pub(super) const KEYS: [Key; 28] = [
     dial("code", Dial(|dials, value| value.word(&mut dials.code), |dials| text(&dials.code), meanings::<CodeForm>), "matrices", "chosen by the size", "",
         "How the code of a step is written."),
     key("isotropy", Dial(|dials, value| value.word(&mut dials.isotropy), |dials| text(&dials.isotropy), meanings::<Isotropy>), "free", "`fixed`", MECHANICS,
-        "Motions of the group that move no configuration, such as turns about a point on a sphere."),
+        "Motions of the group that move no configuration, such as turns about a point on a sphere. With `fixed` the kinetic energy may omit them, as |Φ_F(q) − q|² does: a vertical term is added, which does not change the motion of q."),
     key("signature", Dial(|dials, value| value.word(&mut dials.signature), |dials| text(&dials.signature), meanings::<Signature>), "indefinite", "`definite`", MECHANICS,
         "The signs that the kinetic energy may have. `stepper()` checks the inertia of the parameters; `state()` checks an inertia that depends on the configuration or the time."),
     key("emit", Dial(|dials, value| value.words(&mut dials.emit), |dials| dials.emit.text().map(somewhere), emitted_meanings), "[generated]", "`[]`", "",

@@ -21,7 +21,7 @@ pub use control::Choice;
 pub use declaration::{Declaration, Kinetic, Potential};
 pub use dials::*;
 pub use field::Field;
-pub(crate) use field::{mass, member_name, promises_as_markdown};
+pub(crate) use field::{declared_mass, mass, member_name, promises_as_markdown};
 pub use groups::{DeclaredGroup, Definition};
 pub use keys::Located;
 pub(crate) use keys::{dials_of_method, has_words, keys_as_markdown, keys_as_rust};

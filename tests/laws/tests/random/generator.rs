@@ -21,13 +21,17 @@ pub fn problem(seed: u64) -> Declared {
         dials: Vec::new(),
         array: false,
     };
-    Generator { made: &mut made, random }.fill();
+    // drawn apart, so that other problems stay as they are
+    let is_natural = pick(&mut Random::new(seed.wrapping_mul(0x85eb_ca6b).wrapping_add(5)), 6) == 0;
+    Generator { made: &mut made, random, is_natural }.fill();
     made
 }
 
 struct Generator<'a> {
     made: &'a mut Declared,
     random: &'a mut Random,
+    /// Whether the cost is to be one of displacements alone.
+    is_natural: bool,
 }
 
 impl Generator<'_> {
@@ -225,6 +229,10 @@ impl Generator<'_> {
     // ---- kinetic parts
 
     fn kinetic(&mut self) {
+        // the displacement of a quaternion is no quaternion of length one
+        if self.is_natural && self.made.leaves.iter().all(|leaf| leaf.kind != Kind::Quaternion) {
+            return self.natural();
+        }
         match self.pick(3) {
             0 => self.lagrangian(),
             _ => self.cost(),
@@ -306,6 +314,34 @@ impl Generator<'_> {
             Kind::Quaternion => moved.method("imag").method("norm_squared"),
             _ => moved.method("norm_squared"),
         }
+    }
+
+    /// A cost of displacements alone: a function of q and Φ_F q, which leaves open what motions that fix q do.
+    fn natural(&mut self) {
+        let displacement = |leaf: usize, leaves: &[Leaf]| leaves[leaf].image.clone() - Formula::Point(leaf);
+        let mut sum: Option<Formula> = None;
+        for k in 0..self.made.leaves.len() {
+            let moved = displacement(k, &self.made.leaves);
+            let rows = self.made.leaves[k].start.shape().0;
+            let part = match self.pick(2) {
+                0 => moved.clone().dot(self.weight(rows, false) * moved),
+                _ => self.mass() * moved.method("norm_squared"),
+            };
+            sum = Some(match sum {
+                Some(sum) => sum + part,
+                None => part,
+            });
+        }
+        let mut sum = sum.expect("a leaf");
+        if let [one, other] = &self.made.leaves[..]
+            && one.start.shape() == other.start.shape()
+            && self.pick(2) == 0
+        {
+            let moved = [0, 1].map(|k| displacement(k, &self.made.leaves));
+            let [one, other] = moved;
+            sum = sum + one.dot(other) * Formula::Number(0.5);
+        }
+        self.made.kinetic = Kinetic::Cost(sum / (Formula::Number(2.0) * Formula::Step));
     }
 
     fn lagrangian(&mut self) {
@@ -422,7 +458,7 @@ impl Generator<'_> {
     }
 
     fn dials(&mut self) {
-        if self.pick(6) == 0 {
+        if self.pick(6) == 0 && !self.is_natural {
             self.made.dials.push("isotropy = free");
         }
         // in which Cayley's velocities have poles

@@ -27,12 +27,15 @@ pub fn continuous_lagrangian<P: Problem, R: Real>(problem: &P, t: R, q: &[Matrix
     values[0]
 }
 
+/// Pivots of ∂²ℓ/∂ξ² below this multiple of the largest entry are errors of the extrapolation.
+const SINGULAR: f64 = 1e-7;
+
 /// ⟨N, ξ⟩ − ℓ(t, q, ξ) where ∂ℓ/∂ξ = N: the energy at a momentum, if Newton's method finds its velocity.
 pub fn energy<P: Problem, R: Real>(problem: &P, t: R, q: &[Matrix<R>], n: &[R]) -> Option<R> {
     let mut xi = vec![R::zero(); n.len()];
     for _ in 0..30 {
         let defect: Vec<_> = n.iter().zip(momentum(problem, t, q, &xi)).map(|(&n, m)| n - m).collect();
-        let correction = inertia(problem, t, q, &xi).lift().solve(&Matrix::vector(&defect));
+        let correction = inertia(problem, t, q, &xi).lift().solve_in_range(&Matrix::vector(&defect), SINGULAR);
         xi = xi.iter().zip(correction.entries()).map(|(&x, &d)| x + d).collect();
         if correction.size() < R::LAST_CORRECTION * Matrix::vector(&xi).size().max(1.0) {
             let pairing = Matrix::vector(n).dot(&Matrix::vector(&xi));

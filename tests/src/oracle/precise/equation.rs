@@ -5,6 +5,9 @@ use super::matrix::Matrix;
 use super::problem::{Factor, Problem, Side, elements, identity};
 use super::real::Real;
 
+/// Pivots below this multiple of the largest entry are rounding errors.
+const SINGULAR: f64 = 1e-11;
+
 /// Why there is no step: the branch of solutions that starts at F = I ends, or is lost, on the way from r(I) to N.
 #[derive(Copy, Clone, Debug, PartialEq)]
 pub struct NoSolution {
@@ -75,13 +78,15 @@ impl<P: Problem, R: Real> Equation<'_, P, R> {
 
     /// F ← F exp(x) (left) or exp(x) F (right) with Dr x = N − r(F), as long as corrections at least halve.
     ///
+    /// A cost that depends on Φ_F(q) alone leaves F open: Dr is singular, r(F) lies in its range, and any F will do.
+    ///
     /// Dr is rounded to `f64`: corrections shrink quadratically, then by fifteen digits each, to the rounding error of r.
     fn newton(&self, n: &[R], start: &[Matrix<R>]) -> Option<Vec<Matrix<R>>> {
         let mut f = start.to_vec();
         let mut previous = f64::INFINITY;
         loop {
             let defect: Vec<_> = n.iter().zip(self.residual(&f)).map(|(&n, r)| n - r).collect();
-            let x = self.jacobian(&f).lift().solve(&Matrix::vector(&defect));
+            let x = self.jacobian(&f).lift().solve_in_range(&Matrix::vector(&defect), SINGULAR);
             let size = x.size() / f.iter().map(Matrix::size).fold(1.0, f64::max);
             if size > previous / 2.0 || size.is_nan() {
                 return (previous < 1e4 * R::LAST_CORRECTION).then_some(f);

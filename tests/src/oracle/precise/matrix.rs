@@ -115,6 +115,40 @@ impl<R: Real> Matrix<R> {
         Matrix::from_fn(b.rows, b.columns, |i, j| b[(i, j)] / a[(i, i)])
     }
 
+    /// A solution of A x = b where b is in the range of A, whose rank may be less than full: unknowns whose pivots are below
+    /// `least` times the largest entry are 0.
+    pub fn solve_in_range(&self, right: &Self, least: f64) -> Self {
+        let (mut a, mut b) = (self.clone(), right.clone());
+        let mut order: Vec<usize> = (0..a.columns).collect();
+        let least = least * a.size();
+        let mut rank = 0;
+        while rank < a.rows {
+            let left = (rank..a.rows).flat_map(|i| (rank..a.columns).map(move |j| (i, j)));
+            let size = |&(i, j): &(usize, usize)| a[(i, j)].to_f64().abs();
+            let Some((i, j)) = left.max_by(|x, y| size(x).total_cmp(&size(y))) else { break };
+            // a pivot that is no number goes on
+            if a[(i, j)].to_f64().abs() <= least {
+                break;
+            }
+            a.exchange_rows(rank, i);
+            b.exchange_rows(rank, i);
+            (0..a.rows).for_each(|row| a.entries.swap(row * a.columns + rank, row * a.columns + j));
+            order.swap(rank, j);
+            let head = a[(rank, rank)];
+            for i in (0..a.rows).filter(|&i| i != rank) {
+                let factor = a[(i, rank)] / head;
+                (rank..a.columns).for_each(|j| a[(i, j)] = a[(i, j)] - factor * a[(rank, j)]);
+                (0..b.columns).for_each(|j| b[(i, j)] = b[(i, j)] - factor * b[(rank, j)]);
+            }
+            rank += 1;
+        }
+        let mut x = Matrix::from_fn(a.columns, b.columns, |_, _| R::zero());
+        for k in 0..rank {
+            (0..b.columns).for_each(|j| x[(order[k], j)] = b[(k, j)] / a[(k, k)]);
+        }
+        x
+    }
+
     fn exchange_rows(&mut self, i: usize, j: usize) {
         (0..self.columns).for_each(|column| self.entries.swap(i * self.columns + column, j * self.columns + column));
     }

@@ -6,6 +6,7 @@ use super::{Names, tuple};
 use crate::derive::formula::Wording;
 use crate::derive::symbols::moved_on;
 use crate::derive::{Formula, Id, MechanicsFormulas, exact};
+use crate::model::Kinetic;
 
 impl<'g> MechanicsFormulas<'g> {
     /// The energies, as functions of the velocity and of the momentum.
@@ -51,8 +52,19 @@ impl<'g> MechanicsFormulas<'g> {
         Formula::new(id, symbol, [kinetic + potential])
     }
 
+    /// The vertical term: a part of K, or of a declared Lagrangian.
+    fn row_of_vertical_term(&self, Names { q, f, .. }: &Names) -> Formula<'g> {
+        let term: Vec<Expr<'g>> = self.vertical.iter().map(|vertical| vertical.term).into_list();
+        let symbol = match &self.model.kinetic {
+            Kinetic::Cost(_) => format!("W(h, {q}, {f})"),
+            Kinetic::Lagrangian { name, .. } => format!("W({q}, {name})"),
+        };
+        Formula::new(Id::VerticalTerm, symbol, term)
+    }
+
     /// The discrete Lagrangian, part by part, and its Legendre transforms.
-    pub(super) fn rows_of_lagrangian(&self, Names { q, f, .. }: &Names) -> [Formula<'g>; 5] {
+    pub(super) fn rows_of_lagrangian(&self, names: &Names) -> [Formula<'g>; 6] {
+        let Names { q, f, .. } = names;
         // as a function of (t⁺, q⁺)
         let mut moved = self.images_of_leaves();
         moved.push((self.model.time, self.model.graph.symbol("t⁺", Shape::scalar(), Role::Letter, Property::General)));
@@ -86,6 +98,7 @@ impl<'g> MechanicsFormulas<'g> {
         let start = format!("U₀({}h, {q})", time(self.lagrangian.start, "t, "));
         [
             lagrangian,
+            self.row_of_vertical_term(names),
             Formula::new(Id::StartPotential, start, [self.lagrangian.start]),
             Formula::new(Id::EndPotential, format!("U₁({}h, {next})", time(self.lagrangian.end, "t⁺, ")), [end]),
             Formula { free: free.clone(), ..legendre }.computed_as(self.with_inverses(&self.legendre)),

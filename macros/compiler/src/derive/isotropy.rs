@@ -1,0 +1,338 @@
+//! The vertical term: a kinetic energy for motions that leave the configuration unchanged, where the declared one gives them none.
+//!
+//! The isotropy algebra 𝔤_q = {ξ : ξ_Q(q) = 0} holds these motions. A cost that depends on F through Φ_F(q) alone is a
+//! function of q and q⁺. Its Hessian vanishes on 𝔤_q, so its momentum equation determines q⁺ and leaves F open.
+//!
+//! The term W is quadratic in the component of the motion along 𝔤_q, its vertical part. Momenta lie in 𝔤_q^⊥, so the
+//! equation with W has a solution without vertical part. W vanishes there with its derivative. Therefore q moves as by
+//! the declared cost.
+
+use clebsch_symbolic::{Elements, Expr, Group, IntoList, Shape, identity};
+
+use super::symbols::{at_zero, identities, of_columns};
+use super::{Energy, SystemFormulas, energy, structure, trivialisation, velocity};
+use crate::model::{Discretization, Isotropy, Kinetic, Mechanics, Side};
+
+/// The vertical term, and the kinetic part with it.
+pub struct Vertical<'g> {
+    /// W(h, q, F) of a cost, W(q, ξ) of a Lagrangian.
+    pub term: Expr<'g>,
+    /// The cost, or the Lagrangian, with it.
+    pub filled: Expr<'g>,
+    /// The factors whose isotropy it serves, by index.
+    pub factors: Vec<usize>,
+}
+
+/// The vertical term. `None` where the declared kinetic energy is regular, and where it depends on motions along 𝔤_q.
+pub(super) fn vertical<'g>(
+    model: &Mechanics<'g>,
+    system: &SystemFormulas<'g>,
+    energy: &Energy<'g>,
+) -> Option<Vertical<'g>> {
+    let inertia = energy::inertia(&system.symbols, energy.kinetic);
+    if model.isotropy != Isotropy::Fixed || energy::is_regular(inertia) || system.is_free() {
+        return None;
+    }
+    let parts: Vec<Part<'_, 'g>> = parts(model, system, inertia);
+    let parts: Vec<_> = parts.into_iter().filter(|part| is_left_open_along(model, &part.factors, part.map)).into_list();
+    if parts.is_empty() {
+        return None;
+    }
+    let (declared, terms): (Expr<'g>, Vec<Term<'g>>) = match &model.kinetic {
+        Kinetic::Cost(cost) => (*cost, parts.iter().map(Part::of_cost).into_list()),
+        Kinetic::Lagrangian { energy, velocities, .. } => {
+            (*energy, parts.iter().map(|part| part.of_lagrangian(velocities)).into_list())
+        }
+    };
+    let factors = parts.iter().flat_map(|part| part.factors.iter().copied()).into_list();
+    let total = |of: fn(&Term<'g>) -> Expr<'g>| model.graph.total(Shape::scalar(), terms.iter().map(of));
+    let (motion, displacement) = (total(|term| term.motion), total(|term| term.displacement));
+    let is_quadratic = energy.general.is_none();
+    let remainder = simplified(model, system, &factors, declared - displacement, is_quadratic);
+    Some(Vertical { term: motion - displacement, filled: motion + remainder, factors })
+}
+
+impl<'g> Vertical<'g> {
+    /// Gives the model the kinetic part with W.
+    pub(super) fn fill(&self, model: &mut Mechanics<'g>) {
+        match &mut model.kinetic {
+            Kinetic::Cost(energy) | Kinetic::Lagrangian { energy, .. } => *energy = self.filled,
+        }
+    }
+}
+
+/// Whether the declared kinetic part depends on no motion along 𝔤_q.
+pub(super) fn is_left_open<'g>(model: &Mechanics<'g>, system: &SystemFormulas<'g>) -> bool {
+    let all = (0..model.factors.len()).into_list();
+    is_left_open_along(model, &all, system.matrix_of_generator())
+}
+
+/// The same for some factors, with the matrix of their ξ ↦ ξ_Q(q). Its rows span 𝔤_q^⊥, in which T* ∂_F K of a cost and
+/// ∂ℓ/∂ξ of a Lagrangian have to lie.
+fn is_left_open_along<'g>(model: &Mechanics<'g>, factors: &[usize], map: Expr<'g>) -> bool {
+    let momenta: Vec<Expr<'g>> = match &model.kinetic {
+        Kinetic::Cost(cost) => trivialisation::components(model, &trivialisation::of_all(model, *cost).0),
+        Kinetic::Lagrangian { energy, velocities, .. } => velocities.each(|xi| energy.gradient(*xi)),
+    };
+    let own: Vec<_> = factors.each(|&k| momenta[k]);
+    let both = model.graph.below(&[map, model.graph.below(&own).transpose()]);
+    identity::rank(both) == identity::rank(map)
+}
+
+/// W as a difference of two kinetic energies: of the motion of the group, and of the displacement of the configuration.
+struct Term<'g> {
+    motion: Expr<'g>,
+    displacement: Expr<'g>,
+}
+
+/// Factors that move common leaves, and the vertical form of these.
+struct Part<'a, 'g> {
+    model: &'a Mechanics<'g>,
+    system: &'a SystemFormulas<'g>,
+    factors: Vec<usize>,
+    /// The matrix of ξ ↦ ξ_Q(q).
+    map: Expr<'g>,
+    form: Form<'g>,
+    /// κ, the scale of W: a mass of the declared kinetic energy.
+    scale: Expr<'g>,
+}
+
+/// The quadratic form V of rank dim 𝔤_q that is positive on 𝔤_q, with W = ½ κ ξ·Vξ for ξ of first order.
+enum Form<'g> {
+    /// ξ ↦ cξ − J(q, ξ_Q(q)), c times the orthogonal projection to 𝔤_q. On a sphere the leaf is a vector that SO(n) turns.
+    Difference { weight: Expr<'g>, sphere: Option<usize> },
+    /// A diagonal matrix, in the components of the factors.
+    Diagonal(Expr<'g>),
+}
+
+/// The sets of factors that move common leaves, with a vertical form.
+fn parts<'a, 'g>(model: &'a Mechanics<'g>, system: &'a SystemFormulas<'g>, inertia: Expr<'g>) -> Vec<Part<'a, 'g>> {
+    let moves = |k: usize, leaf: &Expr<'g>| leaf.depends_on(system.symbols.algebra[k]);
+    let share = |i: usize, j: usize| system.generator.iter().any(|leaf| moves(i, leaf) && moves(j, leaf));
+    let columns = system.generator_columns();
+    let mut parts = Vec::new();
+    for factors in structure::connected(model.factors.len(), share) {
+        let leaves = (0..model.configurations.len())
+            .filter(|&leaf| factors.iter().any(|&k| moves(k, &system.generator[leaf])))
+            .into_list();
+        let components: Vec<usize> = factors.iter().flat_map(|&k| model.offset(k)..model.offset(k + 1)).into_list();
+        if leaves.is_empty() {
+            continue;
+        }
+        let columns: Vec<Vec<Expr<'g>>> = components.each(|&j| columns[j].clone());
+        let map = of_columns(model.graph, &columns);
+        let own =
+            Own { model, inertia, factors: &factors, leaves: &leaves, components: &components, columns: &columns, map };
+        if let Some((form, scale)) = own.form() {
+            parts.push(Part { model, system, factors, map, form, scale });
+        }
+    }
+    parts
+}
+
+/// A set of factors before its form is known.
+struct Own<'a, 'g> {
+    model: &'a Mechanics<'g>,
+    inertia: Expr<'g>,
+    factors: &'a [usize],
+    leaves: &'a [usize],
+    components: &'a [usize],
+    columns: &'a [Vec<Expr<'g>>],
+    map: Expr<'g>,
+}
+
+impl<'g> Own<'_, 'g> {
+    /// V and κ. `None` where no motion leaves the leaves unchanged, and where no short form is known.
+    fn form(&self) -> Option<(Form<'g>, Expr<'g>)> {
+        let graph = self.model.graph;
+        if let Some((leaf, weight)) = self.sphere() {
+            let rank = self.model.configurations[leaf].shape.rows as i64 - 1;
+            let scale = self.scale_of_displacement(rank * weight, graph.integer(rank * (rank + 1)));
+            return Some((Form::Difference { weight, sphere: Some(leaf) }, scale));
+        }
+        let (count, rank) = (self.columns.len(), identity::rank(self.map));
+        if rank == count {
+            return None;
+        }
+        // motions that move all configurations alike, as translations do
+        let is_constant = |j: usize| !self.columns[j].iter().any(|entry| self.model.reads_configuration(*entry));
+        let of_factor = |k: usize| {
+            let range = self.model.offset(k)..self.model.offset(k + 1);
+            self.without(|j| range.contains(&self.components[j]), rank)
+        };
+        let constant = self.without(is_constant, rank).or_else(|| self.factors.iter().find_map(|&k| of_factor(k)));
+        constant.or_else(|| self.difference(rank))
+    }
+
+    /// The form cI − A with A of ξ ↦ J(q, ξ_Q(q)), where A/c is a projection.
+    fn difference(&self, rank: usize) -> Option<(Form<'g>, Expr<'g>)> {
+        let graph = self.model.graph;
+        let square = self.map.transpose() * self.map;
+        let length = graph.total(
+            Shape::scalar(),
+            self.leaves.iter().map(|&leaf| self.model.configurations[leaf].symbol.norm_squared()),
+        );
+        let weights = [1, 2, 3, 4].map(|weight| graph.integer(weight)).into_iter().chain([length]);
+        let mut fitting = weights.filter(|weight| identity::equal(&[square * square], &[*weight * square]));
+        let weight = fitting.next()?;
+        let scale = self.scale_of_displacement(rank as i64 * weight, self.over_units(square.trace()));
+        Some((Form::Difference { weight, sphere: None }, scale))
+    }
+
+    /// The only leaf, where it is a vector of three or more components that SO(n) turns, and |q|².
+    fn sphere(&self) -> Option<(usize, Expr<'g>)> {
+        let ([k], [leaf]) = (self.factors, self.leaves) else { return None };
+        let (factor, configuration) = (&self.model.factors[*k], &self.model.configurations[*leaf]);
+        let (f, q) = (factor.symbol, configuration.symbol);
+        let Group::SpecialOrthogonal(n) = factor.group else { return None };
+        let turned = if factor.side == Side::Left { f * q } else { f.transpose() * q };
+        let is_turned =
+            n > 2 && configuration.shape == Shape::vector(n) && identity::equal(&[self.model.action[*leaf]], &[turned]);
+        is_turned.then(|| (*leaf, q.norm_squared()))
+    }
+
+    /// The form |ξ_J|² of all components but some that move the leaves in all directions by themselves.
+    fn without(&self, moving: impl Fn(usize) -> bool, rank: usize) -> Option<(Form<'g>, Expr<'g>)> {
+        let (graph, columns) = (self.model.graph, self.columns);
+        let own: Vec<_> = (0..columns.len()).filter(|j| moving(*j)).map(|j| columns[j].clone()).into_list();
+        if own.len() != rank || rank == 0 || identity::rank(of_columns(graph, &own)) != rank {
+            return None;
+        }
+        let entries = (0..columns.len()).map(|j| graph.integer(if moving(j) { 0 } else { 1 })).into_list();
+        let form = graph.stack(Shape::vector(columns.len()), entries).diagonal_matrix();
+        Some((Form::Diagonal(form), self.inertia_along(moving) / rank as i64))
+    }
+
+    /// The trace of Σ over some of the components.
+    fn inertia_along(&self, takes: impl Fn(usize) -> bool) -> Expr<'g> {
+        let entries = self.components.iter().enumerate().filter(|(j, _)| takes(*j));
+        let trace = self.model.graph.total(Shape::scalar(), entries.map(|(_, &j)| self.inertia.entry(j, j)));
+        trace.expand()
+    }
+
+    /// The mass κ of a kinetic energy like ½ κ |ξ_Q(q)|²: the mean of tr Σ over the unit vectors q, a constant. Where Σ
+    /// is not defined there, it is tr Σ at q itself.
+    fn scale_of_displacement(&self, trace: Expr<'g>, sum_over_units: Expr<'g>) -> Expr<'g> {
+        let inertia = self.inertia_along(|_| true);
+        let mean = self.over_units(inertia) / sum_over_units;
+        if mean.is_defined() && !identity::vanishes(mean) { mean } else { inertia / trace }
+    }
+
+    /// The sum of the values of a function of the leaves at their unit vectors.
+    fn over_units(&self, function: Expr<'g>) -> Expr<'g> {
+        let graph = self.model.graph;
+        let leaves = || self.leaves.iter().map(|&leaf| &self.model.configurations[leaf]);
+        let mut values = Vec::new();
+        for (number, leaf) in leaves().enumerate() {
+            for (i, j) in leaf.shape.positions() {
+                let mut point = at_zero(leaves().map(|leaf| leaf.symbol));
+                point[number].1 = graph.unit(leaf.shape, i, j);
+                values.push(function.substitute(&point));
+            }
+        }
+        graph.total(Shape::scalar(), values).expand()
+    }
+}
+
+impl<'g> Part<'_, 'g> {
+    /// Vξ for each factor.
+    fn form(&self, xi: &[Expr<'g>]) -> Vec<Expr<'g>> {
+        match self.form {
+            Form::Difference { weight, .. } => {
+                let images = self.system.momenta_of(self.system.motion_by(xi));
+                xi.iter().zip(images).map(|(xi, image)| weight * *xi - image).into_list()
+            }
+            Form::Diagonal(matrix) => {
+                let own: Vec<_> = self.factors.each(|&k| xi[k]);
+                let image = matrix * matrix.graph().below(&own);
+                let mut offset = 0;
+                let mut images = xi.each(|xi| xi.graph().zero(xi.shape()));
+                for &k in &self.factors {
+                    images[k] = image.block(offset, 0, xi[k].shape());
+                    offset += xi[k].shape().rows;
+                }
+                images
+            }
+        }
+    }
+
+    /// W(q, ξ) = ½ κ ξ·Vξ.
+    fn of_lagrangian(&self, velocities: &[Expr<'g>]) -> Term<'g> {
+        self.of_motion(velocities, self.scale / 2)
+    }
+
+    /// W(h, q, F) = κ/(2h) w·V(q)w of w = P(F − I). For points on spheres it is κ/(4h) (|F − I|² − 2|Φ_F(q) − q|²). The
+    /// chord of the point adds up with that to the chord of the rotation.
+    fn of_cost(&self) -> Term<'g> {
+        let (model, graph) = (self.model, self.model.graph);
+        let scale = self.scale / (2 * model.step_size);
+        if let Form::Difference { weight, sphere: Some(leaf) } = self.form {
+            let (f, n) = (model.factors[self.factors[0]].symbol, model.configurations[leaf].shape.rows);
+            let moved = model.action[leaf] - model.configurations[leaf].symbol;
+            return Term {
+                motion: scale * weight * (f - graph.identity(n)).norm_squared() / 2,
+                displacement: scale * moved.norm_squared(),
+            };
+        }
+        let of_factor = |k: usize| velocity::of_element(model, k, graph.integer(1), Discretization::Projection);
+        let motions = (0..model.factors.len()).map(of_factor).into_list();
+        self.of_motion(&motions, scale)
+    }
+
+    fn of_motion(&self, motions: &[Expr<'g>], scale: Expr<'g>) -> Term<'g> {
+        let graph = self.model.graph;
+        let own = |k: usize, motion: &Expr<'g>| {
+            if self.factors.contains(&k) { *motion } else { graph.zero(motion.shape()) }
+        };
+        let motions: Vec<_> = motions.iter().enumerate().map(|(k, motion)| own(k, motion)).into_list();
+        let sum = |terms: &[Expr<'g>]| graph.total(Shape::scalar(), terms.iter().copied());
+        match self.form {
+            Form::Difference { weight, .. } => Term {
+                motion: scale * weight * sum(&motions.each(|motion| motion.norm_squared())),
+                displacement: scale * sum(&self.system.motion_by(&motions).each(|motion| motion.norm_squared())),
+            },
+            Form::Diagonal(_) => {
+                let images = self.form(&motions);
+                let products: Vec<_> = motions.iter().zip(images).map(|(motion, image)| motion.dot(image)).into_list();
+                Term { motion: scale * sum(&products), displacement: graph.integer(0) }
+            }
+        }
+    }
+}
+
+/// A kinetic part without the displacements of some factors. It is free of factors that it does not depend on, and in
+/// products of displacements where it couples them.
+fn simplified<'g>(
+    model: &Mechanics<'g>,
+    system: &SystemFormulas<'g>,
+    factors: &[usize],
+    remainder: Expr<'g>,
+    is_quadratic: bool,
+) -> Expr<'g> {
+    let rest: Vec<(Expr<'g>, Expr<'g>)> = match &model.kinetic {
+        Kinetic::Cost(_) => identities(model),
+        Kinetic::Lagrangian { velocities, .. } => at_zero(velocities.iter().copied()),
+    };
+    let mut remainder = remainder;
+    for &k in factors {
+        let still = remainder.substitute(&[rest[k]]);
+        if identity::equal(&[still], &[remainder]) {
+            remainder = still;
+        }
+    }
+    if identity::vanishes(remainder) {
+        return model.graph.integer(0);
+    }
+    let couples = factors.iter().any(|&k| remainder.depends_on(rest[k].0));
+    if !couples || !is_quadratic {
+        return remainder;
+    }
+    if !matches!(model.kinetic, Kinetic::Cost(_)) {
+        return remainder.expand();
+    }
+    let elements = |k: usize| (model.factors[k].symbol, model.factors[k].group.identity(model.graph));
+    let increments = &system.symbols.increments;
+    let later: Vec<_> = factors.each(|&k| (elements(k).0, elements(k).1 + increments[k]));
+    let back: Vec<_> = factors.each(|&k| (increments[k], elements(k).0 - elements(k).1));
+    remainder.substitute(&later).expand().substitute(&back)
+}
