@@ -1,6 +1,6 @@
-//! Times the expansion of every accepted fixture with the compiler built as this program is:
-//! `cargo run -p clebsch-tests --example expansion [-- --json]`, as cargo builds macros by default without optimisation,
-//! or with `--release`.
+//! Times the expansion of every accepted fixture with the compiler built as this program is, by
+//! `cargo run -p clebsch-tests --example expansion [-- --json]`. This is without optimisation, as cargo builds macros
+//! by default, or with `--release`.
 
 #[path = "../benches/steps/expansion.rs"]
 mod expansion;

@@ -1,8 +1,10 @@
-//! What a declaration costs against its size, in both forms of code: time of the expansion, lines of the output, and time of `cargo build`.
+//! The cost of a declaration against its size, in both forms of code: time of the expansion, lines of the output, and
+//! time of `cargo build`.
 //!
-//! `cargo run -p clebsch-tests --example growth`, with the compiler as cargo builds macros by default, without optimisation. With
-//! `-- --compile` a crate of each declaration is built too, by default settings, after its dependencies: what is timed is expansion
-//! and compilation of the struct with a function that makes a step, in the profile `release`.
+//! `cargo run -p clebsch-tests --example growth`, with the compiler as cargo builds macros by default, without
+//! optimisation. With `-- --compile` a crate of each declaration is built too, by default settings, after its
+//! dependencies. The time is that of expansion and compilation of the struct with a function that makes a step, in the
+//! profile `release`.
 
 use clebsch_compiler::{Graph, compile, emit, expand};
 use proc_macro2::TokenStream;
@@ -20,7 +22,7 @@ struct Family {
     /// `N` stands for the size, `FORM` for the form of code.
     declaration: &'static str,
     sizes: &'static [usize],
-    /// The largest size that is written out here: the next ones take minutes, or are refused.
+    /// The largest size that is unrolled here: the next ones take minutes, or are refused.
     written_out: usize,
 }
 
@@ -127,7 +129,7 @@ struct Builds {
 }
 
 impl Builds {
-    /// Beside the other files that are built, with the dependencies as the workspace has them.
+    /// Next to the other files that are built, with the dependencies as the workspace has them.
     fn new(tests: &Path) -> Builds {
         let workspace = tests.parent().expect("the workspace");
         let target = env::var_os("CARGO_TARGET_DIR").map_or_else(|| workspace.join("target"), PathBuf::from);

@@ -1,13 +1,14 @@
 //! Writes every system that is linked, in both scalar types: the accepted fixtures as they stand, and of the scenes their declarations.
 //!
-//! A file that is declared in `f64` is copied with `f32` in its place, and the other way round, so that both are there whatever was written.
+//! A file that is declared in `f64` is copied with `f32` in its place, and the other way round. So both are there
+//! whatever was written.
 
 use proc_macro2::{Delimiter, Group, TokenStream, TokenTree};
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 use std::{env, fs};
 
-/// Parameters of the structs that have some, and what is added to their names.
+/// Parameters of the structs that have some, and the suffixes of their names.
 const INSTANCES: [(&str, &[(&str, &str)]); 7] = [
     ("AnnotatedBody", &[("", "<'static, (), 4>")]),
     ("GenericBody", &[("", "<f64>"), (".lanes", "<clebsch::F64x4>")]),
@@ -18,7 +19,7 @@ const INSTANCES: [(&str, &[(&str, &str)]); 7] = [
     ("FirstOrderMolecules", &[("", "<8>")]),
 ];
 
-/// What the lanes of `f64` are called in `f32`.
+/// The names in `f32` of the lanes of `f64`.
 const LANES: [&str; 2] = ["F64x4", "F64x8"];
 
 /// Dimensions of problems of optimal control: of places, of inputs, and the number of bounds.
@@ -77,7 +78,7 @@ fn in_scalar(text: &str, scalar: &str) -> String {
     }
 }
 
-/// The whole file, as it may have methods that the declaration names.
+/// All of the file, as it may have methods that the declaration names.
 fn fixture(path: &Path) -> String {
     let (text, tokens) = read(path);
     let module = path.file_stem().and_then(|stem| stem.to_str()).expect("names are plain");
@@ -87,7 +88,7 @@ fn fixture(path: &Path) -> String {
     format!("mod {module} {{\n{}\n{roots}}}\n", text.replace("f32", "f64"))
 }
 
-/// The declarations alone, without the rest of the scene.
+/// The declarations alone, without the other code of the scene.
 fn scene(root: &Path, path: &Path) -> String {
     let inside = path.strip_prefix(root.join("examples")).expect("it is there");
     if STUDIES.iter().any(|study| inside.starts_with(study)) {
@@ -137,10 +138,10 @@ fn roots<'a>(name: &str, systems: impl IntoIterator<Item = &'a System>) -> Strin
     text
 }
 
-/// A struct that derives the trait, and what its declaration asks for.
+/// A struct that derives the trait, and the words that its declaration asks for.
 struct System {
     name: String,
-    /// Those beside the declared dials.
+    /// Methods other than the declared dials.
     methods: Vec<String>,
     is_control_alone: bool,
     is_controlled: bool,
@@ -148,7 +149,7 @@ struct System {
     has_boundary: bool,
 }
 
-/// What a file declares, and the text of it alone.
+/// The declarations of a file, and their text alone.
 #[derive(Default)]
 struct Declared {
     systems: Vec<System>,
@@ -199,7 +200,7 @@ fn system<'a>(name: String, tokens: impl IntoIterator<Item = &'a Vec<TokenTree>>
     }
 }
 
-/// Items end at a semicolon or after braces. What else ends there is no struct, and left out.
+/// Items end at a semicolon or after braces. Other items that end there are no structs, and are left out.
 fn items(tokens: TokenStream) -> Vec<Vec<TokenTree>> {
     let mut items = vec![Vec::new()];
     for token in tokens {
@@ -221,7 +222,7 @@ fn text(item: &[TokenTree]) -> String {
     format!("{tokens}\n")
 }
 
-/// A macro of which nothing but the structs is left.
+/// A macro with nothing but its structs.
 fn without_implementations(item: Vec<TokenTree>) -> Vec<TokenTree> {
     let structs = |body: TokenStream| {
         items(body).into_iter().filter(|item| name_after(item, "struct").is_some()).flatten().collect()

@@ -181,7 +181,7 @@ fn neumann_stays_on_its_orbit() {
 fn two_bodies_keep_linear_and_angular_momentum() {
     let stepper = TwoBodies { mass: [3.0, 0.5], gravitation: 1.1 }.stepper(0.01).expect("bodies");
     let x = [Vector3::zeros(), Vector3::new(1.5, 0.0, 0.3)];
-    // at rest as a whole, so that positions stay small
+    // at rest in total, so that positions stay small
     let mu = Vector6::new(0.0, -0.6, 0.1, 0.0, 0.6, -0.1);
     let parts = |mu: &Vector6<f64>| (Vector3::new(mu[0], mu[1], mu[2]), Vector3::new(mu[3], mu[4], mu[5]));
     let angular = |x: &[Vector3<f64>; 2], mu: &Vector6<f64>| x[0].cross(&parts(mu).0) + x[1].cross(&parts(mu).1);

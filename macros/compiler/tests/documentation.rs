@@ -139,7 +139,7 @@ fn documented(program: Option<&MechanicsProgram<'_>>, items: Vec<Item>) -> Vec<D
                         name = "velocity".to_string();
                     }
                     let shown = Documented { name, place, lines: documentation(&method.attrs) };
-                    // a power hands what it is asked to its sites
+                    // a power passes questions on to its sites
                     if !is_power(&owner) || !shown.equations().is_empty() {
                         all.push(shown);
                     }

@@ -103,7 +103,7 @@ fn double_signs(tokens: TokenStream) -> usize {
     for (position, tree) in trees.iter().enumerate() {
         let before = position.checked_sub(1).and_then(|before| trees.get(before));
         let is_factor = matches!(tree, TokenTree::Group(_)) && is_operator(trees.get(position + 1));
-        // a group behind a name is what a function is called with
+        // a group behind a name has the arguments of a function
         let is_called = matches!(before, Some(TokenTree::Ident(_)));
         count += usize::from(is_negative(tree) && !is_called && (is_operator(before) || is_factor));
         if let TokenTree::Group(group) = tree {

@@ -90,7 +90,7 @@ fn the_limit_is_full_thrust_there_and_back() -> Result<(), Error> {
         let expected = h * (steps as f64 / 2.0 - 1.0 + between * between);
         assert!((found.price() - expected).abs() < 1e-10, "{found:?} after {expected}");
     })?;
-    // what is beyond is searched for in six ways, each of hundreds of sweeps: in two steps, too, that takes Miri too long
+    // the search beyond takes six ways, each of hundreds of sweeps: even in two steps, that takes Miri too long
     if cfg!(miri) {
         return Ok(());
     }
@@ -189,7 +189,7 @@ fn bounds_that_are_reached_need_not_push() -> Result<(), Error> {
 
 /// The price of going from (0, 1) to (l, 0) in `steps` steps of x⁺ = x + hv, v⁺ = v + hu, and the furthest place between.
 fn braked(h: f64, steps: usize, wall: f64) -> (f64, f64) {
-    // columns of what inputs add to the end, and the least inputs that add what lacks
+    // columns of the shares of inputs in the end, and the least inputs that close the gap
     let columns: Vec<Vector2<f64>> = (0..steps).map(|k| Vector2::new(h * h * (steps - 1 - k) as f64, h)).collect();
     let gramian: Matrix2<f64> = columns.iter().map(|b| b * b.transpose()).sum();
     let lack = Vector2::new(wall - h * steps as f64, -1.0);

@@ -79,7 +79,7 @@ fn a_reference_in_many_digits() -> Result<(), Error> {
     let boundary = stepper.boundary();
     let mut path = [boundary.rest(&start); 20];
     let extremal = boundary.solve(&start, &target, Guess::Geodesic, &mut path)?;
-    // The reference kicks with the whole potential before each step: its momentum is after that kick.
+    // The reference kicks with all of the potential before each step: its momentum is after that kick.
     let half_kick =
         |r: &Matrix3<f64>| r.row(2).transpose().cross(&stepper.system().center) * (stepper.system().weight * h / 2.0);
     let kicked = extremal.momentum() + half_kick(&start);

@@ -71,7 +71,7 @@ fn long_arcs_need_a_guess() -> Result<(), Error> {
             let momentum = axis().scale(0.5 * (angle / 20.0).sin() / stepper.step_size());
             assert!(extremal.gap() < 1e-13 && extremal.residual() < 1e-11, "{extremal:?}");
             assert_near!(extremal.momentum(), momentum, 1e-5);
-            // the momentum in space changes by what round-off has left at each of 19 vertices
+            // the momentum in space changes by the round-off at each of 19 vertices
             assert_near!(extremal.momentum(), extremal.final_momentum(), 20.0 * extremal.residual() + 1e-13);
         }
     }

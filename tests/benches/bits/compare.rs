@@ -23,7 +23,7 @@ fn lines<'a>(text: impl Iterator<Item = &'a str>) -> BTreeMap<[&'a str; 2], Line
         let numbers = [numbers(word()), numbers(word())];
         (key, Line { hashes, numbers, notes: word() })
     };
-    // what cargo and other programs print beside
+    // lines that cargo and other programs print
     text.filter(|line| line.contains(" [")).map(line).collect()
 }
 
@@ -34,7 +34,7 @@ fn apart(before: &[f64], after: &[f64]) -> f64 {
     apart / size
 }
 
-/// Prints what differs; whether nothing does.
+/// Prints the differences; whether there are none.
 pub fn print(before: &str, after: &[String]) -> bool {
     let before = lines(before.lines());
     let after = lines(after.iter().map(String::as_str));

@@ -27,7 +27,7 @@ macro_rules! scenes {
 }
 clebsch_tests::every_scene!(scenes);
 
-/// What the scenes have no place for.
+/// Systems that have no place among the scenes.
 fn lanes(task: &impl Task) {
     let number = |x: f64| F64x4::from([x, 0.9 * x, 1.1 * x, x]);
     let body = generic_body::GenericBody {

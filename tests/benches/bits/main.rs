@@ -1,8 +1,9 @@
 //! The bits of trajectories, to see that a redesign changes none: `cargo bench -p clebsch-tests --features heavy --bench bits > before.txt` before it, and after it
 //! `cargo bench -p clebsch-tests --features heavy --bench bits -- compare before.txt`.
 //!
-//! One line for each system and each quantity: a hash over all numbers, a hash in which −0 is 0, and the first and the last numbers with all their
-//! digits, so that the size of a change can be told. The systems are the accepted fixtures, and small ones for the combinations of dials that no fixture has.
+//! One line for each system and each quantity. It has a hash over all numbers, and a hash in which −0 is 0. The first
+//! and the last numbers with all their digits tell the size of a change. The systems are the accepted fixtures, and
+//! small ones for the combinations of dials that no fixture has.
 //!
 //! Bits do not depend on optimisation: `--profile dev` builds sooner.
 

@@ -7,7 +7,7 @@ use std::cell::{Cell, RefCell};
 /// How many numbers are printed of the first and of the last record.
 const SHOWN: usize = 6;
 
-/// What has been computed of one quantity.
+/// The computed values of one quantity.
 pub struct Record {
     /// Of all bits, and of those with 0 for −0.
     hashes: [Cell<u64>; 2],

@@ -1,10 +1,10 @@
-//! The tasks of this benchmark and of that of `counts`: what is done with each system.
+//! The tasks of this benchmark and of that of `counts`: the work with each system.
 
 use clebsch::{Clebsch, Conserves, Declared, Error, Method, Scalar, Space, State, Stepper};
 use clebsch_tests::oracle::bits::Bits;
 use std::cell::Cell;
 
-/// What is done with each system.
+/// The work with each system.
 pub trait Task {
     /// Everything about a fixture; `conserved` prints its conserved momenta.
     fn fixture<S>(

@@ -1,4 +1,4 @@
-//! What is recorded of each system.
+//! The records of each system.
 
 use crate::record::Record;
 use crate::run::{Start, Task, stepped, uneven};

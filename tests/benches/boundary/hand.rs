@@ -1,9 +1,9 @@
-//! The same extremals by hand: Newton's method on unit quaternions, for one body only, as someone would write it who knows the
-//! formulas and needs neither a damped search nor an index.
+//! The same extremals by hand: Newton's method on unit quaternions, for one body only. Someone would write it who knows
+//! the formulas and needs neither a damped search nor an index.
 //!
-//! With F = (w, v) the cost is 2vᵀJv/h, and with Z = tr(FM) I − FM its second derivatives along both ends are the symmetric parts of Z
-//! and of FᵀZF, and −ZF between them, all over h. As F is its own matrix of cofactors, ZF is linear in F. Everything below is
-//! multiplied by h.
+//! With F = (w, v) the cost is 2vᵀJv/h. With Z = tr(FM) I − FM its second derivatives along both ends are the symmetric
+//! parts of Z and of FᵀZF. Between the ends it is −ZF. All are over h. As F is its own matrix of cofactors, ZF is
+//! linear in F. Everything below is multiplied by h.
 
 /// A rigid body with the mass matrix diag(mass) in the potential weight·e₃·Re₃.
 #[derive(Clone, Copy)]
@@ -16,7 +16,7 @@ pub struct Body {
     pub weight: f64,
 }
 
-/// A vertex, with what the backward sweep leaves for the forward one.
+/// A vertex, with the data that the backward sweep stores for the forward one.
 #[derive(Clone, Copy)]
 pub struct Vertex {
     attitude: [f64; 4],
@@ -24,7 +24,7 @@ pub struct Vertex {
     shift: [f64; 3],
 }
 
-/// What was found.
+/// The result.
 #[derive(Clone, Copy, Debug)]
 pub struct Solution {
     /// Σ ℓd
@@ -38,7 +38,7 @@ pub struct Solution {
 /// The symmetric matrix [[a, ., .], [d, b, .], [e, f, c]].
 type Symmetric = [f64; 6];
 
-/// What an edge adds to the equations of the vertices at its ends.
+/// The share of an edge in the equations of the vertices at its ends.
 struct Edge {
     kinetic: f64,
     before: [f64; 3],
@@ -83,7 +83,7 @@ impl Body {
         let (mut kinetic, mut residual) = (later.kinetic, 0.0_f64);
         let ends = zenith(&path[last].attitude)[2] + zenith(&path[0].attitude)[2];
         let mut potential = ends / 2.0;
-        // what elimination of later vertices has put into the pivot and the gradient
+        // the shares of later vertices, by elimination, in the pivot and the gradient
         let (mut pivot, mut gradient) = (later.start, later.before.map(|x| -x));
         for k in (1..last).rev() {
             let [x, y, z] = zenith(&path[k].attitude);

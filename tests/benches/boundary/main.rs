@@ -1,8 +1,8 @@
 //! Fixed endpoints and derivatives of steps: `cargo bench -p clebsch-tests --bench boundary`.
 //!
-//! Solutions of P5 and P5v, cold and warm, beside Newton's method by hand, timed in turn in the same run, with time and bytes of each
-//! edge of paths of any length; the share of random endpoints that is solved; plans of least price within bounds, and the share of random goals that is reached; then derivatives of steps
-//! as multiples of the step.
+//! Solutions of P5 and P5v, cold and warm, next to Newton's method by hand, timed in turn in the same run. Time and
+//! bytes of each edge of paths of any length, and the share of random endpoints that is solved. Plans of least price
+//! within bounds, and the share of random goals that is reached. Then derivatives of steps as multiples of the step.
 
 mod goals;
 mod hand;

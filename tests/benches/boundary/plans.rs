@@ -1,4 +1,4 @@
-//! Plans: what choosing the inputs takes, cold and from a solution, for any number of steps.
+//! Plans: the time of choosing the inputs, cold and from a solution, for any number of steps.
 
 use crate::timing::{Run, Time, interleaved};
 use clebsch::{Control, Controlled, Stage, Target};

@@ -29,7 +29,7 @@ pub struct Line {
     pub bytes: usize,
 }
 
-/// What a solve tells.
+/// The answer of a solve.
 struct Answer {
     iterations: u32,
     action: f64,

@@ -1,4 +1,4 @@
-//! What is solved and stepped.
+//! The systems that are solved and stepped.
 
 #![allow(missing_docs)]
 

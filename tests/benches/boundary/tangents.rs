@@ -1,4 +1,4 @@
-//! What derivatives of a step cost beside the step.
+//! The time of derivatives of a step relative to the step.
 
 use crate::systems::{HeavyTop, Pendulum, Vehicle};
 use crate::timing::{Run, Time, interleaved};

@@ -1,7 +1,7 @@
 //! The benchmark of large systems: `cargo bench -p clebsch-tests --bench large`.
 //!
-//! Nanoseconds of a step of rigid bodies in n dimensions and of points on spheres, in code that is written out and in code that keeps
-//! matrices, beside the same by hand in nalgebra, in turn in the same run; all are seen to make the same motion first.
+//! Nanoseconds of a step of rigid bodies in n dimensions and of points on spheres, in unrolled code and in matrix code.
+//! The same by hand in nalgebra is timed in turn in the same run. All are seen to make the same motion first.
 
 #[path = "../steps/timing.rs"]
 mod timing;
@@ -15,7 +15,7 @@ use timing::{Run, interleaved};
 /// The step size: h|ω| is about 0.1.
 const H: f64 = 0.02;
 
-/// Code that is written out, beside that of the declarations, which keeps matrices.
+/// Unrolled code, next to that of the declarations, which is matrix code.
 struct Unrolled;
 
 /// A rigid body in n dimensions.
@@ -68,8 +68,8 @@ fn principal<const N: usize>() -> SVector<f64, N> {
     SVector::from_fn(|i, _| 0.5 + (i as f64 + 0.3) / N as f64)
 }
 
-/// The body by hand, in its principal axes: hM = FJ − JFᵀ with F = (I − Z)⁻¹(I + Z) is 2(JZ + ZJ) = h(I − Z)M(I + Z), solved by the fixed
-/// point Z ← L⁻¹(h/2(M + MZ − ZM − ZMZ)), whose L is made once, entry by entry.
+/// The body by hand, in its principal axes: hM = FJ − JFᵀ with F = (I − Z)⁻¹(I + Z) is 2(JZ + ZJ) = h(I − Z)M(I + Z).
+/// It is solved by the fixed point Z ← L⁻¹(h/2(M + MZ − ZM − ZMZ)), whose L is made once, entry by entry.
 struct ByHand<const N: usize> {
     /// h/2 over the sums of two principal values.
     factor: SMatrix<f64, N, N>,
@@ -260,7 +260,8 @@ fn main() {
     memory();
 }
 
-/// Bytes that a state and a stepper take, all that a step reads and writes; `tests/no_std/check` has what it takes of the stack meanwhile.
+/// Bytes of a state and of a stepper, all that a step reads and writes; `tests/no_std/check` has the stack that a step
+/// takes meanwhile.
 fn memory() {
     println!("\nBytes of a state and of a stepper, whole matrices\n");
     println!("{:>5} {:24} {:>10} {:>10}", "n", "", "state", "stepper");

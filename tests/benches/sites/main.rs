@@ -1,7 +1,8 @@
 //! The benchmark of powers: `cargo bench -p clebsch-tests --bench sites`.
 //!
-//! Nanoseconds of a step for each site of a ring of spins, and for each pair of bodies that attract each other, for N from 4 to 100 000: stepped by
-//! `Sites`, in an array where a stack holds it, written out with a number in place of N, and by hand in nalgebra, in turn in the same run.
+//! Nanoseconds of a step for each site of a ring of spins, and for each pair of bodies that attract each other. N goes
+//! from 4 to 100 000. The ways are `Sites`, an array where a stack has room for it, unrolled code with a number for N,
+//! and nalgebra by hand. They are timed in turn in the same run.
 
 #[path = "../steps/timing.rs"]
 mod timing;
@@ -266,7 +267,7 @@ fn pairs<const N: usize>() -> f64 {
     report(N, &["by hand", "Sites"], &interleaved(&contestants), steps as f64 * count as f64) * count as f64
 }
 
-/// Prints what each way takes for one of so many things; gives the least of the second.
+/// Prints the time of each way for one of so many things; gives the least of the second.
 fn report(n: usize, names: &[&str], times: &[Time], things: f64) -> f64 {
     for (name, time) in names.iter().zip(times) {
         let ratio = time.least / times[0].least;

@@ -81,7 +81,7 @@ thread_local! {
     static ITERATIONS: Cell<u64> = const { Cell::new(0) };
 }
 
-/// An `f64` that counts what is done with it.
+/// An `f64` that counts its operations.
 #[derive(Copy, Clone, Debug, PartialEq, PartialOrd)]
 pub struct Counted(pub f64);
 

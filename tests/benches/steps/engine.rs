@@ -7,8 +7,9 @@ use clebsch_tests::fixtures::principal_body::PrincipalBody;
 use nalgebra::{Matrix3, Vector3};
 use std::hint::black_box;
 
-/// World angular velocity ω and a unit quaternion, inertia diagonal in the body, as engines such as rapier and avian keep them: one explicit step of
-/// L̇ = −ω × L in the body's frame, |L| restored by a factor, then q⁺ = exp(hω) q, normalised.
+/// World angular velocity ω and a unit quaternion, inertia diagonal in the body, as engines such as rapier and avian
+/// store them. A step is one explicit step of L̇ = −ω × L in the body's frame, |L| restored by a factor, then q⁺ =
+/// exp(hω) q, normalised.
 #[derive(Copy, Clone)]
 pub struct Gyroscopic {
     attitude: [f64; 4],

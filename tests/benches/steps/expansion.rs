@@ -1,4 +1,4 @@
-//! What the expansion of each fixture costs: time of the compiler, size of its output, operations of a step.
+//! The cost of the expansion of each fixture: time of the compiler, size of its output, operations of a step.
 
 use clebsch_compiler::lower::Cost;
 use clebsch_compiler::{Graph, compile, emit, expand};
@@ -22,7 +22,7 @@ pub struct Expansion {
     pub lines: usize,
     /// Operations of one residual with its Jacobian, all equations.
     pub linearization: Cost,
-    /// Operations of the rest of a step.
+    /// Operations of a step outside of linearisations.
     pub rest: Cost,
 }
 
@@ -64,7 +64,7 @@ fn expansion(item: syn::ItemStruct) -> Expansion {
         program.mechanics().is_none_or(|program| (0..program.steps.len()).all(|index| program.makes_increments(index)));
     for (kernel, cost) in program.kernels().into_iter().map(|(name, kernel)| (name, kernel.cost())) {
         let stem = kernel.trim_end_matches(|c: char| c.is_ascii_digit() || c == '_');
-        // what ends in `_whole` serves the inverse Legendre transform of a composed step alone
+        // names that end in `_whole` serve the inverse Legendre transform of a composed step alone
         let stem = stem.trim_end_matches("_first").trim_end_matches("_adjoint");
         let stem = stem.trim_end_matches("_first").trim_end_matches("_adjoint");
         match stem {

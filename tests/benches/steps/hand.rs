@@ -1,4 +1,4 @@
-//! The same schemes by hand, in plain Rust: what someone who knows the formulas would write for one system.
+//! The same schemes by hand, in plain Rust, as someone who knows the formulas would write them for one system.
 
 use std::hint::black_box;
 
@@ -14,8 +14,8 @@ pub trait Kernel: Copy {
     fn defect(&self) -> f64;
 }
 
-/// Rigid body with diagonal inertia in linear potential: unit quaternion, Newton's method for the Gibbs vector c of F,
-/// a(1 + |c|²) = Jc + c × Jc with a = hπ/2.
+/// Rigid body with diagonal inertia in linear potential, as a unit quaternion. Newton's method finds the Gibbs vector c
+/// of F: a(1 + |c|²) = Jc + c × Jc with a = hπ/2.
 #[derive(Copy, Clone)]
 pub struct Body {
     attitude: [f64; 4],

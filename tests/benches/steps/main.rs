@@ -1,8 +1,8 @@
 //! The first benchmark: `cargo bench -p clebsch-tests --bench steps [-- --json]`.
 //!
-//! For each scene the time of a step, beside the same scheme written by hand and the classical Runge–Kutta method, all timed in
-//! turn in the same run; what drifts; the work of a step; then the cost of each fixture's expansion. With `--json` one line for
-//! each of these. The expansion without optimisation, as macros are built by default:
+//! For each scene the time of a step, next to the same scheme written by hand and the classical Runge–Kutta method. All
+//! are timed in turn in the same run. Then drifts, the work of a step, and the cost of each fixture's expansion. With
+//! `--json` one line for each of these. The expansion without optimisation, as macros are built by default:
 //! `cargo run -p clebsch-tests --example expansion`.
 
 mod counted;
@@ -54,7 +54,7 @@ fn print(results: &[Result]) {
     }
 }
 
-/// Where the free body is after a million steps, beside the gyroscopic step of game engines.
+/// The end of the free body after a million steps, next to that of the gyroscopic step of game engines.
 fn print_ends() {
     println!(
         "\nThe free body after a million steps of 0.01: relative errors of energy and spatial momentum; the nearest axis of"

@@ -15,7 +15,7 @@ use clebsch_tests::fixtures::rigid_body4::RigidBody4;
 use clebsch_tests::fixtures::spherical_pendulum::SphericalPendulum;
 use nalgebra::{Matrix3, Matrix4, Rotation3, SVector, Vector3, Vector4};
 
-/// What is said of one contestant at one problem.
+/// The results of one contestant at one problem.
 pub struct Result {
     /// The name of the problem.
     pub problem: &'static str,

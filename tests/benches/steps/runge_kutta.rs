@@ -1,9 +1,9 @@
-//! The classical Runge–Kutta method on the same equations of motion: what is used where nothing better is at hand.
+//! The classical Runge–Kutta method on the same equations of motion: the usual choice where nothing better is at hand.
 
 use crate::hand::{Kernel, rotation};
 use std::hint::black_box;
 
-/// An ordinary differential equation with what is checked along its solution.
+/// An ordinary differential equation with the quantities that are checked along its solution.
 pub trait Motion<const N: usize>: Copy {
     /// ẏ
     fn rate(&self, y: &[f64; N]) -> [f64; N];

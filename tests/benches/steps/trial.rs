@@ -6,7 +6,7 @@ use clebsch::{Clebsch, State, Stepper};
 use nalgebra::SMatrix;
 use std::hint::black_box;
 
-/// The largest deviations seen at whole units of time.
+/// The largest deviations seen at full units of time.
 #[derive(Copy, Clone, Default, Debug)]
 pub struct Drift {
     /// From the energy at the start.
@@ -22,9 +22,9 @@ pub type Invariants<'a> = Box<dyn Fn(u64, u64) -> (Drift, Vec<f64>) + 'a>;
 pub struct Trial<'a> {
     /// Its name.
     pub name: &'static str,
-    /// What is timed.
+    /// The run that is timed.
     pub run: Run<'a>,
-    /// What is checked.
+    /// The quantities that are checked.
     pub drift: Invariants<'a>,
 }
 
@@ -80,7 +80,7 @@ pub fn by_hand<'a, K: Kernel + 'a>(name: &'static str, start: K) -> Trial<'a> {
     Trial { name, run: Box::new(run), drift: Box::new(drift) }
 }
 
-/// The drift from the energy at the start over some units of time, after each of which `advance` returns energy and defect.
+/// The drift from the energy at the start over some units of time; after each, `advance` returns energy and defect.
 fn observe(start: f64, units: u64, mut advance: impl FnMut() -> (f64, f64)) -> Drift {
     (0..units).fold(Drift::default(), |drift, _| {
         let (energy, defect) = advance();

@@ -1,5 +1,5 @@
-//! What holds of every declaration, seen in a few steps: derived integrators are held against the oracle, against their declarations and
-//! against each other.
+//! The laws of every declaration, seen in a few steps: derived integrators are compared with the oracle, with their
+//! declarations and with each other.
 //!
-//! These are many systems which step little, so that their compilation is what their tests take: it is without optimisation, which makes a
-//! third of it. Tests that step long are those of `clebsch-tests`.
+//! These are many systems which step little, so their tests take the time of their compilation. It is without
+//! optimisation, which makes a third of it. Tests that step long are those of `clebsch-tests`.

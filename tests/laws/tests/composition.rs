@@ -97,7 +97,7 @@ fn derivation_says_that_the_step_is_composed() {
     assert_eq!([FirstOrderParticle::ORDER, FirstOrderSkewTop::ORDER], [1; 2]);
 }
 
-/// Errors at t = 1 with 32, 64, … steps, against the motion of which all these are discretisations.
+/// Errors at t = 1 with 32, 64, … steps, against the motion that all these discretise.
 fn errors<S: Clebsch<Scalar = f64> + Clone>(
     system: &S,
     start: (S::Configuration, S::Momentum),
@@ -205,7 +205,7 @@ fn composed_steps_on_the_cotangent_bundle() {
     }
 }
 
-/// `legendre` is that of the declared cost with the whole step, and `inverse_legendre` its inverse.
+/// `legendre` is that of the declared cost with the full step, and `inverse_legendre` its inverse.
 #[test]
 fn inverse_legendre_inverts_legendre_of_a_composed_step() {
     let stepper = top().stepper(0.05).expect("a top");

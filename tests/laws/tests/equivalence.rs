@@ -234,7 +234,7 @@ fn generic_body_over_both_scalars() {
     assert_near(&states.2.momentum().cast(), &states.1.momentum(), 1e-4, "f32");
 }
 
-/// Half of V in the cost, at the start of the step, and half as a potential of order 1, at its end: that is order 2.
+/// Half of V in the cost, at the start of the step, and half as a potential of order 1, at its end. That is order 2.
 #[derive(Clebsch, Clone, Debug)]
 #[clebsch(
     action    = |F: SO<3>, R: SO<3>| R * F,

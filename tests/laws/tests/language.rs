@@ -1,4 +1,5 @@
-//! What a closure says to the compiler is what it says to Rust: one expression as a declared potential and as a plain function.
+//! A closure means the same to the compiler and to Rust: one expression as a declared potential and as a plain
+//! function.
 //!
 //! Values agree to round-off, forces with central differences of fourth order to 1e-9 of their size.
 

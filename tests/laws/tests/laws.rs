@@ -1,4 +1,5 @@
-//! Group laws, one line per group, at the identity, very near it and at random: what the derivation assumes of a group.
+//! Group laws, one line per group, at the identity, very near it and at random: the assumptions of the derivation about
+//! a group.
 
 #![allow(missing_docs)]
 
@@ -182,7 +183,8 @@ fn chart_laws<'g>(graph: &'g Graph, group: Group, random: &mut Random) {
     }
 }
 
-/// Whether F − I is known to the last digit near the identity: where the chart is not exp or a root, in which F is computed first.
+/// Whether F − I is known to the last digit near the identity. It is where the chart is not exp or a root, in which F
+/// is computed first.
 fn has_stable_increment(group: Group) -> bool {
     !matches!(group, Group::SpecialLinear(3..) | Group::SpecialUnitary(_) | Group::Similarity(_))
 }

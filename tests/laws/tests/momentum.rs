@@ -120,7 +120,7 @@ fn momenta_move_as_with_their_configuration() -> Result<(), Error> {
     Ok(())
 }
 
-/// Beside our own bodies: π⁺ = Fᵀπ with F from another solver, and |π| and the energy, which free bodies conserve.
+/// Not only on our own bodies: π⁺ = Fᵀπ with F from another solver, and |π| and the energy, which free bodies conserve.
 #[test]
 fn free_momenta_obey_moser_and_veselov() -> Result<(), Error> {
     let (h, inertia) = (0.1, Matrix3::new(1.4, 0.1, 0.0, 0.1, 2.0, -0.2, 0.0, -0.2, 2.6));

@@ -238,7 +238,7 @@ fn driven_pendulums_are_read_to_second_order() {
     assert_orders(&measured[..2], &[2.0, 1.0]);
 }
 
-/// A force is taken at the velocity of the drift before it: what is read stays of first order, and `DERIVATION` says so.
+/// A force is taken at the velocity of the drift before it: the reading stays of first order, and `DERIVATION` says so.
 #[test]
 fn forced_motions_stay_of_first_order() {
     let (q, n) = pendulum_start();
@@ -304,7 +304,7 @@ fn both_orders_make_the_same_motion() -> Result<(), Error> {
     Ok(())
 }
 
-/// Where the momentum is not ahead, all of it is what it is without.
+/// Where the momentum is not ahead, all of it is as it is without.
 #[test]
 fn other_orders_are_synchronized() -> Result<(), Error> {
     fn assert_synchronized<S: Clebsch<Scalar = f64>>(stepper: &Stepper<S>, (q, mu): (S::Configuration, S::Momentum)) {
@@ -321,7 +321,7 @@ fn other_orders_are_synchronized() -> Result<(), Error> {
     Ok(())
 }
 
-/// What is refused is refused as by `state`.
+/// Refusals are those of `state`.
 #[test]
 fn starts_are_checked() -> Result<(), Error> {
     let (q, n) = pendulum_start();

@@ -1,5 +1,5 @@
-//! What is known of Jacobians before any number is: linear equations, coordinates that are put in, symmetric and block triangular
-//! Jacobians, each against closed forms.
+//! The structure of Jacobians that is known before any number is: linear equations, substituted coordinates, symmetric
+//! and block triangular Jacobians, each against closed forms.
 
 use clebsch::{Clebsch, Error};
 use clebsch_tests::fixtures::growing_shape::GrowingShape;
@@ -25,8 +25,8 @@ fn cayley(x: &Vector3<f64>) -> Matrix3<f64> {
     Matrix3::identity() + 2.0 * z + 2.0 * z * z
 }
 
-/// A particle in the plane whose third momentum is the strength of a magnetic field: the mean velocity obeys
-/// (2mₓ/h) x + μ₃ y = μ₁, (2m_y/h) y − μ₃ x = μ₂, solved by Cramer's rule.
+/// A particle in the plane whose third momentum is the strength of a magnetic field. The mean velocity obeys (2mₓ/h)
+/// x + μ₃ y = μ₁, (2m_y/h) y − μ₃ x = μ₂, solved by Cramer's rule.
 #[test]
 fn the_heisenberg_group_is_linear() {
     assert_says::<HeisenbergGeodesic>(&["x[0], x[1] is linear", "one elimination, no iteration"]);
@@ -99,7 +99,7 @@ struct Dido {
 #[test]
 fn unipotent_groups_are_triangular() {
     assert_says::<Dido>(&["coordinates of the second kind", "is triangular", "solved by substitution, no iteration"]);
-    // half a step of the adjoint is linear for what is known, with the determinant of the inertia
+    // half a step of the adjoint is linear for the known part, with the determinant of the inertia
     assert!(!Dido::DERIVATION.contains("Newton"), "{}", Dido::DERIVATION);
     let random = &mut Random::new(315);
     let stepper = Dido { stiffness: 0.8 }.into_stepper(H).expect("a regular system");
@@ -223,7 +223,7 @@ fn solvable_fractions_count_what_was_put_in() {
     assert!((5..36).contains(&refused), "{refused} of 40 refused");
 }
 
-/// The shift follows from the turn, b = hM_v/m − (W − I)c, and what is left are three unknowns.
+/// The shift follows from the turn, b = hM_v/m − (W − I)c, and three unknowns remain.
 #[test]
 fn the_shift_of_a_body_is_put_in() {
     assert_says::<SpatialBody>(&["x₁ is solved by Newton's method", "given the other coordinates"]);

@@ -236,7 +236,7 @@ fn steps_of_a_body_keep_the_symplectic_form_of_its_momentum() {
         ];
         for (d, next) in steps {
             assert_near(&(d.transpose() * form(&next) * d), &form(&pi), NEAR, "DᵀW(π⁺)D = W(π)");
-            // the opposite sign of the magnetic term is not kept: the test can tell
+            // the form with the opposite sign of the magnetic term is not conserved: the test can tell
             let opposite = distance(&(d.transpose() * form(&-next) * d), &form(&-pi));
             assert!(opposite > 1e-4, "{opposite:.1e}");
         }

@@ -1,4 +1,5 @@
-//! Faults that the check looks for in a program of their own: what it does not find here, it would not find anywhere.
+//! Faults that the check looks for in a program of their own: a fault that it does not find here it would not find
+//! anywhere.
 
 /// One vector: with it the library does not build, and without the systems that is said sooner.
 #[cfg(feature = "heap")]
@@ -31,7 +32,7 @@ extern "C" fn recursion(depth: u64) -> u64 {
     if depth == 0 { 0 } else { core::hint::black_box(recursion(depth - 1)) + depth }
 }
 
-/// A call of nobody knows what.
+/// A call of an unknown function.
 #[unsafe(export_name = "planted.pointer")]
 extern "C" fn pointer(called: extern "C" fn(u64) -> u64) -> u64 {
     called(1) + 1

@@ -1,7 +1,8 @@
-//! The exported functions of a system: what is called where, in a program whose stack and code are looked at.
+//! The exported functions of a system: the calls in a program whose stack and code are inspected.
 //!
-//! What is asked of a concrete type is written as a call of a method. Where the system has none of that name, because it has lanes, [`Absent`]
-//! has one that does nothing. What a declaration has to ask for is a method of [`Asked`] instead: every stepper has a method of its name.
+//! An operation of a concrete type is written as a call of a method. Where the system has none of that name, because it
+//! has lanes, [`Absent`] has one that does nothing. An operation that a declaration has to ask for is a method of
+//! [`Asked`] instead: every stepper has a method of its name.
 
 use clebsch::{Clebsch, Conserves, Differentiated, Error, Method, Space, State, Stepper, Tangent, Variational};
 use nalgebra::SVector;
@@ -9,7 +10,7 @@ use nalgebra::SVector;
 /// The steps of a plan, and the edges of a path.
 pub const STEPS: usize = 16;
 
-/// What a stepper does not have itself.
+/// Operations that a stepper does not have itself.
 pub trait Absent<S: Clebsch, M: Method<S>> {
     fn suggest_step_size(&self, _: &State<S, M>, _: S::Scalar, _: S::Scalar) {}
     fn state_at(&self, _: S::Scalar, _: S::Configuration, _: S::Momentum) {}
@@ -20,7 +21,7 @@ pub trait Absent<S: Clebsch, M: Method<S>> {
 
 impl<S: Clebsch, M: Method<S>> Absent<S, M> for Stepper<S, M> {}
 
-/// A stepper with what its declaration asks for.
+/// A stepper with the operations that its declaration asks for.
 pub struct Asked<'a, S: Clebsch, M: Method<S>>(pub &'a Stepper<S, M>);
 
 impl<S: Conserves, M: Method<S>> Asked<'_, S, M> {
@@ -41,7 +42,7 @@ where
     }
 }
 
-/// What a declaration does not ask for.
+/// Operations that a declaration does not ask for.
 pub trait Unasked<S: Clebsch, M: Method<S>> {
     fn conserved(&self, _: &State<S, M>) {}
     fn step_tangent(&self, _: &State<S, M>) {}
@@ -178,7 +179,7 @@ pub fn stepper<S: Clebsch + Clone, M: Method<S>>(system: &S, h: S::Scalar) -> Re
     system.stepper_by::<M>(h)
 }
 
-/// What is derived, besides steps.
+/// The derived formulas, apart from steps.
 #[inline]
 pub fn formulas<S: Clebsch, M: Method<S>>(
     stepper: &Stepper<S, M>,

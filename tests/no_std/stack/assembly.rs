@@ -1,4 +1,4 @@
-//! What objdump says of a program for x86-64, in the syntax of AT&T.
+//! The output of objdump for a program for x86-64, in the syntax of AT&T.
 
 /// A function: its name as it stands in the file, and its instructions in their order.
 #[derive(Debug, Default, PartialEq, Eq)]

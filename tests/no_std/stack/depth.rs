@@ -3,7 +3,7 @@
 use super::frame::Frame;
 use std::collections::BTreeMap;
 
-/// What the C library does without a frame of its own.
+/// Functions of the C library without a frame of their own.
 const MEMORY: [&str; 5] = ["memcpy", "memmove", "memset", "memcmp", "bcmp"];
 
 /// The stack that functions take, with all that they call.
@@ -59,12 +59,12 @@ impl<'a> Depths<'a> {
         Ok(depth.bytes)
     }
 
-    /// What a call of a function takes, the address that is pushed with it.
+    /// The stack of a call of a function, the address that is pushed with it.
     pub fn bytes(&self, name: &str) -> Option<u64> {
         self.0.get(name).map(|depth| depth.bytes + 8)
     }
 
-    /// The deepest path from a function: for each its whole stack, its own frame and its name.
+    /// The deepest path from a function: for each its total stack, its own frame and its name.
     pub fn path(&self, name: &str) -> String {
         let mut text = String::new();
         let mut next = self.0.get_key_value(name);

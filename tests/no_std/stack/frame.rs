@@ -3,16 +3,16 @@
 use super::assembly::{Function, Instruction};
 use std::collections::BTreeMap;
 
-/// What a function takes of the stack, below the address that its caller has pushed.
+/// The stack of a function, below the address that its caller has pushed.
 #[derive(Debug, Default, PartialEq, Eq)]
 pub struct Frame<'a> {
     /// Bytes at its deepest.
     pub bytes: u64,
-    /// What it calls, and the bytes that are taken then, the pushed address with them.
+    /// Its calls, and the bytes that are taken then, the pushed address with them.
     pub calls: BTreeMap<&'a str, u64>,
 }
 
-/// What is known at a place.
+/// The known state at a place.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 struct State<'a> {
     /// Bytes below the address that the caller has pushed.
@@ -28,7 +28,7 @@ struct State<'a> {
 /// The frame of a function.
 ///
 /// # Errors
-/// What is not understood: a pointer that is called, a stack pointer that is computed, two depths in one place.
+/// Code that is not understood: a pointer that is called, a stack pointer that is computed, two depths in one place.
 pub fn of<'a>(function: &Function<'a>) -> Result<Frame<'a>, String> {
     let states = vec![None; function.instructions.len()];
     let mut walk = Walk { function, states, open: vec![(0, State::default())], tables: None };
@@ -43,11 +43,11 @@ struct Walk<'f, 'a> {
     function: &'f Function<'a>,
     states: Vec<Option<State<'a>>>,
     open: Vec<(usize, State<'a>)>,
-    /// The state at a jump by a table: that of its targets, which are what nothing else leads to.
+    /// The state at a jump by a table: that of its targets, which nothing else leads to.
     tables: Option<State<'a>>,
 }
 
-/// What the linker fills up with.
+/// The padding of the linker.
 const PADDING: [&str; 7] = ["nop", "nopw", "nopl", "int3", "xchg", "ud2", "hlt"];
 
 impl<'a> Walk<'_, 'a> {
@@ -60,7 +60,7 @@ impl<'a> Walk<'_, 'a> {
         })
     }
 
-    /// Notes a state in a place, or what it has in common with that which was there; `None` where nothing is new.
+    /// Notes a state in a place, or its common part with the one that was there; `None` where nothing is new.
     fn met(&mut self, index: usize, state: State<'a>) -> Result<Option<State<'a>>, &'static str> {
         let Some(place) = self.states.get_mut(index) else { return Ok(None) };
         let common = match place {
@@ -145,7 +145,7 @@ fn called<'a>(frame: &mut Frame<'a>, name: &'a str, bytes: u64) {
     *most = bytes.max(*most);
 }
 
-/// What is known after an instruction; `None` where it does something else to the stack pointer.
+/// The state after an instruction; `None` where it does something else to the stack pointer.
 fn moved<'a>(code: &Instruction<'a>, before: &State<'a>) -> Option<State<'a>> {
     let Instruction { mnemonic, operands, .. } = *code;
     let State { bytes, base, probed, .. } = *before;
@@ -182,9 +182,9 @@ fn pointers_after<'a>(code: &Instruction<'a>, before: &State<'a>) -> BTreeMap<ch
     let registers = code.operands.split(',').map(register);
     match code.mnemonic {
         "cmp" | "test" | "push" => {}
-        // a call keeps what the callee has to keep
+        // a call preserves the registers that the callee has to preserve
         "call" => pointers.retain(|register, _| "bp".contains(*register) || ('C'..='F').contains(register)),
-        // what these write without naming it
+        // registers that these write without naming them
         "mul" | "imul" | "div" | "idiv" if !code.operands.contains(',') => {
             pointers.retain(|register, _| !"ad".contains(*register))
         }
@@ -221,7 +221,8 @@ fn pointer(operands: &str) -> Option<char> {
     register(operands.strip_prefix('*')?)
 }
 
-/// One letter for each register, whatever part of it is meant: a, b, c, d, s, t, p for those with names, and `8` to `F`.
+/// One letter for each register, whatever part of it is meant. They are a, b, c, d, s, t, p for those with names, and
+/// `8` to `F`.
 fn register(operand: &str) -> Option<char> {
     let name = operand.split_whitespace().next()?.strip_prefix('%')?;
     let digits = name.strip_prefix('r').map(|rest| rest.trim_end_matches(['d', 'w', 'b']));
@@ -370,7 +371,7 @@ mod tests {
                     .is_err_and(|error| error.contains("a call of a pointer"))
             );
         }
-        // kept on one branch only
+        // saved on one branch only
         let code = ["je 1020 <f+0x20>", load, "call *%r13", "ret"];
         assert!(frame(&code).is_err_and(|error| error.contains("a call of a pointer")));
     }

@@ -1,9 +1,9 @@
-//! One line for each system and scalar type: what its operations take of the stack, beside what they may.
+//! One line for each system and scalar type: the stack of its operations, next to their budgets.
 
 use std::collections::BTreeMap;
 use std::fmt::{self, Display, Formatter};
 
-/// The columns, and the operations whose largest stands in them. What is in none of them is in the last.
+/// The columns, and the operations whose largest stands in them. Operations in none of them are in the last.
 const COLUMNS: [(&str, &[&str]); 7] = [
     ("stepper", &["stepper", "control"]),
     ("state", &["state", "staggered", "timed", "cotangent", "project", "resume"]),
@@ -57,8 +57,8 @@ impl Table {
             .map(Self)
     }
 
-    /// What may be taken: half more and 256, in multiples of 64. What the compiler inlines depends on where the crate stands, and a helper
-    /// that is inlined in one checkout and called in another has moved a set-up of 400 bytes to 600, and one of 5100 to 6700.
+    /// The budget: half more and 256, in multiples of 64. Inlining depends on where the crate stands. A helper that is
+    /// inlined in one checkout and called in another has moved set-ups from 400 bytes to 600, and from 5100 to 6700.
     pub fn budgets(&self) -> String {
         let budget = |bytes: u64| (bytes + bytes / 2 + 256).next_multiple_of(64);
         let lines = self.0.iter().map(|(system, entries)| (system.clone(), entries.map(|entry| entry.map(budget))));
@@ -79,7 +79,7 @@ impl Table {
     }
 
     /// # Errors
-    /// What takes more than its budget, has none, or has one without being there.
+    /// Operations that take more than their budget, have none, or have one without being there.
     pub fn check(&self, budgets: &Self) -> Result<(), String> {
         let mut wrong: Vec<String> = Vec::new();
         for (system, entries) in &self.0 {

@@ -90,7 +90,7 @@ fn endpoints_that_coincide() -> Result<(), Error> {
         let mut path = vec![boundary.rest(&q); steps];
         let extremal = boundary.solve(&q, &q, Guess::Geodesic, &mut path)?;
         assert!(extremal.gap() < 1e-14 && extremal.negative() == 0, "{steps}: {extremal:?}");
-        // thrown up, against what pulls down, along the meridian
+        // thrown up, against the pull down, along the meridian
         assert!(extremal.momentum().x.abs() + extremal.momentum().z.abs() < 1e-14);
         shot(&stepper, &extremal, 1e-11)?;
     }

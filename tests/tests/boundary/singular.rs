@@ -1,4 +1,4 @@
-//! Paths that pass a singularity of the potential: what is found is an extremal, or the error says by how much it is none.
+//! Paths that pass a singularity of the potential: the result is an extremal, or the error says by how much it is none.
 
 use clebsch::{Clebsch, Error, Guess};
 use clebsch_tests::oracle::random::Random;
@@ -33,7 +33,7 @@ struct Well {
     offset: f64,
 }
 
-/// From x to −x straight through the sun, by all ways to solve for a path: momenta agree at every vertex of what is found.
+/// From x to −x straight through the sun, by all ways to solve for a path: momenta agree at every vertex of a result.
 #[test]
 fn what_leads_through_a_singularity_is_no_extremal() {
     let mut random = Random::new(31);
@@ -75,7 +75,7 @@ fn what_leads_through_a_singularity_is_no_extremal() {
     assert!(refused > 300, "{found} found, {refused} refused");
 }
 
-/// Energies count from anywhere: an offset changes no path, however large it is beside the action.
+/// Energies count from anywhere: an offset changes no path, however large it is relative to the action.
 #[test]
 fn an_offset_of_the_potential_hides_no_residual() -> Result<(), Error> {
     let mut random = Random::new(32);

@@ -98,7 +98,7 @@ fn judge<S: Case<D, U, C>, const D: usize, const U: usize, const C: usize>(
             return Err(format!("stage {k}: input, costate, multipliers, gain are finite: {is_finite:?}"));
         }
         let bounds = control.system().bounds(h * k as f64, stage.place(), stage.input());
-        // where numbers are lost beside the bound
+        // where numbers are lost relative to the bound
         let scale = 1.0 + stage.input().amax();
         if bounds.iter().any(|bound| *bound > 1e-12 * scale) {
             return Err(format!("stage {k}: bounds {bounds:?}"));

@@ -10,7 +10,7 @@ use nalgebra::{Matrix3, Matrix4, Quaternion, SVector, Vector1, Vector3, Vector6}
 const STEPS: usize = 200;
 const TIME: f64 = 2.0;
 
-/// What a run gives.
+/// The results of a run.
 pub struct Run {
     /// The conserved momenta at the start and at the end.
     pub conserved: [Vec<f64>; 2],

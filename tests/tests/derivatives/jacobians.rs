@@ -23,7 +23,8 @@ fn jacobians_of_all_implicit_equations() {
         let graph = Graph::new();
         let text = std::fs::read_to_string(&file).expect("a readable file");
         let Some(program) = program(&graph, &text) else { continue };
-        // these kernels return whole matrices; by Newton's method too they are those that are written out (`clebsch-laws --test forms`)
+        // these kernels return matrices; by Newton's method too they are the unrolled ones
+        // (`clebsch-laws --test forms`)
         if program.form.keeps_matrices() {
             continue;
         }

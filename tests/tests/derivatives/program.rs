@@ -41,8 +41,8 @@ impl Values {
             let data = symbol.as_symbol().expect("a symbol");
             let numbers = match data.property {
                 Property::Element(group) => element(program.formulas.model.graph, group, random),
-                // charts of groups that are not compact end where det(I + Z) or det(I − Z) is zero
-                // and a velocity of one, ten times these coordinates, may be that of light
+                // charts of groups that are not compact end where det(I + Z) or det(I − Z) is zero. A velocity of one,
+                // ten times these coordinates, may be that of light
                 _ if matches!(data.role, Role::Chart(_)) => Matrix::from_fn(data.shape, |_| random.number() / 20.0),
                 _ => value(data.shape, data.property, random),
             };

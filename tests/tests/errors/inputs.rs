@@ -58,7 +58,7 @@ fn times_are_finite() {
         assert_eq!(stepper.cotangent_state_at(bad, r, r).err(), Some(name));
         assert_eq!(stepper.inverse_legendre_at(bad, &r, &mu).err(), Some(name));
     }
-    // the clock overflows: what the first half of a step does is still finite
+    // the clock overflows: the first half of a step is still finite
     let still = GravityGradient { inertia: Matrix3::identity() * 1e300, orbital_rate: 0.0 };
     let stepper = still.into_stepper(1e308).expect("a body");
     let late = stepper.state_at(f64::MAX, r, mu * 1e-10).expect("a state");

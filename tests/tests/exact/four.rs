@@ -104,7 +104,7 @@ fn all_ways_lead_to_the_same_place() {
     let (whole, half) = (body.stepper(1.0).expect("regular"), body.stepper(0.5).expect("regular"));
     let state = whole.state(r, mu).expect("a state");
     let next = whole.step(&state).expect("a step");
-    // a state of another stepper brings along what another step keeps
+    // a state of another stepper brings along the constants of another step
     let twice = half.advance(&state, 2).expect("steps");
     assert!((next.configuration() - twice.configuration()).norm() < 1e-14);
     assert!((next.momentum() - twice.momentum()).norm() < 1e-14);

@@ -199,7 +199,7 @@ fn parameters(report: &mut Report, trial: &mut dyn Trial) {
                 "1" => "self.1",
                 other => other,
             };
-            // what methods read is not known
+            // the fields that methods read are not known
             let is_opaque = report.scene == "Harmonics" && field == "coefficients";
             // an infinite limit of a bound is none
             if report.scene == "SteeredBody" && field == "top" && value.is_infinite() {

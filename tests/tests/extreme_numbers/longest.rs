@@ -8,7 +8,7 @@ use clebsch_tests::oracle::random::Random;
 
 /// From random momenta, slow to fast: how many steps were too long, and for how many the longest is not the solvable fraction of them.
 pub fn longest_steps(trial: &mut dyn Trial) -> [usize; 2] {
-    // longer ones are too long for what the potential gives in a step
+    // longer ones are too long for the impulse of the potential in a step
     let counts = [1, 8, 40].map(|times| longest_steps_of(trial, Size::Times(times)));
     [0, 1].map(|i| counts.iter().map(|count| count[i]).sum())
 }

@@ -116,7 +116,8 @@ fn errors_are_those_of_increments() {
         println!("{name:40} {plain:8.1e}  {compensated:12.1e} {:8.0}", plain / compensated);
     }
     for (name, [plain, compensated]) in found {
-        // of unit vectors and quaternions plain steps take what rounding does to their length, so that they are nearer to begin with
+        // for unit vectors and quaternions plain steps remove the rounding error of their length, so that they are
+        // nearer to begin with
         let gain = if matches!(name, "Pendulum" | "Quaternions") { 8.0 } else { 20.0 };
         assert!(compensated < plain / gain, "{name}: {plain:e} {compensated:e}");
     }

@@ -1,8 +1,8 @@
 //! Mistakes as rustc shows them: one error each, at its place, and nothing that follows from it.
 //!
-//! Snapshots of `fixtures/reject` show the messages themselves. This test shows that they arrive: it compiles each file of `cases` with the
-//! libraries that cargo has built for the test, and compares the output of rustc with the `.stderr` file of the same name.
-//! `INSTA_UPDATE=always` writes these files.
+//! Snapshots of `fixtures/reject` show the messages themselves. This test shows that they arrive. It compiles each file
+//! of `cases` with the libraries that cargo has built for the test. Then it compares the output of rustc with the
+//! `.stderr` file of the same name. `INSTA_UPDATE=always` writes these files.
 
 use std::fs;
 use std::path::{Path, PathBuf};

@@ -14,12 +14,21 @@ const WORDS: usize = 25;
 const PRIVATE: [&str; 8] = ["kept", "held", "the rest", "whole", "beside", "of which", "written out", "what"];
 
 /// The areas that are counted: a name, its Markdown files, the folders of its sources.
-fn areas() -> [(&'static str, Vec<PathBuf>); 6] {
+fn areas() -> [(&'static str, Vec<PathBuf>); 7] {
     let root = root();
     let mut guides = files(&root.join("docs"), "md");
     guides.extend(["CONTRIBUTING.md", "macros/reference.md"].map(|name| root.join(name)));
     let macros =
         ["macros/src", "macros/symbolic/src", "macros/compiler/src"].map(|folder| files(&root.join(folder), "rs"));
+    let tests = [
+        "tests",
+        "runtime/tests",
+        "macros/symbolic/tests",
+        "macros/compiler/tests",
+        "docs/book/tests",
+        "docs/book/live",
+    ]
+    .map(|folder| files(&root.join(folder), "rs"));
     [
         ("README", vec![root.join("README.md")]),
         ("CHANGELOG", vec![root.join("CHANGELOG.md")]),
@@ -27,6 +36,7 @@ fn areas() -> [(&'static str, Vec<PathBuf>); 6] {
         ("runtime", files(&root.join("runtime/src"), "rs")),
         ("macros", macros.concat()),
         ("examples", files(&root.join("examples"), "rs")),
+        ("tests", tests.concat()),
     ]
 }
 

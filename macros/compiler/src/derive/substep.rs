@@ -76,7 +76,7 @@ impl<'g> Substep<'g> {
         let kinetic = lagrangian.kinetic.substitute(&letters);
         let (before, after) = trivialisation::of_all(model, kinetic);
         let coupling = lagrangian.couples.then(|| sources.coupling(kinetic));
-        // the part of the force that depends on the velocity joins the equation, at the time at which the whole step starts
+        // the part of the force that depends on the velocity joins the equation, at the time at which the step starts
         let moving = force
             .as_ref()
             .and_then(|force| force.start_moving.as_ref())
@@ -86,7 +86,7 @@ impl<'g> Substep<'g> {
         let rest = at_rest(model, &before, coupling.as_deref());
         let unchanged: Vec<bool> = indexed(model.factors.len(), |k| agree(model, (&before, &after), k));
         let momentum = Momentum { before, coupling, rest: rest.clone(), couples: lagrangian.couples, is_forced };
-        // impulses are functions of the time of the configuration, K of the time at which the whole step starts
+        // impulses are functions of the time of the configuration, K of the time at which the step starts
         let earlier = |rest: &Vec<Expr<'g>>| rest.each(|part| sources.later(*part, -begins));
         let ends = begins + model.step_size / sources.divisor;
         Substep {

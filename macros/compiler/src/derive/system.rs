@@ -56,7 +56,8 @@ impl<'g> SystemFormulas<'g> {
         Some((letter, if is_own { self.symbols.stacked_coordinates(k) } else { value }))
     }
 
-    /// s·h/c with s = dx/dξ at the identity in a block: x is that times a velocity, to first order in one of c parts of a step.
+    /// s·h/c with s = dx/dξ at the identity in a block. To first order, x is this factor times a velocity in one of c
+    /// parts of a step.
     pub(super) fn chart_step(&self, block: usize, divisor: i64) -> Expr<'g> {
         let ChartBlock { factor, block, .. } = self.symbols.blocks[block];
         let blocks = self.model.graph.blocks(self.model.factors[factor].group);

@@ -24,7 +24,8 @@ fn accepted_changes_compile() {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("accepted");
     let mut texts = accepted(count.parse().expect("CLEBSCH_FUZZ_CHECK is a count"));
     println!("{} accepted", texts.len());
-    // rustc looks at types once all names are known: what has others is left out, and the rest checked again
+    // rustc looks at types once all names are known: declarations with other errors are left out, and the others
+    // checked again
     loop {
         let errors = check(&folder, &texts);
         let is_unknown = |error: &&String| UNKNOWN.iter().any(|code| error.contains(code));

@@ -148,7 +148,7 @@ fn table() -> Vec<(&'static str, String, Option<&'static str>)> {
 fn what_is_too_much_is_refused_at_its_place() {
     let mut failures = Vec::new();
     for (name, text, expected) in table() {
-        // what is shown of a failure
+        // the part of a failure that is shown
         let shown: String = text.chars().take(200).collect();
 
         match (verdict(&text), expected) {

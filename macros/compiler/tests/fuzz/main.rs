@@ -43,7 +43,7 @@ fn changed(remainder: u64) {
     let numbers = (0..count).filter(|number| number % 2 == remainder);
     for number in numbers.clone() {
         let choices = &mut Choices::new(number);
-        // half of them from what is accepted
+        // half of them from accepted ones
         let (accepted, any) = (choices.pick(seeds::of("fixtures/accept").len()), choices.pick(seeds.len()));
         let (from, other) = ([accepted, any][choices.pick(2)], choices.pick(seeds.len()));
         let text = mutated(&seeds[from].1, &seeds[other].1, choices);

@@ -39,7 +39,7 @@ pub fn verdict(text: &str) -> Result<Option<Diagnostics>, String> {
         return Err(format!("other errors the second time:\n{text}"));
     }
     helps(&errors, text)?;
-    // rustc gives a macro whole items: only what is none may end without a place
+    // rustc gives a macro complete items: only others may end without a place
     let is_whole = || errors.to_string().contains("to be read") || syn::parse2::<syn::DeriveInput>(item).is_ok();
     match placed(&errors, text) {
         Err(failure) if is_whole() => Err(failure),

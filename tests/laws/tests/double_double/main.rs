@@ -1,4 +1,5 @@
-//! Steps in 31 digits: what is conserved is to 1e-30, the order shows where `f64` sees nothing, and the error of `f64` is round-off.
+//! Steps in 31 digits: conserved quantities stay to 1e-30, the order shows where `f64` sees nothing, and the error of
+//! `f64` is round-off.
 
 use clebsch::{Clebsch, DoubleDouble, Scalar, State, Stepper};
 use nalgebra::{Matrix3, Vector3};
@@ -50,7 +51,7 @@ fn after<S: Clebsch>(stepper: &Stepper<S>, mut state: State<S>, steps: u32) -> S
     state
 }
 
-/// The largest entry of |RᵀR − I|, and the change of the spatial momentum, of the whole vector or along gravity.
+/// The largest entry of |RᵀR − I|, and the change of the spatial momentum, of the vector or along gravity.
 #[test]
 fn momenta_and_rotations_are_kept_to_thirty_digits() {
     let stepper = top::<DoubleDouble>(tenths(1));
@@ -87,7 +88,7 @@ fn the_order_shows_where_doubles_see_nothing() {
     }
 }
 
-/// The same steps in doubles: what they are off is rounding, which no more than adds up.
+/// The same steps in doubles: their error is rounding, which no more than adds up.
 #[test]
 fn errors_of_doubles_are_round_off() {
     let (double, pair) = (top::<f64>(0.125), top::<DoubleDouble>(DoubleDouble::from(0.125)));

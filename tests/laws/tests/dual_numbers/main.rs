@@ -158,7 +158,8 @@ fn simulations_differentiate_by_parameters_and_initial_data() {
     near(mixed.eps1eps2, central(&|d| height(Dual64::new(weight + d, 0.0), Dual64::new(spin, 1.0)).eps));
 }
 
-/// The step of a body at rest starts from a correction that is zero, but whose derivative is not; the series at angle zero end at once.
+/// The step of a body at rest starts from a correction that is zero, but whose derivative is not. The series at angle
+/// zero end at once.
 #[test]
 fn bodies_at_rest_have_derivatives() {
     type D = DualSVec64<3>;

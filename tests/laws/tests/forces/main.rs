@@ -1,5 +1,5 @@
-//! Forces: the discrete Lagrange–d'Alembert equations as they are written, orders against an independent solver, what decays and what
-//! is kept.
+//! Forces: the discrete Lagrange–d'Alembert equations as they are written, orders against an independent solver, decay
+//! and conservation.
 
 mod systems;
 
@@ -25,7 +25,8 @@ fn cayley_velocity(f: &Matrix3<f64>, h: f64) -> Vector3<f64> {
     vee(&((f - Matrix3::identity()) * inverse)) * (2.0 / h)
 }
 
-/// F⁻ℓd − h⁻f(t, q, ξ) = N and F⁺ℓd + h⁺f(t + h, q⁺, ξ) = N⁺, of a body that acts on itself, with the weights h⁻, h⁺ of the force.
+/// F⁻ℓd − h⁻f(t, q, ξ) = N and F⁺ℓd + h⁺f(t + h, q⁺, ξ) = N⁺, of a body that acts on itself. The weights of the force
+/// are h⁻ and h⁺.
 fn lagrange_d_alembert<S>(
     system: S,
     u: &S::Input,
@@ -265,7 +266,7 @@ fn internal_dissipation_ends_on_the_major_axis() {
     assert!((pi.norm() / start.momentum().norm() - 1.0).abs() < 1e-3);
 }
 
-/// The momentum about the vertical is found among those that this force leaves, and kept to round-off.
+/// The momentum about the vertical is found among those that this force does not change, and stays to round-off.
 #[test]
 fn momenta_on_which_no_force_acts_are_conserved() -> Result<(), Error> {
     let stepper = Pivoted { mass: MASS, weight: 2.0, friction: 0.3 }.into_stepper(0.05)?;
@@ -297,7 +298,8 @@ fn inputs_are_checked_and_no_input_is_zero() -> Result<(), Error> {
     Ok(())
 }
 
-/// Whether a step of h is made, and is `expected`; or is refused, with a longest step that is `bound` but for the two per cent of the bracket.
+/// Whether a step of h is made, and is `expected`. Otherwise it is refused, with a longest step that is `bound` but for
+/// the two per cent of the bracket.
 fn assert_bounded<S>(stepper: &Stepper<S>, x: f64, momentum: f64, (expected, bound): (f64, f64))
 where
     S: Clebsch<Scalar = f64, Configuration = Vector1<f64>, Momentum = Vector1<f64>> + Clone,
@@ -318,8 +320,9 @@ where
     }
 }
 
-/// m a/h = N + (h/2) g (a/h − v₀) has one solution at every step size but hg = 2m. Beyond, it is not that of short steps, which has gone to infinity and come back
-/// from the other side: a drive that pushes forward would throw the trolley back. With damping the same happens back in time.
+/// m a/h = N + (h/2) g (a/h − v₀) has one solution at every step size but hg = 2m. Beyond, it is not that of short
+/// steps, which has gone to infinity and come back from the other side. A drive that pushes forward would throw the
+/// trolley back. With damping the same happens back in time.
 #[test]
 fn solutions_that_have_come_back_from_infinity_are_refused() -> Result<(), Error> {
     for (gain, mass, sign) in [(2.5, 1.0, 1.0), (0.4, 3.0, 1.0), (-2.5, 1.0, -1.0)] {
@@ -336,7 +339,8 @@ fn solutions_that_have_come_back_from_infinity_are_refused() -> Result<(), Error
     Ok(())
 }
 
-/// The same of a potential in the cost: N = m a/h − (h/2) k (x + a/2), N⁺ = m a/h + (h/2) k (x + a/2), up to h = 2 √(m/k).
+/// The same for a potential in the cost. N = m a/h − (h/2) k (x + a/2), N⁺ = m a/h + (h/2) k (x + a/2), up to h = 2
+/// √(m/k).
 #[test]
 fn a_hill_at_the_midpoint_bounds_the_step() -> Result<(), Error> {
     let (mass, slope, x, momentum): (f64, f64, f64, f64) = (1.3, 2.9, 0.4, -1.1);

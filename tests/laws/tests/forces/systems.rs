@@ -15,7 +15,7 @@ pub struct Damped {
     pub damping: f64,
 }
 
-/// A declared cost, a drag that is not linear, a wind that turns with the time, a potential beside it.
+/// A declared cost, a drag that is not linear, a wind that turns with the time, and a potential.
 #[derive(Clebsch, Clone, Debug)]
 #[clebsch(
     action    = |F: SO<3>, R: SO<3>| R * F,
@@ -149,7 +149,7 @@ pub struct Satellite {
     pub damping: f64,
 }
 
-/// First order: the whole force at the end of the step.
+/// First order: all of the force at the end of the step.
 #[derive(Clebsch, Clone, Debug)]
 #[clebsch(
     action     = |F: SO<3>, R: SO<3>| R * F,

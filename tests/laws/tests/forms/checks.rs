@@ -1,4 +1,4 @@
-//! What holds of the two forms of code of a declaration.
+//! The relations between the two forms of code of a declaration.
 
 use clebsch::{Clebsch, Conserved, Conserves, Space, State, Variational};
 use clebsch_tests::oracle::flat::{Flat, far};
@@ -183,7 +183,7 @@ where
     }
 }
 
-/// What is conserved has the same names and values.
+/// Conserved momenta have the same names and values.
 pub fn conserve_alike<U, W, const M: usize, const K: usize>(unrolled: &U, matrices: &W, q: &U::Configuration)
 where
     U: Conserves<Scalar = f64, Momentum = SVector<f64, M>, Conserved = Conserved<f64, K>>,

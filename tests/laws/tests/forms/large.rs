@@ -1,4 +1,5 @@
-//! Systems that have one form alone, for they are too large to be written out: their steps keep what theory says that they keep.
+//! Systems that have one form alone, for they are too large to be unrolled: their steps conserve the invariants of the
+//! theory.
 
 use clebsch::{Clebsch, Conserves, Error, F64x4, Space};
 use clebsch_tests::oracle::random::Random;
@@ -53,7 +54,7 @@ struct Pendulum {
     gravity: f64,
 }
 
-/// What is conserved stays to round-off over so many steps from the identity.
+/// Conserved momenta stay to round-off over so many steps from the identity.
 fn conserves<S, const N: usize, const M: usize, const K: usize>(system: S, size: f64)
 where
     S: Conserves<
@@ -160,8 +161,8 @@ fn all_kinds_of_numbers_are_stepped() {
     }
 }
 
-/// With a field along one axis the motion stays in the plane of the start: that of the pendulum in three dimensions, from the same
-/// two-step formula of the theory, in its own numbers.
+/// With a field along one axis the motion stays in the plane of the start. It is that of the pendulum in three
+/// dimensions, from the same two-step formula of the theory, in its own numbers.
 #[test]
 fn a_pendulum_of_a_hundred_dimensions_is_one_of_three() {
     // states of 40 kB are copied through the calls of code that is not optimised: more than the 2 MB of a thread of tests
@@ -208,7 +209,7 @@ fn pendulums_agree() {
     // rotations that leave the axis alone: all but those of the last column
     assert_eq!(stepper.conserved(&start).values().len(), 100 * 99 / 2);
     assert!(stepper.conserved(&start).names()[0] == "in the plane of e1 and e2, spatial");
-    // only what is perpendicular to q is a momentum of the point
+    // only vectors perpendicular to q are momenta of the point
     let outside = SVector::<f64, 5050>::from_fn(|k, _| if k == 3 { 1.0 } else { 0.0 });
     assert!(stepper.state(q, outside).is_err());
     assert!(stepper.state(q, stepper.project(&q, &outside).expect("a projection")).is_ok());
@@ -251,7 +252,8 @@ struct DraggedBody {
     drag: f64,
 }
 
-/// In the plane of two axes half of h·f acts at each end, at the velocity 2 tan(θ/2)/h: m = 2(j₁ + j₂) sin θ/h + drag tan(θ/2), and m⁺ is that with the other sign.
+/// In the plane of two axes half of h·f acts at each end, at the velocity 2 tan(θ/2)/h. So m = 2(j₁ + j₂) sin θ/h +
+/// drag tan(θ/2), and m⁺ is that with the other sign.
 #[test]
 fn drag_slows_down_a_permanent_rotation() {
     let (drag, h) = (0.7, 0.3);

@@ -1,5 +1,5 @@
-//! Code that is written out entry by entry and code that keeps whole matrices are of one truth: on systems of sizes at which both are
-//! there, all that is derived agrees to round-off.
+//! Unrolled code and matrix code agree. On systems of sizes at which both are there, all derived values agree to
+//! round-off.
 
 mod checks;
 mod large;

@@ -1,5 +1,6 @@
-//! What the macro finds out by itself, for every declaration of the gallery: the side of the action, whether the step is explicit,
-//! what is conserved, and the formulas, each against numbers that are computed by hand.
+//! The facts that the macro finds out by itself, for every declaration of the gallery. These are the side of the
+//! action, whether the step is explicit, the conserved momenta, and the formulas. Each is compared with numbers that
+//! are computed by hand.
 
 #![allow(missing_docs)]
 
@@ -57,7 +58,7 @@ where
     assert!(far(state.configuration(), start.configuration()) > 1e-2, "{}: it moves", S::NAME);
 }
 
-/// 50 steps of h and 50 of −h lead back to the start: what a time-symmetric step does.
+/// 50 steps of h and 50 of −h lead back to the start, as for every time-symmetric step.
 #[track_caller]
 fn assert_reversible<S>(system: &S, q: S::Configuration, mu: S::Momentum)
 where

@@ -43,7 +43,7 @@ mod crates {
 }
 use crates::*;
 
-/// Types, and what is in the prelude.
+/// Types, and the names in the prelude.
 macro_rules! types {
     ($($name:ident)*) => {$(pub struct $name;)*};
 }

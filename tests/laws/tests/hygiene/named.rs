@@ -1,4 +1,4 @@
-//! Structs, fields and arguments that have the names of what generated code uses.
+//! Structs, fields and arguments that have the names of generated code.
 
 use clebsch::Clebsch;
 use nalgebra::{Matrix3, Vector3};

@@ -73,7 +73,7 @@ fn fixed_endpoints() {
     assert_ne!(by_method, throw(&together().into_stepper(0.02).expect("a pendulum")), "another method");
 }
 
-/// A method whose steps have no derivatives may stand beside those that have.
+/// A method whose steps have no derivatives may stand next to those that have.
 #[test]
 fn some_methods_have_no_derivatives() {
     #[derive(Clebsch, Clone, Debug)]

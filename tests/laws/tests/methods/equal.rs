@@ -39,7 +39,7 @@ fn told<S: Clebsch<Scalar = f64>, M: Method<S>>(
     late.into_iter().chain(told).collect()
 }
 
-/// What a step says that is too long for its momentum.
+/// The error of a step that is too long for its momentum.
 fn refused<S: Clebsch<Scalar = f64>, M: Method<S>>(
     stepper: &Stepper<S, M>,
     q: &S::Configuration,

@@ -10,7 +10,7 @@ fn top() -> ThreeWays {
     ThreeWays { moments: Vector3::new(2.0, 2.0, 1.0), weight: 3.0, center: Vector3::new(0.0, 0.0, 0.5) }
 }
 
-/// What is written for any system speaks of the declared dials, and what is written for any method of all.
+/// Code that is written for any system uses the declared dials, and code that is written for any method uses all.
 fn energy<S: Clebsch<Scalar = f64>>(stepper: &Stepper<S>, state: &State<S>) -> f64 {
     stepper.energy(state)
 }
@@ -32,7 +32,7 @@ fn the_declared_dials_are_a_method() {
     assert_eq!(of(6, <Fine as Method<ThreeWays>>::DERIVATION), (6, Some("ThreeWays by Fine".into())));
 }
 
-/// A state and what a method reads of it are the same body: q and the momentum that belongs to it.
+/// A state and the reading of it by a method are the same body: q and the momentum that belongs to it.
 #[test]
 fn states_convert_by_the_synchronised_momentum() {
     let second = top().stepper(0.01).expect("a top");

@@ -1,5 +1,5 @@
-//! How a derived integrator is held against the oracle: its declaration once more as a [`Problem`], and a trajectory from
-//! the same start.
+//! The comparison of a derived integrator with the oracle: its declaration once more as a [`Problem`], and a trajectory
+//! from the same start.
 
 use clebsch::Clebsch;
 use clebsch_tests::fixtures::heavy_top::HeavyTop;

@@ -1,4 +1,4 @@
-//! The precise oracle against a 60-digit reference computation, and against what any such integrator must do.
+//! The precise oracle against a 60-digit reference computation, and against the laws of any such integrator.
 
 mod comparison;
 mod continuum;

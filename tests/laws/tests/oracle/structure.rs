@@ -1,4 +1,4 @@
-//! What every step must keep, to 25 digits: the symplectic form, momenta of symmetries, time symmetry, order.
+//! The invariants of every step, to 25 digits: the symplectic form, momenta of symmetries, time symmetry, order.
 
 use clebsch_tests::oracle::motion::order;
 use clebsch_tests::oracle::precise::double_double::DoubleDouble;

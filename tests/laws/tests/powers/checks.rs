@@ -1,4 +1,4 @@
-//! What holds of the two ways to compile a declaration.
+//! The relations between the two ways to compile a declaration.
 
 use clebsch::{Clebsch, Power, SiteStorage, Space};
 use clebsch_tests::oracle::flat::{Flat, far};
@@ -13,7 +13,7 @@ fn joined<const M: usize>(mu: &impl Flat) -> SVector<f64, M> {
     SVector::from_column_slice(&mu.numbers())
 }
 
-/// Every derived function of a power of four sites is that of the declaration that is written out, on 20 steps of a random motion.
+/// Every derived function of a power of four sites is that of the unrolled declaration, on 20 steps of a random motion.
 pub fn agree<P, U, Q, F, K, const M: usize, const L: usize>(
     power: &P,
     unrolled: &U,

@@ -61,7 +61,8 @@ fn spins(random: &mut Random) -> ([Vector3<f64>; 4], [Vector3<f64>; 4]) {
 
 macro_rules! chain {
     ($name:ident, [$($generics:tt)*], $n:tt) => {
-        /// An open chain with ends of their own, a next neighbour and one beyond, each site with its own field, in the steps of first order.
+        /// An open chain with ends of their own, a next neighbour and one beyond. Each site has its own field, in the
+        /// steps of first order.
         #[derive(Clebsch, Clone, Debug)]
         #[clebsch(
             action    = |F: [SO<3>; $n], q: [Unit<Vector3>; $n]| (0..$n).map(|k| F[k] * q[k]),
@@ -230,7 +231,8 @@ twice!(rod_of_sections, beams, |random: &mut Random| {
     (looped, Unrolled { inertia, stretch, bend, length, weight, wall }, q, mu)
 });
 
-/// The compiler says what it chose: rings and chains gather, sums over pairs add up, and each of both stands in a test of this file.
+/// The compiler reports its choice: rings and chains gather, sums over pairs add up. Each of both stands in a test of
+/// this file.
 #[test]
 fn gradients_are_gathered_where_few_terms_read_a_site() {
     const GATHERED: &str = "the gradient of a site is gathered from the terms that read it";

@@ -102,7 +102,7 @@ fn single_precision_is_the_same_system() {
     }
 }
 
-/// What is generated for N sites is told of the struct itself, and is the same for every N.
+/// The generated code for N sites is documented on the struct itself, and is the same for every N.
 #[test]
 fn generated_code_does_not_grow() {
     #[derive(Clebsch, Clone, Debug)]

@@ -1,5 +1,5 @@
-//! Powers with a const generic beside the same declaration with a number in its place, which is written out: two ways through the compiler, one
-//! integrator.
+//! Powers with a const generic next to the same declaration with a number in its place, which is unrolled. They are two
+//! ways through the compiler to one integrator.
 
 #![allow(missing_docs)]
 

@@ -1,4 +1,4 @@
-//! Against what is known otherwise.
+//! Against facts that are known otherwise.
 
 use clebsch::{Clebsch, Conserves, SiteStorage};
 use nalgebra::*;
@@ -14,8 +14,9 @@ pub struct Bodies<const N: usize> {
     pub mass: [f64; N],
 }
 
-/// Chenciner and Montgomery's figure of eight returns to its start after the period 6.32591398; initial values and period of Simó, as given by Chenciner and Montgomery,
-/// *A remarkable periodic solution of the three-body problem in the case of equal masses*, Annals of Mathematics 152 (2000).
+/// Chenciner and Montgomery's figure of eight returns to its start after the period 6.32591398. Initial values and
+/// period are those of Simó. They are given by Chenciner and Montgomery, *A remarkable periodic solution of the
+/// three-body problem in the case of equal masses*, Ann. of Math. 152 (2000).
 #[test]
 fn the_figure_of_eight_closes() {
     let period = 6.325_913_98;

@@ -1,7 +1,7 @@
 //! Derivatives of steps and of their discrete Lagrangians: against central differences, and by the rules of linear maps.
 //!
-//! Differences are taken over 2·10⁻⁵: the third derivatives of numbers of order one are of order 1/h there, which leaves some 10⁻⁹, and
-//! rounding divided by h 10⁻¹⁰.
+//! Differences are taken over 2·10⁻⁵. The third derivatives of numbers of order one are of order 1/h there, which
+//! leaves some 10⁻⁹, and rounding divided by h 10⁻¹⁰.
 
 use crate::arbitrary::{attitude, cases, matrix, rotation, vector};
 use crate::bodies::{H, particles, tops};
@@ -16,7 +16,7 @@ use private::{Link, Price};
 use proptest::prelude::*;
 
 const STEP: f64 = 1e-5;
-/// What differences leave.
+/// The error of differences.
 const DIFFERENCE: f64 = 1e-7;
 /// Rounding of a few dozen products of numbers of order one, divided by h.
 const NEAR: f64 = 1e-12;
@@ -159,14 +159,15 @@ proptest! {
         assert_near(&twice, &top.act(&of(&top.compose(&ahead, &second)), &r), NEAR, "Φ");
         let d = top.drift(&constants, 0, 0.0, &r, &mu, &())?;
         assert_near(&of(&d), &top.inverse_legendre(&constants, 0.0, &r, &mu)?, NEAR, "the drift");
-        // the metric of R ↦ Rη^, and what leads to a target
+        // the metric of R ↦ Rη^, and the motion to a target
         let metric = top.orbit_metric(&r);
         let paired = (top.infinitesimal_motion(&r, &eta).transpose() * top.infinitesimal_motion(&r, &zeta)).trace();
         prop_assert!((eta.dot(&(metric * zeta)) - paired).abs() < NEAR);
         assert_near(&top.approach(&r, &twice), &top.momentum_map(&r, &(twice - r)), NEAR, "Gᵀ(q* − q)");
     }
 
-    /// An edge: dℓd = F⁺ℓd·η′ − F⁻ℓd·η, and the derivatives of both momenta along motions of the start, of the end, and of both with F as it is.
+    /// An edge: dℓd = F⁺ℓd·η′ − F⁻ℓd·η. The derivatives of both momenta are along motions of the start, of the end, and
+    /// of both with F as it is.
     #[test]
     fn edges_are_differentiated_twice(top in tops(), r in attitude(), f in rotation(0.3), eta in vector::<3>(1.0)) {
         let constants = top.step_constants(H)?;
@@ -188,7 +189,7 @@ proptest! {
         assert_near(&edge.after, &top.legendre_next(H, 0.0, &r, &f), NEAR / H, "F⁺ℓd");
         let lagrangian = |m: Momenta<f64, 3>| SMatrix::<f64, 1, 1>::new(m.lagrangian);
         prop_assert!((lagrangian(momenta)[0] - edge.lagrangian).abs() < NEAR / H);
-        // momenta are of the size of inertia/h, and so are what differences leave of them
+        // momenta are of the size of inertia/h, and so are the errors of differences
         let near = DIFFERENCE / H;
         prop_assert!((slope(|s| lagrangian(at(s, 0.0)))[0] + edge.before.dot(&eta)).abs() < near);
         prop_assert!((slope(|s| lagrangian(at(0.0, s)))[0] - edge.after.dot(&eta)).abs() < near);
@@ -227,8 +228,8 @@ proptest! {
         assert_near(&end.curvature, &(SMatrix::identity() * particle.pull), 1e-14, "curvature");
     }
 
-    /// A forced step by the implicit function theorem: places move by the tangent map, inputs as F⁻ℓd = N asks for, and second derivatives are those
-    /// of the edge along them.
+    /// A forced step by the implicit function theorem. Places move by the tangent map, and inputs as F⁻ℓd = N asks for.
+    /// Second derivatives are those of the edge along them.
     #[test]
     fn links_are_implicit_functions(
         top in tops(), (r, f) in (attitude(), rotation(0.3)), (before, after) in (matrix::<3, 2>(1.0), matrix::<3, 2>(1.0)), costate in vector::<6>(1.0),

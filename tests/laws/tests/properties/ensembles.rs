@@ -10,7 +10,7 @@ use proptest::prelude::*;
 type Tops = Ensemble<GenericBody<F64x8>>;
 type Top = (Matrix3<f64>, Vector3<f64>);
 
-/// Up to 20 bodies, of which some are too fast for a step.
+/// Up to 20 bodies; some are too fast for a step.
 fn bodies() -> BoxedStrategy<Vec<Top>> {
     let body = (attitude(), vector::<3>(1.0), prop::bool::weighted(0.2));
     let made = |(r, mu, is_fast): (Matrix3<f64>, Vector3<f64>, bool)| (r, if is_fast { mu * 1e4 } else { mu });

@@ -1,4 +1,4 @@
-//! Implicit equations, transforms and flows: each against what it is to solve.
+//! Implicit equations, transforms and flows: each against the equation that it solves.
 
 use crate::arbitrary::{cases, definite, vector};
 use clebsch::__private as private;
@@ -76,7 +76,7 @@ impl Equation<f64, 1> for Pole {
     }
 }
 
-/// The same with what is provided: no prediction, and an orientation that is asked for.
+/// The same with the provided methods: no prediction, and a computed orientation.
 struct Provided(Cubic<0>);
 
 impl Equation<f64, 3> for Provided {
@@ -120,7 +120,7 @@ impl VelocityEquation<f64, 3> for Quartic {
     }
 }
 
-/// Rounding of the terms of the equation, of which there are about ten.
+/// Rounding of the terms of the equation; there are about ten.
 fn rounding(mu: &Vector3<f64>) -> f64 {
     32.0 * f64::EPSILON * mu.amax()
 }
@@ -145,7 +145,8 @@ fn apart(a: (f64, f64), b: (f64, f64)) -> f64 {
 /// A map of (q, p) for a step size.
 type Flow<'a> = dyn Fn(f64, (f64, f64)) -> (f64, f64) + 'a;
 
-/// The errors of steps of h and of h/2 as maps, in units of the amplitude; the next term of the error is of h² beside the first.
+/// The errors of steps of h and of h/2 as maps, in units of the amplitude. The next term of the error is of h² relative
+/// to the first.
 fn assert_order(flow: &Flow, omega: f64, h: f64, order: i32) {
     let from = |h: f64, start| {
         let ((q, p), exact) = (flow(h, start), oscillation(omega, h, start));
@@ -156,7 +157,8 @@ fn assert_order(flow: &Flow, omega: f64, h: f64, order: i32) {
     assert!((slope - f64::from(order + 1)).abs() < 0.4, "{slope} for {order} + 1");
 }
 
-/// A composed step of leapfrogs. What is left for the next step is scaled by the ratio of their sizes: the last is as long as the first.
+/// A composed step of leapfrogs. The impulse for the next step is scaled by the ratio of their sizes: the last is as
+/// long as the first.
 fn composed<const K: usize>(sizes: &[f64; K], omega: f64, h: f64, start: (f64, f64)) -> (f64, f64) {
     let all = Stages::new(h, sizes, |h: f64| Ok(h)).expect("constants");
     let step = |h: &f64, _, (q, p, length): (f64, f64, f64)| {
@@ -211,7 +213,7 @@ proptest! {
         prop_assert_eq!(<Cubic<0> as Equation<f64, 3>>::tolerance(), f64::EPSILON / 4.0);
     }
 
-    /// Wherever the predictor is, but beside a pole itself, what is found solves the equation.
+    /// Wherever the predictor is, except at a pole itself, the result solves the equation.
     #[test]
     fn poles_are_no_solutions(mu in -50.0_f64..50.0, start in prop_oneof![-0.99_f64..0.99, 1.01_f64..1.5, -1.5_f64..-1.01]) {
         prop_assert!(<Pole as Equation<f64, 1>>::has_poles());

@@ -1,5 +1,5 @@
-//! What is derived from an action, a cost and a potential: the laws of group actions, momentum maps and Legendre transforms, and their closed forms on
-//! rotations and motions.
+//! The formulas that are derived from an action, a cost and a potential. They are the laws of group actions, momentum
+//! maps and Legendre transforms, and their closed forms on rotations and motions.
 
 use crate::arbitrary::{attitude, cases, matrix, rotation, unit, vector};
 use crate::bodies::{H, inertia_of, pendulums, satellites, tops, vehicles};
@@ -37,7 +37,7 @@ fn velocity(twist: &Matrix4<f64>) -> SVector<f64, 6> {
     )
 }
 
-/// What a stepper computes is what its system does.
+/// A stepper computes the same as its system.
 fn steppers_know_their_systems<S>(
     stepper: &Stepper<S>,
     q: &S::Configuration,
@@ -141,11 +141,11 @@ proptest! {
         steppers_know_their_systems(&stepper, &q, &p, &small, &(mu * 0.5));
     }
 
-    /// F⁻ℓd(F) = μ and back, and F⁺ℓd = Ad*_F of what F⁻ℓd has without its kick, with one of its own.
+    /// F⁻ℓd(F) = μ and back. F⁺ℓd is Ad*_F of F⁻ℓd without its kick, with a kick of its own.
     #[test]
     fn legendre_transforms_are_inverse(top in tops(), r in attitude(), f in rotation(0.4), mu in vector::<3>(2.0)) {
         let stepper = top.stepper(H)?;
-        // M/h is the size of what cancels in F − I
+        // M/h is the size of the terms that cancel in F − I
         let near = NEAR / H;
         let found = stepper.inverse_legendre(&r, &mu)?;
         assert_near(&stepper.legendre(&r, &found), &mu, near, "F⁻ℓd(F) = μ");

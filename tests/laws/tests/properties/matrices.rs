@@ -153,7 +153,8 @@ proptest! {
         prop_assert!(private::largest([values[0], f64::NAN, values[1]]).is_nan());
     }
 
-    /// Onto the span of two rows, and of those with a third that depends on them: in it, nearest to μ, and the same when made again.
+    /// Onto the span of two rows, and of those with a third that depends on them. The projection is in it, nearest to
+    /// μ, and the same when made again.
     #[test]
     fn projections_are_orthogonal(a in vector::<4>(1.0), b in vector::<4>(1.0), mu in vector::<4>(1.0), s in -1.0_f64..1.0) {
         prop_assume!((a.norm_squared() * b.norm_squared() - a.dot(&b).powi(2)) > 0.01);
@@ -187,7 +188,7 @@ proptest! {
         let (sum, rest) = private::accumulate::<f64, _>(&s, &Vector3::zeros(), &d);
         for i in 0..3 {
             prop_assert_eq!(sum[i], s[i] + d[i]);
-            // what is left is exact: s − s⁺ is, as both are near, and so is the difference to d
+            // the error is exact: s − s⁺ is, as both are near, and so is the difference to d
             prop_assert_eq!(rest[i], d[i] - (sum[i] - s[i]));
         }
         // whichever is the larger

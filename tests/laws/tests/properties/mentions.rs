@@ -1,5 +1,5 @@
-//! What properties there are in a file, and what each of them is about: the words of its body and, in turn, of the functions and macros of the
-//! same file that it names.
+//! The properties in a file, and the subject of each. The subject is the words of its body and, in turn, of the
+//! functions and macros of the same file that it names.
 
 use proc_macro2::{Delimiter, TokenStream, TokenTree};
 use std::collections::{BTreeMap, BTreeSet};
@@ -56,7 +56,7 @@ impl File {
         self.properties.contains(name)
     }
 
-    /// Whether the property, or what it calls in its file, names the function.
+    /// Whether the property, or a function that it calls in its file, names the function.
     pub fn is_about(&self, property: &str, function: &str) -> bool {
         let (mut seen, mut open) = (BTreeSet::new(), vec![property]);
         while let Some(name) = open.pop() {

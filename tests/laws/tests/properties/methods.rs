@@ -44,7 +44,8 @@ fn laws_of_a_method<M: Method<ThreeWays>>(
 proptest! {
     #![proptest_config(cases(32))]
 
-    /// What is of a method obeys the laws of a system. A step of first order ends with N⁺ = F⁺ℓd(q, F), half a kick ahead.
+    /// The items of a method obey the laws of a system. A step of first order ends with N⁺ = F⁺ℓd(q, F), half a kick
+    /// ahead.
     #[test]
     fn methods_step_one_system(top in tops(), r in attitude(), mu in vector::<3>(1.0)) {
         laws_of_a_method::<Fine>(&top, (&r, &mu), NEAR)?;

@@ -11,11 +11,11 @@ use proptest::prelude::*;
 
 const H: f64 = 0.1;
 const STEPS: usize = 6;
-/// Rounding of momenta, which are of the size of inertia/h, and of what a few steps make of it.
+/// Rounding of momenta, which are of the size of inertia/h, and its growth in a few steps.
 const NEAR: f64 = 1e-10;
 
-/// The conditions of an extremal, each evaluated anew: the states are those of steps, the action is the sum over the edges, and the ends are where they
-/// should be.
+/// The conditions of an extremal, each evaluated anew. The states are those of steps, the action is the sum over the
+/// edges, and the ends are where they should be.
 fn is_a_motion(boundary: &Boundary<'_, WatchedTop, 3>, extremal: &Extremal<'_, WatchedTop, 3>) -> Result<(), Error> {
     let stepper = boundary.stepper();
     let constants = stepper.system().step_constants(H)?;
@@ -72,7 +72,7 @@ proptest! {
         prop_assert_eq!(other.negative(), negative);
     }
 
-    /// Several ways, in the order of their actions, each of which is found again.
+    /// Several ways, in the order of their actions; each is found again.
     #[test]
     fn ways_are_extremals_in_order(top in tops(), r in attitude(), eta in vector::<3>(0.5)) {
         let stepper = top.stepper(0.3)?;

@@ -15,7 +15,8 @@ const NEAR: f64 = 4e-15;
 proptest! {
     #![proptest_config(cases(128))]
 
-    /// Brought back by one step of Newton and Schulz, whose error is the square of the defect; what is on its space already stays to the bit.
+    /// Brought back by one step of Newton and Schulz, whose error is the square of the defect. A value on its space
+    /// already stays to the bit.
     #[test]
     fn what_has_left_its_space_comes_back(r in attitude(), q in unit(), off in matrix::<3, 3>(1.0), size in -12.0_f64..-4.0) {
         let defect = 10.0_f64.powf(size);
@@ -38,7 +39,7 @@ proptest! {
         prop_assert_eq!(private::of_length_one(q), q);
     }
 
-    /// The same of what sums have left beside them, which counts as much; what is left after the correction is rounding.
+    /// The same for the rounding errors of sums, which count as much; after the correction the error is rounding.
     #[test]
     fn rests_come_back_with_their_sums(r in attitude(), q in unit(), off in matrix::<3, 3>(1.0), left in matrix::<3, 3>(1.0), size in -12.0_f64..-4.0) {
         let defect = 10.0_f64.powf(size);
@@ -56,7 +57,8 @@ proptest! {
         prop_assert_eq!(private::of_length_one_with_rest(q, left), (q, left));
     }
 
-    /// What is promised of a field is accepted, and what is off by more than rounding is refused with its size.
+    /// A promise of a field that is true is accepted, and a value that is off by more than rounding is refused with its
+    /// size.
     #[test]
     fn promises_of_fields_are_checked(a in definite::<3>(), e in unit(), i in 0_usize..3, j in 0_usize..2, off in 1e-6_f64..1.0) {
         let j = (i + 1 + j) % 3;

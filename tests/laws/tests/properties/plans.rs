@@ -39,8 +39,8 @@ fn regulators() -> BoxedStrategy<Regulator> {
         .boxed()
 }
 
-/// What a plan and its answer say of themselves: places follow from inputs, the price is that of the steps, bounds hold where they are active and elsewhere,
-/// and inputs cannot be improved to first order.
+/// The claims of a plan and its answer about themselves. Places follow from inputs, and the price is that of the steps.
+/// Bounds hold where they are active and elsewhere, and inputs cannot be improved to first order.
 fn is_optimal<S, const D: usize, const U: usize, const C: usize>(
     control: &Control<S, D, U, C>,
     start: &S::Place,
@@ -127,7 +127,7 @@ proptest! {
         let second = (endpoint(1e-3) - 2.0 * endpoint(0.0) + endpoint(-1e-3)) / 1e-6;
         prop_assert!((delta.dot(&(end.curvature * delta)) - second).abs() < 1e-4);
 
-        // what separates x from a place that is near: the shortest motion to it, to first order
+        // the difference of x from a place that is near: the shortest motion to it, to first order
         let near = moved(&x, &(delta * 1e-6));
         let arrival = system.arrival(&x, &near);
         assert_near(&(arrival.slope * delta * 1e-6), &arrival.residual, 1e-10, "slope·δ = residual");

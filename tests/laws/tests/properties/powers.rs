@@ -23,7 +23,7 @@ pub struct Ring<const N: usize> {
     pub field: Vector3<f64>,
 }
 
-/// Bodies on springs, one for each pair: what a term has for its sites is added there.
+/// Bodies on springs, one for each pair: the share of a term is added at its sites.
 #[derive(Clebsch, Clone, Debug)]
 #[clebsch(
     action    = |a: [Translation<3>; N], x: [Vector3; N]| (0..N).map(|i| x[i] + a[i]),
@@ -85,7 +85,7 @@ proptest! {
         prop_assert_eq!(ring.power_orbit_defect(&off), largest);
     }
 
-    /// Differences of the potential, and what kicks make of its gradient.
+    /// Differences of the potential, and the kicks from its gradient.
     #[test]
     fn kicks_are_gradients(ring in rings(), (q, _) in spins(), along in prop::array::uniform5(vector::<3>(1.0)), t in -3.0_f64..3.0, weight in -1.0_f64..1.0) {
         let slope = ring.slope(t, &q);
@@ -101,7 +101,7 @@ proptest! {
         prop_assert_eq!(kick, std::array::from_fn(|i| ring.kick_of_site(i, &q[i], &slope[i], weight)));
         let (mut gradient, mut again, mut momenta) = ([Vector3::x(); N], [Vector3::x(); N], [Vector3::y(); N]);
         let sum = ring.kick_into(t, &q, weight, &mut gradient, &mut again, &mut momenta);
-        // gathered gradients are not kept
+        // gathered gradients are not stored
         prop_assert_eq!((gradient, again), ([Vector3::x(); N], kick));
         prop_assert!(apart(&momenta, &kick.map(|kick| kick + Vector3::y())) < 1e-15);
         // points on spheres are finite wherever their momenta are
@@ -110,7 +110,7 @@ proptest! {
         prop_assert!(apart(&ring.power_stagger(weight, t, &q, 0.0, -1.0), &kick.map(|kick| -0.5 * kick)) < 1e-15);
     }
 
-    /// Of springs between all pairs: k(N x_i − Σ x_j) on each, added to what is there; gathered nowhere.
+    /// Of springs between all pairs: k(N x_i − Σ x_j) on each, added to the gradient so far; gathered nowhere.
     #[test]
     fn what_terms_have_is_added_up(stiffness in 0.1_f64..2.0, x in prop::array::uniform5(vector::<3>(1.0)), weight in -1.0_f64..1.0) {
         let springs = Springs::<N> { stiffness };
@@ -201,7 +201,7 @@ proptest! {
         prop_assert_eq!((&storage.configuration[..], &storage.momentum[..]), (single.configuration(), single.momentum()));
     }
 
-    /// What is conserved is a sum over sites.
+    /// A conserved quantity is a sum over sites.
     #[test]
     fn conserved_momenta_are_sums(mut ring in rings(), (q, mu) in spins()) {
         let along_field = |ring: &Ring<N>| -> Result<f64, TestCaseError> {

@@ -6,15 +6,15 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 use syn::{ImplItem, Item, ItemImpl, ItemMacro, Signature, TraitItem, Type, UseTree, Visibility};
 
-/// A module, or what is declared in one, by the names on the way to it; `[]` is the crate.
+/// A module, or an item in one, by the names on the way to it; `[]` is the crate.
 type Place = Vec<String>;
 
 #[derive(Default)]
 struct Module {
     items: Vec<Item>,
-    /// What its `use` declarations call by a name, and where that is.
+    /// The names of its `use` declarations, and their places.
     imports: BTreeMap<String, Place>,
-    /// What it re-exports.
+    /// Its re-exports.
     exports: Vec<Place>,
 }
 
@@ -22,7 +22,8 @@ struct Module {
 #[derive(Default)]
 struct Sources(BTreeMap<Place, Module>);
 
-/// The public functions of the crate in this folder: `function`, `Type::method`, `Trait::method`, and `macro!::method` for what a macro writes.
+/// The public functions of the crate in this folder: `function`, `Type::method`, `Trait::method`, and `macro!::method`
+/// for a method that a macro writes.
 pub fn functions(folder: &Path) -> BTreeSet<String> {
     let mut sources = Sources::default();
     sources.read(&folder.join("lib.rs"), folder, vec![]);
@@ -80,7 +81,7 @@ impl Sources {
         }
     }
 
-    /// Where what is called by a name in a module is declared.
+    /// The place of the declaration behind a name in a module.
     fn origin(&self, path: &Place) -> Place {
         let Some((name, place)) = path.split_last() else { return vec![] };
         match self.0.get(place).and_then(|module| module.imports.get(name)) {
@@ -90,7 +91,8 @@ impl Sources {
         }
     }
 
-    /// The types, traits and functions that a caller comes by: what is exported, and what the signatures of that name in turn.
+    /// The types, traits and functions that a caller can reach: the exported ones, and those that their signatures name
+    /// in turn.
     fn reachable(&self) -> BTreeSet<Place> {
         let mut reachable = self.exported();
         loop {
@@ -103,7 +105,7 @@ impl Sources {
         }
     }
 
-    /// What the crate and its public modules declare and re-export.
+    /// The declarations and re-exports of the crate and its public modules.
     fn exported(&self) -> BTreeSet<Place> {
         let declared = self.0[&vec![]].items.iter().filter(|item| is_public_module(item)).filter_map(name_of_module);
         let mut exported = BTreeSet::new();
@@ -115,7 +117,7 @@ impl Sources {
         exported
     }
 
-    /// The public types and traits in the signatures of what is reachable in a module.
+    /// The public types and traits in the signatures of the reachable items in a module.
     fn named_by(&self, place: &Place, reachable: &BTreeSet<Place>) -> Vec<Place> {
         let signatures = self.reachable_in(place, reachable).flat_map(signatures);
         let types = signatures.flat_map(|signature| words(signature.to_token_stream()));
@@ -216,7 +218,7 @@ fn name_of_type(block: &ItemImpl) -> String {
     }
 }
 
-/// The methods of a type that `getters!` writes: what follows `copy` or `ref`.
+/// The methods of a type that `getters!` writes: the names after `copy` or `ref`.
 fn getters(block: &ItemImpl) -> Vec<String> {
     let written = block.items.iter().filter_map(|inner| match inner {
         ImplItem::Macro(written) if written.mac.path.is_ident("getters") => Some(words(written.mac.tokens.clone())),
@@ -229,9 +231,9 @@ fn getters(block: &ItemImpl) -> Vec<String> {
     written.flat_map(named).collect()
 }
 
-/// What follows `pub fn` or `pub const fn` in the tokens of a macro.
+/// The names after `pub fn` or `pub const fn` in the tokens of a macro.
 fn methods_of_macro(written: &ItemMacro) -> Vec<String> {
-    // what `getters!` writes is named where it is used
+    // the methods that `getters!` writes are named where it is used
     let Some(name) = written.ident.as_ref().filter(|name| *name != "getters") else { return vec![] };
     let tokens = words(written.mac.tokens.clone());
     let starts = tokens.windows(4).filter_map(|four| match four {

@@ -24,7 +24,8 @@ fn inertia(mass: &SVector<f64, 4>) -> SMatrix<f64, 6, 6> {
 proptest! {
     #![proptest_config(cases(64))]
 
-    /// Moments, momentum and time: the motion back undoes it, energy and spatial momentum stay, and what is kept of a motion makes the same turn.
+    /// Moments, momentum and time: the motion back undoes it, energy and spatial momentum stay, and the constants of a
+    /// motion make the same turn.
     #[test]
     fn free_bodies_turn_back(moments in prop::array::uniform3(0.3_f64..3.0), mu in vector::<3>(1.0), h in 0.01_f64..0.5) {
         let inertia = Matrix3::from_diagonal(&moments.into());

@@ -1,4 +1,4 @@
-//! Numbers, masks, spaces and times: what generated code computes with.
+//! Numbers, masks, spaces and times: the types that generated code computes with.
 
 use crate::arbitrary::{cases, vector};
 use clebsch::__private as private;
@@ -184,7 +184,7 @@ proptest! {
         prop_assert_eq!(Space::<f64>::max_abs(&broken), x[..15].iter().fold(0.0, |max, x| f64::max(max, x.abs())));
     }
 
-    /// What is put into a lane is there, and nowhere else.
+    /// A value that is put into a lane is there, and nowhere else.
     #[test]
     fn spaces_have_lanes(x in entries(), y in entries(), lane in 0_usize..8) {
         let wide = lanes(&x);
@@ -235,7 +235,7 @@ proptest! {
         prop_assert_eq!(wide.lane(lane), Conserved::new(names, values.map(|value| value + lane as f64)));
     }
 
-    /// The same in all lanes: what is made of a single number by arithmetic has its bits.
+    /// The same in all lanes: arithmetic with a single number gives its bits.
     #[test]
     fn lanes_hold_single_numbers(x in vector::<2>(8.0)) {
         let (a, b) = (F64x8::splat(x[0]), F64x8::from(x[1]));

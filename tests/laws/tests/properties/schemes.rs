@@ -52,7 +52,8 @@ type SixthOrder = <SixthOrderTop as Clebsch>::Scheme;
 proptest! {
     #![proptest_config(cases(32))]
 
-    /// A step is a kick, the solve, the move, the update and a kick, in both representations; F = I + D has the momentum that was solved for.
+    /// A step is a kick, the solve, the move, the update and a kick, in both representations. F = I + D has the
+    /// momentum that was solved for.
     #[test]
     fn steps_are_their_parts(top in tops(), r in attitude(), mu in vector::<3>(2.0), p in matrix::<3, 3>(1.0)) {
         let stepper = top.stepper(H)?;
@@ -68,7 +69,8 @@ proptest! {
         assert_near(&top.legendre(H, 0.0, &r, &f), &mu, 1e-10, "F⁻ℓd");
     }
 
-    /// The methods of a system's scheme, and those of the system that stand for them; several steps at once and in place are steps one by one.
+    /// The methods of a system's scheme, and those of the system that stand for them. Several steps at once and in
+    /// place are steps one by one.
     #[test]
     fn schemes_step_systems(inertia in definite::<3>(), weight in 0.1_f64..3.0, center in vector::<3>(1.0), r in attitude(), mu in vector::<3>(2.0), p in matrix::<3, 3>(1.0)) {
         let top = SixthOrderTop { inertia, weight, center };
@@ -97,7 +99,7 @@ proptest! {
         prop_assert_eq!(Stepping::step_symmetric(&top, &same, 0.0, &r, &p)?, symmetric);
         let f = SixthOrder::inverse_legendre(at, &r, &mu)?;
         assert_near(&top.legendre(H, 0.0, &r, &f), &mu, 1e-10, "F⁻ℓd");
-        // kicks are linear in the step size: what is left for a step that is twice as long
+        // kicks are linear in the step size: the impulse for a step that is twice as long
         let twice = <<WatchedTop as Clebsch>::Scheme as Scheme<WatchedTop>>::scaled(mu, 2.0);
         prop_assert_eq!(twice, mu * 2.0);
     }
@@ -122,7 +124,7 @@ proptest! {
         assert_near(&torque, &at_end, NEAR, "both ends");
     }
 
-    /// A cost that couples: what it gives at F = I is no momentum of the motion, and its slope moves the covector.
+    /// A cost that couples: its value at F = I is no momentum of the motion, and its slope moves the covector.
     #[test]
     fn coupled_costs_have_slopes(mass in definite::<3>(), weight in 0.1_f64..3.0, center in vector::<3>(1.0), r in attitude(), p in matrix::<3, 3>(1.0)) {
         let top = MidpointTop { mass_matrix: mass, weight, stiffness: 0.5, center };
@@ -137,7 +139,7 @@ proptest! {
         prop_assert_eq!((next, top.lift(&next, &pushed, &d)), stepper.step_symmetric(&start)?.into_parts());
     }
 
-    /// A free motion keeps what it was made of: a step follows it from where it stands.
+    /// The constants of a free motion stay: a step follows it from its place.
     #[test]
     fn free_motions_are_followed(moments in vector::<3>(0.4), r in attitude(), mu in vector::<3>(2.0)) {
         let body = ExactBody { moments: moments.add_scalar(1.0) };

@@ -1,4 +1,4 @@
-//! Steps: what they keep, what undoes them, and that each way of making them is the same.
+//! Steps: their invariants, their inverses, and that each way of making them is the same.
 
 use crate::arbitrary::{attitude, cases, definite, matrix, unit, vector};
 use crate::bodies::{H, damped_bodies, generic_top, particles, pendulums, satellites, staggered_tops, tops};
@@ -17,7 +17,7 @@ type SchemeOf = <clebsch_tests::fixtures::watched_top::WatchedTop as Clebsch>::S
 /// Rounding of a few steps of numbers of order one, divided by h.
 const NEAR: f64 = 1e-12;
 
-/// Eight bodies, of which some are too fast for a step.
+/// Eight bodies; some are too fast for a step.
 fn eight() -> BoxedStrategy<[(Matrix3<f64>, Vector3<f64>); 8]> {
     let body = (attitude(), vector::<3>(1.0), prop::bool::weighted(0.3));
     let made = |(r, mu, is_fast): (Matrix3<f64>, Vector3<f64>, bool)| (r, if is_fast { mu * 1e4 } else { mu });
@@ -67,7 +67,7 @@ proptest! {
         assert_near(&at_once.momentum(), &state.momentum(), NEAR, "the momentum");
     }
 
-    /// A step is what F⁻ℓd and F⁺ℓd say, steps of −h lead back, and the vertical momentum stays.
+    /// A step obeys F⁻ℓd and F⁺ℓd, steps of −h lead back, and the vertical momentum stays.
     #[test]
     fn steps_are_legendre_transforms_and_symmetric(top in tops(), r in attitude(), mu in vector::<3>(2.0)) {
         let (stepper, back) = (top.stepper(H)?, top.stepper(-H)?);
@@ -159,7 +159,7 @@ proptest! {
         prop_assert!(stepper.state_at(f64::NAN, r, mu).is_err() && stepper.cotangent_state_at(f64::NAN, r, p).is_err());
     }
 
-    /// A step of order 1 is half a kick ahead: what is read half a kick before is what steps of order 2 make.
+    /// A step of order 1 is half a kick ahead: the reading half a kick before is the result of steps of order 2.
     #[test]
     fn staggered_steps_are_read_to_second_order(top in staggered_tops(), r in attitude(), mu in vector::<3>(1.0), steps in 0_usize..9) {
         let stepper = top.stepper(H)?;
@@ -205,7 +205,8 @@ proptest! {
 proptest! {
     #![proptest_config(cases(8))]
 
-    /// The error of the suggested step after a time is about what was asked for: a particle on a spring, whose motion is known.
+    /// The error of the suggested step after a time is about the wished one: a particle on a spring, whose motion is
+    /// known.
     #[test]
     fn suggested_steps_reach_their_error(particle in particles(), x in vector::<2>(1.0), p in vector::<2>(1.0), digits in 3.0_f64..7.0) {
         prop_assume!(x.norm() > 0.3);
@@ -221,7 +222,7 @@ proptest! {
         let (sine, cosine) = (omega * h * steps as f64).sin_cos();
         let exact = x * cosine + p * (sine / (omega * particle.mass));
         let found = (end.configuration() - exact).norm();
-        // the phase may hide a part of it at the end; what is seen is below twice the error
+        // the phase may hide a part of it at the end; the visible part is below twice the error
         prop_assert!(found < 2.0 * error, "{found:e} for {error:e}");
         prop_assert!(h > 0.02 * 10.0_f64.powf(-digits / 2.0) && h <= 3.2, "{h}");
     }

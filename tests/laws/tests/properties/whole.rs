@@ -1,4 +1,4 @@
-//! Operations on whole matrices, and points on spheres in (q, w): what code of large systems is made of.
+//! Operations on matrices, and points on spheres in (q, w): the operations of code of large systems.
 
 use crate::arbitrary::{cases, matrix, vector};
 use clebsch::__private::{
@@ -38,7 +38,7 @@ fn near(a: f64, b: f64) -> bool {
 proptest! {
     #![proptest_config(cases(64))]
 
-    /// By what nalgebra has.
+    /// By the operations of nalgebra.
     #[test]
     fn operations_are_those_of_matrices(a in square(), part in matrix::<2, 3>(1.0), s in -2.0_f64..2.0) {
         prop_assert_eq!(shifted(&a, s), a + Square::identity() * s);
@@ -50,7 +50,7 @@ proptest! {
         prop_assert!((matrix_of(|x: &SVector<f64, 5>| a * x) - a).amax() == 0.0);
     }
 
-    /// x ↦ Σ x_k E_k with E = E_ji − E_ij, A ↦ ⟨A, E⟩ its transpose, and what they do to vectors.
+    /// x ↦ Σ x_k E_k with E = E_ji − E_ij, A ↦ ⟨A, E⟩ its transpose, and their action on vectors.
     #[test]
     fn skew_matrices_have_components(x in vector::<10>(1.0), a in square(), v in vector::<5>(1.0), w in vector::<5>(1.0)) {
         let z: Square = skew(&x);
@@ -107,7 +107,8 @@ proptest! {
         prop_assert_eq!(Jacobian::<f64, 10>::lane(&map, 0).times(&x), map.times(&x));
     }
 
-    /// Lanes have the bits of single numbers, also beside a singular one; derivatives are those of the solution, A x′ = r′ − A′x.
+    /// Lanes have the bits of single numbers, also next to a singular one; derivatives are those of the solution, A
+    /// x′ = r′ − A′x.
     #[test]
     fn maps_of_all_kinds_of_numbers_are_inverted(a in square(), b in square(), x in vector::<10>(1.0), y in vector::<10>(1.0)) {
         let factors = [a + Square::identity() * 2.0, b + Square::identity() * 2.0, Square::zeros(), a * b - Square::identity() * 3.0];
@@ -200,7 +201,7 @@ proptest! {
         prop_assert!(matches!(refused, Err(Error::Unsolvable { solvable_fraction, .. }) if near(solvable_fraction, fraction * part)), "{:?}", refused);
     }
 
-    /// What a state holds is the covector w ⊥ q with N = J(q, w), and the motion is that of the Legendre transforms.
+    /// A state stores the covector w ⊥ q with N = J(q, w), and the motion is that of the Legendre transforms.
     #[test]
     fn states_hold_what_they_step_in(stiffness in vector::<8>(2.0), q in vector::<8>(1.0), w in vector::<8>(1.0)) {
         prop_assume!(q.norm() > 0.1);

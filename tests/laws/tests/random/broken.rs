@@ -2,7 +2,7 @@
 
 use crate::problem::{Declared, Kind, Kinetic};
 
-/// The text of a declaration with a mistake, and what the mistake is.
+/// The text of a declaration with a mistake, and the name of the mistake.
 pub struct Mistake {
     pub name: &'static str,
     pub text: String,

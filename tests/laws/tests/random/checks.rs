@@ -1,4 +1,4 @@
-//! What has to hold for every problem that compiles.
+//! The laws of every problem that compiles.
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
@@ -25,7 +25,7 @@ const H: f64 = 0.05;
 /// The number of steps.
 const STEPS: usize = 5;
 
-/// What was found in a problem that passed.
+/// The results of a problem that passed.
 #[derive(Copy, Clone, Debug, Default)]
 #[allow(dead_code, reason = "some of it is only shown")]
 pub struct Found {
@@ -44,7 +44,7 @@ pub struct Found {
 /// Compiles the declaration, steps it, and holds it against the oracle.
 ///
 /// # Errors
-/// What does not hold, in words.
+/// The law that fails, in words.
 pub fn check(problem: &Declared, seed: u64) -> Result<Found, String> {
     let text = problem.text();
     let run = || -> Result<Found, String> {
@@ -137,7 +137,8 @@ fn compensated(problem: &Declared, seed: u64) -> Result<bool, String> {
     Ok(true)
 }
 
-/// The same problem in steps of order 16, where there are such: the slopes that they collocate are those of a short step of the oracle.
+/// The same problem in steps of order 16, where there are such. The slopes that they collocate are those of a short
+/// step of the oracle.
 fn collocated(problem: &Declared, seed: u64) -> Result<bool, String> {
     if problem.order != 2 {
         return Ok(false);
@@ -182,7 +183,7 @@ fn collocated(problem: &Declared, seed: u64) -> Result<bool, String> {
     }
 }
 
-/// A short step without the potential, its increments beside those of the oracle.
+/// A short step without the potential, its increments next to those of the oracle.
 fn increments(mut free: Declared, random: &mut Random) -> Result<(), String> {
     free.potential = None;
     let tokens: TokenStream = free.text().parse().map_err(|error| format!("no tokens: {error}"))?;
@@ -219,8 +220,8 @@ fn increments(mut free: Declared, random: &mut Random) -> Result<(), String> {
     let size = |numbers: &[f64]| numbers.iter().fold(0.0, |most, x: &f64| x.abs().max(most));
     let apart = |a: &[f64], b: &[f64]| size(&a.iter().zip(b).map(|(a, b)| a - b).collect::<Vec<_>>());
     let (q, exact_q) = (found.q.concat(), exact.q.concat());
-    // a momentum that changes at the second order in h alone has increments of the size of h²
-    // a momentum may stay as it is, or nearly
+    // a momentum that changes at the second order in h alone has increments of the size of h². A momentum may stay as
+    // it is, or nearly
     let changed = size(&exact.mu).max(1e-3 * h * size(&state.n));
     let off = (apart(&q, &exact_q) / size(&exact_q)).max(apart(&found.mu, &exact.mu) / changed);
     // NaN is none of these
@@ -244,7 +245,7 @@ fn start(problem: &Declared, random: &mut Random) -> State<f64> {
     State { q, n }
 }
 
-/// What the program sees of a matrix of the oracle.
+/// The part of a matrix of the oracle that the program sees.
 fn shown<R: Copy>(kind: Kind, matrix: &Matrix<R>) -> Vec<R> {
     match kind {
         Kind::Quaternion => matrix.block(0..4, 3..4).entries().to_vec(),

@@ -149,7 +149,7 @@ fn left_multiplication<R: Real>(v: &Matrix<R>) -> Matrix<R> {
     Matrix::of(4, 4, &[o, -z, y, x, z, o, -x, y, -y, x, o, z, -x, -y, -z, o])
 }
 
-/// What the leaves of a formula are called.
+/// The names of the leaves of a formula.
 #[derive(Clone, Debug, Default)]
 pub struct Names {
     pub fields: Vec<String>,

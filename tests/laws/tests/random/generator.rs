@@ -316,7 +316,7 @@ impl Generator<'_> {
         }
     }
 
-    /// A cost of displacements alone: a function of q and Φ_F q, which leaves open what motions that fix q do.
+    /// A cost of displacements alone: a function of q and Φ_F q. It does not fix the motions that leave q unchanged.
     fn natural(&mut self) {
         let displacement = |leaf: usize, leaves: &[Leaf]| leaves[leaf].image.clone() - Formula::Point(leaf);
         let mut sum: Option<Formula> = None;

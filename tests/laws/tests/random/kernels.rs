@@ -63,7 +63,7 @@ struct Run<'a> {
 }
 
 impl Run<'_> {
-    /// A shared term: a number, or what a call returns.
+    /// A shared term: a number, or the result of a call.
     fn local(&self, code: &Code) -> Matrix<f64> {
         let Code::Call(callee, arguments) = code else { return self.matrix(code) };
         let argument =
@@ -104,7 +104,7 @@ impl Run<'_> {
         }
     }
 
-    /// A number, or a matrix as a whole.
+    /// A number, or a matrix.
     fn matrix(&self, code: &Code) -> Matrix<f64> {
         match code {
             Code::Whole(whole) => self.whole(whole),

@@ -1,11 +1,13 @@
-//! Random problems: what compiles integrates as the oracle does, and what is refused says why.
+//! Random problems: those that compile integrate as the oracle does, and those that are refused say why.
 //!
-//! A seed makes a problem as data: groups, sides, spaces, a cost or a Lagrangian, a polynomial potential, dials. From the same
-//! data come the text of a declaration, whose program is stepped by running its kernels in the order of emitted code, and a
-//! problem of the oracle, which solves the unsimplified equations to 30 digits. A problem that fails is shrunk before it is shown.
+//! A seed makes a problem as data: groups, sides, spaces, a cost or a Lagrangian, a polynomial potential, dials. From
+//! the same data come the text of a declaration and a problem of the oracle. The program of the text is stepped by
+//! running its kernels in the order of emitted code. The oracle solves the unsimplified equations to 30 digits. A
+//! problem that fails is shrunk before it is shown.
 //!
-//! Each test takes some dozens of seeds, and twice as many with the feature `heavy`. `CLEBSCH_RANDOM=5000 cargo test -p clebsch-laws --test random`
-//! takes as many as it says, `CLEBSCH_RANDOM=1234..1235` these, and `-- --nocapture` shows what was found in each.
+//! Each test takes some dozens of seeds, and twice as many with the feature `heavy`.
+//! `CLEBSCH_RANDOM=5000 cargo test -p clebsch-laws --test random` takes as many as it says, `CLEBSCH_RANDOM=1234..1235`
+//! these, and `-- --nocapture` shows the results of each.
 
 mod broken;
 mod checks;
@@ -51,7 +53,7 @@ fn report(failures: &[String]) {
     assert!(failures.is_empty(), "{} failures\n\n{}", failures.len(), failures.join("\n\n"));
 }
 
-/// A failure without numbers: what a smaller problem has to fail with too.
+/// A failure without numbers: a smaller problem has to fail with it too.
 fn kind(failure: &str) -> String {
     let line = failure.lines().next().unwrap_or_default();
     line.chars().filter(|c| c.is_alphabetic()).collect::<String>().chars().skip(4).take(16).collect()
@@ -100,14 +102,14 @@ fn what_compiles_integrates_as_the_oracle_does() {
     integrates(seeds(100).filter(|seed| seed % 2 == 0));
 }
 
-/// The other half, beside the first.
+/// The other half of the run.
 #[test]
 fn what_compiles_integrates_as_the_oracle_does_too() {
     integrates(seeds(100).filter(|seed| seed % 2 == 1));
 }
 
-/// Costs on abelian groups that couple configuration and group element: their equations are linear where the cost is quadratic, with
-/// more in them than the inertia. Few of the problems above are such.
+/// Costs on abelian groups that couple configuration and group element. Their equations are linear where the cost is
+/// quadratic, with more in them than the inertia. Few of the problems above are such.
 #[test]
 fn what_is_linear_integrates_as_the_oracle_does() {
     let is_abelian = |name: &str| name.starts_with("Translation") || ["SO<2>", "U<1>"].contains(&name);
@@ -157,7 +159,7 @@ fn mutilated_declarations_are_refused_or_compiled() {
     report(&failures);
 }
 
-/// What ends too early has its place at the end.
+/// A declaration that ends too early has its error at the end.
 #[test]
 fn the_end_of_a_declaration_has_a_place() {
     let declaration = |potential: &str| {

@@ -7,7 +7,7 @@ use clebsch_tests::oracle::precise::real::Real;
 
 use crate::formula::{Formula, Names, Place};
 
-/// What an element is in a declaration, beside a square matrix.
+/// The kind of an element in a declaration, if it is not a square matrix.
 #[derive(Copy, Clone, Debug, PartialEq, Eq)]
 pub enum Kind {
     /// The matrix itself, or any matrix or vector of a configuration.

@@ -33,7 +33,7 @@ impl Seen {
 }
 
 impl<'a, 'g> Stepper<'a, 'g> {
-    /// What `stepper(h)` does; parameters in the order of the fields.
+    /// As `stepper(h)`; parameters in the order of the fields.
     pub fn new(program: &'a MechanicsProgram<'g>, fields: &[Vec<f64>], h: f64) -> Stepper<'a, 'g> {
         let model = &program.formulas.model;
         let mut values = Values::default();
@@ -121,12 +121,12 @@ impl<'a, 'g> Stepper<'a, 'g> {
         Ok(state)
     }
 
-    /// What moves the configuration: the chart coordinates or the increments.
+    /// The data that moves the configuration: the chart coordinates or the increments.
     fn moved(&self) -> Vec<Vec<f64>> {
         self.found(Id::Displacement).or_else(|| self.found(Id::Advance)).unwrap_or_default()
     }
 
-    /// What the move of a step without kicks adds to (q, N), where sums are compensated; a step of one part.
+    /// The increments of (q, N) by the move of a step without kicks, where sums are compensated; a step of one part.
     pub fn increments(&mut self, t: f64, state: &Seen) -> Result<Seen, String> {
         let (program, step) = (self.program, &self.program.steps[0]);
         self.place(t, state);
@@ -259,7 +259,7 @@ impl<'a, 'g> Stepper<'a, 'g> {
 struct Interpreted<'a, 'b, 'g> {
     stepper: RefCell<&'a mut Stepper<'b, 'g>>,
     solve: &'a Solve,
-    /// All momenta, of which the equation holds some.
+    /// All momenta; the equation has some of them.
     mu: &'a [f64],
 }
 

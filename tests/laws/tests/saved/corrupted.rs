@@ -1,5 +1,6 @@
-//! Saved states with a number replaced: an error, or a state that steps on its space. What is no state of its own but follows from time, configuration and
-//! momentum, such as the impulse at q and what a free motion keeps, cannot change the motion.
+//! Saved states with a number replaced: an error, or a state that steps on its space. Data that follows from time,
+//! configuration and momentum cannot change the motion. Examples are the impulse at q and the constants of a free
+//! motion.
 //!
 //! With the feature `heavy` every number is replaced by every other one, after more steps, and so are all pairs of neighbours.
 
@@ -24,7 +25,7 @@ use serde_json::Value;
 
 use crate::{Kept, SPIN, inertia};
 
-/// Numbers that take the place of others; what is between them and `f32` is rounded to its range.
+/// Numbers that take the place of others; numbers between them and `f32` are rounded to its range.
 const HOSTILE: [f64; 18] = [
     0.0,
     -0.0,
@@ -84,7 +85,7 @@ fn count(part: &Value) -> usize {
     }
 }
 
-/// States with numbers replaced, of which some were refused and others stepped.
+/// States with numbers replaced; some were refused and others stepped.
 struct Trial<'a, S: Clebsch> {
     stepper: &'a Stepper<S>,
     /// The state as it was written.
@@ -169,7 +170,8 @@ where
         largest(&self.stepper.system().orbit_defect(state.configuration()))
     }
 
-    /// The step is the one from the state that was written: up to √ε of the momentum, for what is accepted as rounding is that.
+    /// The step is the one from the state that was written, up to √ε of the momentum: errors of this size are accepted
+    /// as rounding.
     fn is_the_same(&self, next: &State<S>, case: &str) {
         let (q, mu) = (self.end.configuration(), self.end.momentum());
         let moved = largest(&next.configuration().zip_map(q, |a, b| a - b).max_abs());

@@ -25,7 +25,7 @@ use serde::de::DeserializeOwned;
 /// Steps before the state is written, and after.
 const STEPS: usize = 20;
 
-/// What can be written and read back, all of it.
+/// Values that can be written and read back completely.
 trait Kept: Serialize + DeserializeOwned {}
 impl<T: Serialize + DeserializeOwned> Kept for T {}
 
@@ -46,7 +46,7 @@ where
     let from_bytes: SavedState<S> = postcard::from_bytes(&bytes).expect("the same numbers");
     for saved in [from_text, from_bytes] {
         let resumed = stepper.resume(saved)?;
-        // every bit, of what a state does not show too
+        // every bit, also of data that a state does not show
         assert_eq!(serde_json::to_string(&resumed).expect("numbers"), text, "{}", S::NAME);
         let end = steps(stepper, resumed)?;
         assert_eq!(end, exact, "{}", S::NAME);
@@ -70,7 +70,7 @@ fn every_kind_of_state_goes_on_bit_for_bit() -> Result<(), Error> {
     // an impulse, and rests
     let stepper = CompensatedTop { mass_matrix, weight, center }.into_stepper(0.05)?;
     goes_on(&stepper, stepper.state(r, spin)?)?;
-    // what a free motion keeps
+    // the constants of a free motion
     let stepper = ExactBody { moments: Vector3::new(1.0, 1.5, 2.0) }.into_stepper(0.3)?;
     goes_on(&stepper, stepper.state(r, spin)?)?;
     let stepper =
@@ -115,7 +115,8 @@ fn single_precision_and_lanes_go_on_too() -> Result<(), Error> {
     body::<F32x8>(start)
 }
 
-/// Numbers that no state has are refused, with what is wrong; those that were written with another step size go on with this one.
+/// Numbers that no state has are refused, with the mistake; those that were written with another step size go on with
+/// this one.
 #[test]
 fn what_is_read_is_checked() -> Result<(), Error> {
     type Top = CompensatedTop;
@@ -148,7 +149,8 @@ fn what_is_read_is_checked() -> Result<(), Error> {
 proptest! {
     #![proptest_config(ProptestConfig { cases: 32, failure_persistence: None, ..ProptestConfig::default() })]
 
-    /// Any state of any top, whatever its step size was: what is read back is what was written, to the bit, and goes on like it.
+    /// Any state of any top, whatever its step size was. The state that is read back is that which was written, to the
+    /// bit, and goes on like it.
     #[test]
     fn saved_states_resume_bit_for_bit(
         seed in any::<u64>(), weight in 0.1_f64..3.0, h in 0.01_f64..0.1, steps in 0_usize..9, other in 0.01_f64..0.1,

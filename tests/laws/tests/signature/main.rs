@@ -16,7 +16,7 @@ const H: f64 = 0.01;
 /// The least and the largest eigenvalue.
 type Ends = [f64; 2];
 
-/// Nothing of what is accepted, the eigenvalues of what is refused.
+/// Nothing if it is accepted, the eigenvalues if it is refused.
 fn refused<S>(made: Result<S, Error>) -> Option<Ends> {
     match made {
         Ok(_) => None,
@@ -108,7 +108,7 @@ fn units_do_not_matter() {
         let units = Vector3::from_fn(|_, _| 10.0_f64.powf(random.between(-3.0, 3.0)));
         let units = Matrix3::from_diagonal(&units);
         let scaled = units * inertia * units;
-        // the inverse of what differs by much more has no digits, which is another error
+        // the inverse of moments that differ by much more has no digits, which is another error
         let made = Body { inertia: (scaled + scaled.transpose()) / 2.0 }.into_stepper(H);
         assert_eq!(refused(made).is_some(), expected(&inertia).is_some(), "{scaled}");
     }
@@ -119,7 +119,8 @@ fn units_do_not_matter() {
     }
 }
 
-/// It is the inertia that is to be positive, not the parameter: ∫ρ₁²dm may be made negative by an inertia that has no distribution of mass.
+/// The inertia has to be positive, not the parameter. An inertia that has no distribution of mass may make ∫ρ₁²dm
+/// negative.
 #[test]
 fn mass_matrices_may_have_negative_eigenvalues() {
     let random = &mut Random::new(7);
@@ -227,7 +228,7 @@ proptest! {
     }
 }
 
-/// A quadratic form takes the symmetric part of its matrix: what is left of it does nothing.
+/// A quadratic form takes the symmetric part of its matrix: the other part does nothing.
 #[test]
 fn antisymmetric_parts_do_nothing_to_a_quadratic_form() -> Result<(), Error> {
     assert!(Coupled::DERIVATION.contains("Only the symmetric part of mass enters."));

@@ -1,9 +1,9 @@
-//! The derived steps are the hand-written ones, over many steps: closed forms on spheres, Newton's method on a Cayley vector for
-//! bodies, a Riccati equation for SO(4), Störmer and Verlet for two bodies.
+//! The derived steps are the hand-written ones, over many steps. Spheres have closed forms, and bodies Newton's method
+//! on a Cayley vector. SO(4) has a Riccati equation, and two bodies the method of Störmer and Verlet.
 //!
-//! Two computations of one step differ by a few units in the last place, which then grow like the distance of two nearby motions:
-//! linearly for these regular ones, with a factor of h times the number of steps and the rates of the problem. With 1000 steps
-//! of 0.01 to 0.05 that makes 1e-13 to 1e-12.
+//! Two computations of one step differ by a few units in the last place, which then grow like the distance of two
+//! nearby motions. For these regular ones it grows linearly, with a factor of h times the number of steps and the rates
+//! of the problem. With 1000 steps of 0.01 to 0.05 that makes 1e-13 to 1e-12.
 
 mod products;
 

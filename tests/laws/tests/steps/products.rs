@@ -46,7 +46,7 @@ fn coupled_spheres() {
     pair(&mut random, mass, forces, 0.02, |q, mu| last(&stepper, q, mu));
 }
 
-/// Two points on S² by hand, against what the derived stepper makes of the same start.
+/// Two points on S² by hand, against the derived stepper from the same start.
 fn pair(
     random: &mut Random,
     inertia: [f64; 2],
@@ -133,7 +133,7 @@ fn one_factor_on_each_side() {
     assert_near(&found.0.1, &point.0, 1e-12, "the point");
 }
 
-/// Translations and rotations together, in single precision: what f32 can hold over a thousand steps is 1e-4 to 1e-3.
+/// Translations and rotations together, in single precision: f32 is right to 1e-4 to 1e-3 over a thousand steps.
 #[test]
 fn flying_body_in_single_precision() {
     let (mass, stiffness, h) = (1.5, 2.0, 0.02);

@@ -361,7 +361,7 @@ fn a_unipotent_group() {
     }
 }
 
-/// Forces of all kinds and an input: no symplectic form is kept, but derivatives are those of the step.
+/// Forces of all kinds and an input: no symplectic form is conserved, but derivatives are those of the step.
 #[test]
 fn forces_and_inputs() {
     let random = &mut Random::new(90);
@@ -441,8 +441,8 @@ fn long_runs_against_differences() {
     }
 }
 
-/// Where nothing acts, turning the start turns the run and changes no body momentum: nothing of the size of inertia/h is cancelled, so
-/// products of many tangent maps do not drift.
+/// Where nothing acts, turning the start turns the run and changes no body momentum. Nothing of the size of inertia/h
+/// is cancelled, so products of many tangent maps do not drift.
 #[test]
 fn a_free_body_does_not_care_where_it_starts() {
     let random = &mut Random::new(91);

@@ -183,7 +183,7 @@ fn vector<T: Scalar>(entries: &[T]) -> Vector3<T> {
     Vector3::from_column_slice(entries)
 }
 
-/// From the numbers in the order of its quantities; what is behind them is not read.
+/// From the numbers in the order of its quantities; later numbers are not read.
 pub fn top<T: Scalar>(numbers: &[T]) -> Top<T> {
     Top { mass_matrix: symmetric(numbers), weight: numbers[6], center: vector(&numbers[7..10]) }
 }

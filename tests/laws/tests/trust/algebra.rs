@@ -3,8 +3,8 @@
 use clebsch_tests::oracle::precise::group::{Group, group};
 use clebsch_tests::oracle::precise::matrix::Matrix;
 
-/// The matrices ξ with L(ξ) = 0. The entries of ξ are taken column by column; one that those before do not determine is a
-/// coordinate, one in one matrix of the basis and zero in the others.
+/// The matrices ξ with L(ξ) = 0. The entries of ξ are taken column by column. One that those before do not determine is
+/// a coordinate, one in one matrix of the basis and zero in the others.
 pub fn solutions(n: usize, equation: impl Fn(&Matrix<f64>) -> Matrix<f64>) -> Group {
     // the last entries first, so that elimination writes each as a function of those before it
     let place = |k: usize| (k % n, k / n);

@@ -1,4 +1,4 @@
-//! What has to hold for every system of the table.
+//! The laws of every system of the table.
 
 use clebsch::Clebsch;
 use clebsch_tests::oracle::flat::{Flat, far};

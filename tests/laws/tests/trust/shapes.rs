@@ -7,7 +7,7 @@ use nalgebra::{Quaternion, SMatrix};
 
 /// A configuration that is an element of the group too.
 pub trait Element: Flat + Copy + std::fmt::Debug {
-    /// What it is for the oracle.
+    /// Its kind for the oracle.
     const KIND: Kind;
 
     /// The one with these numbers, in the order of [`Flat::numbers`].

@@ -75,8 +75,8 @@ macro_rules! checked {
     };
 }
 
-/// Matrix groups: the name of the module, the group, the size of its matrices and its dimension; the discretisation of its
-/// Lagrangian; its basis for the oracle; and its declaration.
+/// Matrix groups. A row has the name of the module, the group, the size of its matrices and its dimension. Then come
+/// the discretisation of its Lagrangian, its basis for the oracle, and its declaration.
 macro_rules! groups {
     ($($module:ident: [$($group:tt)+], $n:literal, $m:literal, $discretization:ident, $basis:expr $(, {$($declared:tt)*})?;)*) => { $(
         mod $module {

@@ -115,8 +115,8 @@ impl<R: Real> Matrix<R> {
         Matrix::from_fn(b.rows, b.columns, |i, j| b[(i, j)] / a[(i, i)])
     }
 
-    /// A solution of A x = b where b is in the range of A, whose rank may be less than full: unknowns whose pivots are below
-    /// `least` times the largest entry are 0.
+    /// A solution of A x = b where b is in the range of A, whose rank may be less than full. Unknowns whose pivots are
+    /// below `least` times the largest entry are 0.
     pub fn solve_in_range(&self, right: &Self, least: f64) -> Self {
         let (mut a, mut b) = (self.clone(), right.clone());
         let mut order: Vec<usize> = (0..a.columns).collect();
