@@ -15,7 +15,7 @@ const STEP_SIZES: [f64; 6] = [1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6];
 /// Runs of each scene and step size.
 const RUNS: u64 = 6;
 
-/// The root mean squares over all runs of two errors. One is the loss of conserved momenta, the other the distance of
+/// The root mean squares over all runs of two errors. One is the loss of conserved momenta. The other is the distance of
 /// the end of a run from that of the same run in double-double numbers. Momenta and configurations are of size one.
 #[derive(Clone, Copy, Debug)]
 struct Loss {
