@@ -33,13 +33,10 @@ fn numbers<T: Real>(space: &impl Space<T>) -> Vec<f64> {
     found.into_inner()
 }
 
-fn followed<T: Real, S: Clebsch<Scalar = T>, const K: usize>(
-    stepper: Stepper<S>,
-    q: S::Configuration,
-    mu: S::Momentum,
-) -> Run
+fn followed<T, S, const K: usize>(stepper: Stepper<S>, q: S::Configuration, mu: S::Momentum) -> Run
 where
-    S: Conserves<Conserved = Conserved<T, K>>,
+    T: Real,
+    S: Conserves<Conserved = Conserved<T, K>> + Clebsch<Scalar = T>,
 {
     let start = stepper.state(q, mu).expect("a state");
     let end = stepper

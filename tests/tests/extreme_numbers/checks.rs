@@ -338,8 +338,8 @@ fn hostile(random: &mut Random) -> f64 {
     let choice = random.between(0.0, 24.0) as usize;
     let size = 10.0_f64.powf(random.between(-RATIOS, RATIOS));
     match EXTREME.get(choice) {
-        Some(&extreme) if choice % 3 == 0 => extreme,
-        _ if choice % 2 == 0 => size,
+        Some(&extreme) if choice.is_multiple_of(3) => extreme,
+        _ if choice.is_multiple_of(2) => size,
         _ => -size,
     }
 }
