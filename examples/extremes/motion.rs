@@ -140,7 +140,7 @@ impl<S: Scene, M: Method<S>> Watched for Moving<S, M> {
     }
 
     fn is_finite(&self) -> bool {
-        self.state.configuration().is_finite() && self.state.momentum().is_finite()
+        self.state.configuration().all_finite() && self.state.momentum().all_finite()
     }
 }
 

@@ -230,7 +230,7 @@ impl<'a, S: Variational<M, Scalar: Real>, B: Differentiated<S, M>, const M: usiz
             return Err(Error::PathLength { nodes, per_step });
         }
         self.stepper.check_place(self.time, start)?;
-        if matches!(guess, Guess::Velocity(velocity) if !velocity.is_finite()) {
+        if matches!(guess, Guess::Velocity(velocity) if !velocity.all_finite()) {
             return Err(Error::NotFinite { name: "the guessed velocity" });
         }
         Ok(())

@@ -19,7 +19,11 @@ use nalgebra::SMatrix;
 pub fn check_definite<T: Scalar, const N: usize>(inertia: &SMatrix<T, N, N>) -> Result<(), Error> {
     (0..T::LANES).try_for_each(|lane| {
         let inertia = inertia.lane(lane);
-        if is_definite(&inertia) || !Space::<T::Lane>::is_finite(&inertia) { Ok(()) } else { Err(indefinite(&inertia)) }
+        if is_definite(&inertia) || !Space::<T::Lane>::all_finite(&inertia) {
+            Ok(())
+        } else {
+            Err(indefinite(&inertia))
+        }
     })
 }
 

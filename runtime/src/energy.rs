@@ -27,7 +27,7 @@ pub fn kinetic_energy_at<T: Scalar, const M: usize>(inertia: &SMatrix<T, M, M>, 
         if mu.iter().all(|x| *x == zero) {
             return zero;
         }
-        if !(inertia.is_finite() && mu.is_finite()) {
+        if !(inertia.all_finite() && mu.all_finite()) {
             return T::Lane::zero() / T::Lane::zero();
         }
         solve_linear(&inertia, &mu).map_or(one / zero, |velocity| dot(&mu, &velocity) * T::Lane::from_ratio(1, 2))
@@ -53,7 +53,7 @@ pub fn legendre_fenchel<T: Scalar, const M: usize>(equation: &impl VelocityEquat
         let (zero, one) = (T::Lane::zero(), T::Lane::one());
         let mu = mu.lane(lane);
         let (_, at_rest, hessian) = linearize(&SVector::from_element(zero));
-        if !(mu.is_finite() && at_rest.is_finite() && hessian.is_finite()) {
+        if !(mu.all_finite() && at_rest.all_finite() && hessian.all_finite()) {
             return T::Lane::zero() / T::Lane::zero();
         }
         match solve(&FromRest { linearize: &linearize, at_rest }, &(mu - at_rest)) {

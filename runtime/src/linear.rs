@@ -276,7 +276,7 @@ pub(crate) fn function<T: Scalar, const N: usize>(
 ) -> SMatrix<T, N, N> {
     Space::<T>::side_by_side(|lane| {
         let a = a.lane(lane);
-        let value = if Space::<T::Lane>::is_finite(&a) { f(&a) } else { None };
+        let value = if Space::<T::Lane>::all_finite(&a) { f(&a) } else { None };
         value.unwrap_or_else(|| SMatrix::from_element(T::Lane::zero() / T::Lane::zero()))
     })
 }

@@ -44,7 +44,7 @@ pub fn constant<T: Scalar>(value: impl Constant) -> T {
 
 /// [`Error::NotFinite`] with the name of the field if a number in it is NaN or infinite.
 pub fn check_finite<T: Scalar>(name: &'static str, value: &impl Space<T>) -> Result<(), Error> {
-    if value.is_finite() { Ok(()) } else { Err(Error::NotFinite { name }) }
+    if value.all_finite() { Ok(()) } else { Err(Error::NotFinite { name }) }
 }
 
 /// [`Error::NotFinite`] with the name of the field if a number in it is NaN. A field that bounds alone read may be

@@ -17,7 +17,7 @@ pub(crate) fn root<T: Real, const M: usize>(
     let (mut x, mut before) = (start, T::from_f64(f64::INFINITY));
     for _ in 0..CORRECTIONS {
         // the largest of some numbers knows nothing of NaN
-        let now = defect(&x).filter(Space::<T>::is_finite)?;
+        let now = defect(&x).filter(Space::<T>::all_finite)?;
         let size = now.max_abs();
         let shrinks = size > T::zero() && size < before;
         if !shrinks {

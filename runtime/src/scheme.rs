@@ -229,7 +229,7 @@ fn is_due(number: usize) -> bool {
 #[cold]
 #[inline(never)]
 fn look<T: Scalar>(q: &impl Space<T>, held: &impl Space<T>) -> Result<(), Error> {
-    let is_finite = q.is_finite() && held.is_finite();
+    let is_finite = q.all_finite() && held.all_finite();
     if is_finite { Ok(()) } else { Err(Error::NotFinite { name: "the state after a step" }) }
 }
 

@@ -23,7 +23,7 @@ impl<T: Real, const N: usize> Schur<T, N> {
     ///
     /// Source: Golub and Van Loan, *Matrix Computations*, 4th edition, algorithms 7.4.2, 7.5.1 and 7.5.2.
     pub fn new(b: &SMatrix<T, N, N>) -> Option<Self> {
-        if !b.is_finite() {
+        if !b.all_finite() {
             return None;
         }
         let mut schur = Self::hessenberg(rows(b));

@@ -15,7 +15,7 @@ use nalgebra::{Quaternion, SMatrix};
 ///
 /// let place = (Vector3::new(1.0, -3.0, 2.0), [Matrix2::<f64>::identity(); 2]);
 /// assert_eq!(place.max_abs(), 3.0);
-/// assert!(place.is_finite());
+/// assert!(place.all_finite());
 /// assert_eq!(place.distance_squared(&Space::<f64>::origin()), 18.0);
 /// ```
 pub trait Space<T: Scalar>: Copy + Debug + PartialEq {
@@ -83,7 +83,7 @@ pub trait Space<T: Scalar>: Copy + Debug + PartialEq {
 
     /// Whether no scalar is NaN or infinite in any lane.
     #[inline]
-    fn is_finite(&self) -> bool {
+    fn all_finite(&self) -> bool {
         self.all(|x| x.is_finite())
     }
 }

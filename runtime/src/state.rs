@@ -71,7 +71,7 @@ impl<S: Clebsch, M: Method<S>> State<S, M> {
     /// Whether all of it is finite in all lanes.
     #[inline]
     pub(crate) fn is_finite(&self) -> bool {
-        self.configuration.is_finite() & self.held.is_finite() & Scalar::is_finite(self.time.now())
+        self.configuration.all_finite() & self.held.all_finite() & Scalar::is_finite(self.time.now())
     }
 
     /// Takes lane `lane` of another state.

@@ -12,7 +12,7 @@ use nalgebra::{SMatrix, SVector};
 /// A place that a step has reached, where it is finite.
 #[inline]
 pub fn check_reached<T: Scalar, X: Space<T>>(x: X) -> Result<X, Error> {
-    if x.is_finite() { Ok(x) } else { Err(Error::NotFinite { name: "the place after the step" }) }
+    if x.all_finite() { Ok(x) } else { Err(Error::NotFinite { name: "the place after the step" }) }
 }
 
 /// (q, N) after one step under the input u.

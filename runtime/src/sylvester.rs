@@ -235,7 +235,7 @@ impl<T: Scalar, const N: usize, const M: usize> Jacobian<T, M> for Sylvester<T, 
     }
 
     fn all_finite(&self) -> bool {
-        Space::<T>::is_finite(&self.factor)
+        Space::<T>::all_finite(&self.factor)
     }
 
     fn between(&self, other: &Self, s: T) -> Self {

@@ -183,7 +183,7 @@ const DERIVATIVE: Error = Error::NotFinite { name: "the derivative of the step" 
 fn finite_tangent<T: Scalar, const M: usize>(tangent: Tangent<T, M>) -> Result<Tangent<T, M>, Error> {
     let Tangent { motion_by_motion: a, motion_by_momentum: b, momentum_by_motion: c, momentum_by_momentum: d } =
         tangent;
-    if [a, b, c, d].is_finite() { Ok(tangent) } else { Err(DERIVATIVE) }
+    if [a, b, c, d].all_finite() { Ok(tangent) } else { Err(DERIVATIVE) }
 }
 
 /// One edge of a step: its increment, its end and its derivatives.
@@ -267,7 +267,7 @@ where
             let of_edge = Sensitivity { motion, momentum: after + times(&edge.after_by_end, &motion) };
             sensitivity = sensitivity.after(tangent, &of_edge);
         })?;
-        if !(sensitivity.motion, sensitivity.momentum).is_finite() {
+        if !(sensitivity.motion, sensitivity.momentum).all_finite() {
             return Err(Error::NotFinite { name: "the sensitivity of the step" });
         }
         Ok((self.stepped(state, q, mu)?, finite_tangent(tangent)?, sensitivity))
@@ -315,7 +315,7 @@ where
         let next = S::advance(&self.system, q, &increment);
         let edge = B::Scheme::visit(self.at(t), number, AtFixedElement((q, &increment, &next, u)));
         let Some(tangent) = of_edge(&edge) else {
-            let is_finite = edge.before_by_end.is_finite();
+            let is_finite = edge.before_by_end.all_finite();
             let step_size = self.step_size().to_f64();
             return Err(if is_finite { Error::SingularTangent { step_size } } else { DERIVATIVE });
         };

@@ -155,7 +155,7 @@ impl<T: Real, S: Variational<M, Scalar = T>, B: Differentiated<S, M>, const M: u
             motions.iter_mut().skip(1).zip(few.path.iter()).for_each(|(sum, node)| *sum += node.motion);
             // The next correction would be less than the difference of few edges from many.
             if summary.size <= T::from_ratio(1, 8) {
-                return motions.is_finite().then_some(motions);
+                return motions.all_finite().then_some(motions);
             }
             bound = summary.size * T::from_ratio(1, 2);
         }

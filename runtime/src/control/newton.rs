@@ -125,7 +125,7 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: usize
         let end = self.end();
         let costate = self.stages.last().map(|stage| stage.next_costate);
         let multipliers = costate
-            .filter(|costate| costate.is_finite() && costate.max_abs() > T::zero())
+            .filter(|costate| costate.all_finite() && costate.max_abs() > T::zero())
             .map_or(SVector::zeros(), |costate| self.multipliers(&end, &costate));
         let mut now = Iterate::new(multipliers, self.resume_or_relax()?, end.distance);
         now.is_open |= is_priced;

@@ -323,7 +323,7 @@ where
 #[cold]
 fn not_finite<T: Scalar, Q: Space<T>, M: Space<T>>(q: &[Q], mu: &[M], kick: &[M]) -> Option<SiteError> {
     q.iter().zip(mu).zip(kick).enumerate().find_map(|(i, ((q, mu), kick))| {
-        let name = match (q.is_finite(), kick.is_finite(), mu.is_finite()) {
+        let name = match (q.all_finite(), kick.all_finite(), mu.all_finite()) {
             (true, true, true) => return None,
             (false, ..) => "the configuration after the step",
             (_, false, _) => "the gradient of the potential after the step",

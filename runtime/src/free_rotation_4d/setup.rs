@@ -83,7 +83,7 @@ pub(super) fn set_up<T: Real>(d: &[T; 4], momentum: &Vector<T>) -> Option<Consta
     let casimirs = [square + two * pf, square - two * pf].map(|c| if c > least { c.recip() } else { T::zero() });
     let turn = turn([delta / step, kappa / step], square, pf);
     let constants = Constants { parts: T::one(), by_series: T::zero(), step, moments, origin, slopes, casimirs, turn };
-    let is_right = Space::<T>::is_finite(&constants.write()) && reproduces(&constants, momentum, &exact);
+    let is_right = Space::<T>::all_finite(&constants.write()) && reproduces(&constants, momentum, &exact);
     is_right.then_some(constants)
 }
 
@@ -95,7 +95,7 @@ fn reproduces<T: Real>(constants: &Constants<T>, momentum: &Vector<T>, (incremen
     let error: Matrix<T> =
         core::array::from_fn(|i| core::array::from_fn(|j| entry(&turned, i, j) - entry(increment, i, j)));
     let tolerance = T::from_ratio(super::turn::LARGEST_LOSS, 1) * T::EPSILON;
-    Space::<T>::is_finite(&next)
+    Space::<T>::all_finite(&next)
         && error.max_abs() <= tolerance * increment.max_abs()
         && (next - end).max_abs() <= tolerance * end.max_abs()
 }

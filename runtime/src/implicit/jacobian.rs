@@ -97,7 +97,7 @@ impl<T: Scalar, const M: usize> Jacobian<T, M> for SMatrix<T, M, M> {
 
     #[inline]
     fn all_finite(&self) -> bool {
-        Space::<T>::is_finite(self)
+        Space::<T>::all_finite(self)
     }
 
     #[inline]

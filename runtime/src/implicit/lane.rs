@@ -41,8 +41,8 @@ pub(super) fn follow<T: Scalar, E: Equation<T, M, N>, const M: usize, const N: u
                 xi.set_lane(lane, &SVector::from_element(T::Lane::zero() / T::Lane::zero()));
                 failure = match failure {
                     Some((known, true)) => Some((known, true)),
-                    Some((known, false)) if !own.is_finite() => Some((known, false)),
-                    _ => Some((error, own.is_finite())),
+                    Some((known, false)) if !own.all_finite() => Some((known, false)),
+                    _ => Some((error, own.all_finite())),
                 };
             }
         }
@@ -60,7 +60,7 @@ fn unfinished<T: Scalar, E: Equation<T, M, N>, const M: usize, const N: usize>(
     xi: &SVector<T, M>,
     made: u32,
 ) -> Error {
-    if !target.is_finite() {
+    if !target.all_finite() {
         return Error::NotFinite { name: "the momentum" };
     }
     let terms = equation.prepare(target);

@@ -28,7 +28,7 @@ impl<'a, T: Real, E: Equation<T, M, N>, const M: usize, const N: usize> Homotopy
         made: u32,
         limit: Option<u32>,
     ) -> Result<SVector<T, M>, Error> {
-        if !target.is_finite() {
+        if !target.all_finite() {
             return Err(Error::NotFinite { name: "the momentum" });
         }
         let most = allowed(LINEARIZATIONS, limit, made);

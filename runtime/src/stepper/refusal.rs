@@ -68,7 +68,7 @@ impl<S: Clebsch, M: Method<S>> Stepper<S, M> {
         compute: impl Fn(AtOf<'_, S, M::Scheme, M>) -> Result<V, Error>,
     ) -> Result<V, Error> {
         match compute(self.at(t)) {
-            Ok(value) if value.is_finite() => Ok(value),
+            Ok(value) if value.all_finite() => Ok(value),
             Ok(value) => {
                 let lane = first_without::<S::Scalar>(value.finite());
                 Err(whole_or_lane::<S::Scalar>(lane, Error::NotFinite { name: name(&value, lane) }))

@@ -118,7 +118,7 @@ impl<S: Clebsch, M: Method<S>> Stepper<S, M> {
 
     /// The data for the first step from q are finite.
     pub(crate) fn check_left(&self, t: T<S>, q: &Q<S>, left: &Left<S, M>) -> Result<(), Error> {
-        if left.is_finite() {
+        if left.all_finite() {
             return Ok(());
         }
         let has_gradient = (0..S::Scalar::LANES).all(|lane| self.has_gradient(t, q, lane));
@@ -197,7 +197,7 @@ impl<S: Clebsch, M: Method<S>> Stepper<S, M> {
 /// The input is finite.
 #[inline(always)]
 fn check_input<S: Clebsch>(u: &S::Input) -> Result<(), Error> {
-    if size_of::<S::Input>() == 0 || u.is_finite() { Ok(()) } else { Err(Error::NotFinite { name: "the input" }) }
+    if size_of::<S::Input>() == 0 || u.all_finite() { Ok(()) } else { Err(Error::NotFinite { name: "the input" }) }
 }
 
 /// The impulse `kept` in the lanes of the mask, `anew` in the others.

@@ -84,15 +84,15 @@ fn judge<S: Case<D, U, C>, const D: usize, const U: usize, const C: usize>(
         }
     };
     let numbers = [found.price(), found.residual(), found.gap()];
-    if !(numbers.iter().all(|number| number.is_finite()) && found.end().is_finite()) {
+    if !(numbers.iter().all(|number| number.is_finite()) && found.end().all_finite()) {
         return Err(format!("price, residual and gap are {numbers:?}"));
     }
     for (k, stage) in found.stages().iter().enumerate() {
         let is_finite = [
-            stage.input().is_finite(),
-            stage.costate().is_finite(),
-            stage.multipliers().is_finite(),
-            stage.gain().is_finite(),
+            stage.input().all_finite(),
+            stage.costate().all_finite(),
+            stage.multipliers().all_finite(),
+            stage.gain().all_finite(),
         ];
         if is_finite != [true; 4] {
             return Err(format!("stage {k}: input, costate, multipliers, gain are finite: {is_finite:?}"));

@@ -99,7 +99,7 @@ impl<S: Scene> Of<S> {
 
     /// Whether a state is finite, and a configuration on its space.
     fn is_sound(&self, state: &State<S>) -> bool {
-        state.momentum().is_finite() && self.is_on_space(state.configuration())
+        state.momentum().all_finite() && self.is_on_space(state.configuration())
     }
 
     /// Whether a configuration is finite and where configurations lie, up to the round-off of its entries and to the defect of the start.
@@ -112,7 +112,7 @@ impl<S: Scene> Of<S> {
         let size = q.max_abs().to_f64().max(1.0);
         let rounding = ROUNDING * S::Scalar::EPSILON.to_f64();
         let is_on_space = defect(q) <= (rounding + 4.0 * defect(start)) * size * size;
-        q.is_finite() && (is_on_space || UNBOUNDED.contains(&S::NAME))
+        q.all_finite() && (is_on_space || UNBOUNDED.contains(&S::NAME))
     }
 }
 
@@ -168,13 +168,13 @@ impl<S: Scene> Trial for Of<S> {
             "legendre" => drop(stepper.legendre_at(zero, &q, &broken())),
             "legendre_next" => drop(stepper.legendre_next_at(zero, &q, &broken())),
             "act" => drop((stepper.act(&broken(), &q), stepper.coadjoint(&broken(), &mu))),
-            "project" => return Ok(stepper.project(&q, &mu)?.is_finite()),
+            "project" => return Ok(stepper.project(&q, &mu)?.all_finite()),
             "projected" => self.mu = stepper.project(&q, &mu)?,
             "inverse_legendre" => {
                 let f = stepper.inverse_legendre_at(zero, &q, &mu)?;
                 let is_of_group = self.is_on_space_from(&S::configuration(), &stepper.act(&f, &S::configuration()));
                 // of other momenta than those of states F is no motion
-                return Ok(f.is_finite() && (is_of_group || stepper.state(q, mu).is_err()));
+                return Ok(f.all_finite() && (is_of_group || stepper.state(q, mu).is_err()));
             }
             "cotangent_state" => self.cotangent = Some(stepper.cotangent_state(q, q)?),
             "covector" => self.cotangent = Some(stepper.cotangent_state(S::configuration(), q)?),
@@ -185,7 +185,7 @@ impl<S: Scene> Trial for Of<S> {
                 };
                 let next = stepper.step_symmetric(&start)?;
                 return Ok(
-                    next.covector().is_finite() && (entry != "step_symmetric" || next.configuration().is_finite())
+                    next.covector().all_finite() && (entry != "step_symmetric" || next.configuration().all_finite())
                 );
             }
             "staggered_state" => return Ok(self.is_sound(&stepper.staggered_state(q, mu)?)),
@@ -224,7 +224,7 @@ impl<S: Scene> Trial for Of<S> {
         let last: Vec<Body<S>> = ensemble.bodies().collect();
         let shown = |(q, mu): &Body<S>| format!("{q:?} {mu:?}");
         let mut failed = ensemble.failures().filter(|failure| failure.step == 0);
-        let are_finite = last.iter().all(|(q, mu)| q.is_finite() && mu.is_finite());
+        let are_finite = last.iter().all(|(q, mu)| q.all_finite() && mu.all_finite());
         [are_finite, failed.all(|failure| shown(&last[failure.body]) == shown(&start))]
     }
 

@@ -59,11 +59,11 @@ impl<'a, T: Real, E: Equation<T, M, N>, const M: usize, const N: usize> Homotopy
         let mut path = Self { equation, still, moving, branch, scale: zero, weight: zero, count: 0, most, made };
         let xi = SVector::from_element(zero);
         let Linearization { jacobian, rate, .. } = path.linearize(&xi, zero);
-        if !(jacobian.all_finite() && rate.is_finite()) {
+        if !(jacobian.all_finite() && rate.all_finite()) {
             return Err(Error::NotFinite { name: "the implicit equation of the step" });
         }
         let (slope_xi, orientation) = jacobian.solve_exchanged(None, &-rate).ok_or(Error::unsolvable(zero))?;
-        if branch != Some(orientation) || !slope_xi.is_finite() {
+        if branch != Some(orientation) || !slope_xi.all_finite() {
             return Err(Error::unsolvable(zero));
         }
         (path.scale, path.weight) = (slope_xi.max_abs(), size(&rate));

@@ -6,6 +6,7 @@
 #![warn(clippy::all, missing_docs, unused)]
 
 mod generated_names;
+mod globs;
 mod hostile;
 mod named;
 #[no_implicit_prelude]

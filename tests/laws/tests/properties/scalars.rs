@@ -178,9 +178,9 @@ proptest! {
         prop_assert!(Space::<f64>::all(&a, |x| x.abs() <= 2.0) && !Space::<f64>::all(&a, |found| found != x[7]));
         prop_assert_eq!(<Nested<f64> as Space<f64>>::filled(x[0]), nested(&[x[0]; 16]));
         prop_assert_eq!(<Nested<f64> as Space<f64>>::origin(), nested(&[0.0; 16]));
-        prop_assert!(Space::<f64>::is_finite(&a) && Space::<f64>::finite(&a));
+        prop_assert!(Space::<f64>::all_finite(&a) && Space::<f64>::finite(&a));
         let broken = nested(&[&x[..15], &[f64::NAN]].concat());
-        prop_assert!(!Space::<f64>::is_finite(&broken) && !Space::<f64>::finite(&broken));
+        prop_assert!(!Space::<f64>::all_finite(&broken) && !Space::<f64>::finite(&broken));
         prop_assert_eq!(Space::<f64>::max_abs(&broken), x[..15].iter().fold(0.0, |max, x| f64::max(max, x.abs())));
     }
 
@@ -201,7 +201,7 @@ proptest! {
             prop_assert_eq!(Space::<F64x8>::lane(&changed, other), nested(&expected));
         }
         Space::<F64x8>::set_lane(&mut changed, lane, &nested(&[f64::INFINITY; 16]));
-        prop_assert!(Space::<F64x8>::finite(&changed).bits() == 0xff ^ 1 << lane && !Space::<F64x8>::is_finite(&changed));
+        prop_assert!(Space::<F64x8>::finite(&changed).bits() == 0xff ^ 1 << lane && !Space::<F64x8>::all_finite(&changed));
     }
 
     /// t₀ + kh to the last place, however many additions it took; lanes have their own times.

@@ -148,7 +148,7 @@ pub const PROPERTIES: &[(&str, &[Property])] = &[
         ("constants_are_rounded_once",           &["constant", "Constant::to_f64"]),
         ("comparisons_are_made_in_each_lane",    &["Scalar::lane", "Scalar::from_lanes", "Scalar::below", "Scalar::at_most", "Scalar::equals", "Scalar::select", "Scalar::finite", "Scalar::is_finite", "Scalar::iterated"]),
         ("masks_are_sets_of_lanes",              &["Mask::from_bits", "Mask::bits", "Mask::any", "Mask::all", "Mask::lane", "Mask::everywhere", "Mask::nowhere"]),
-        ("spaces_are_lists_of_scalars",          &["Space::reduce", "Space::all", "Space::max_abs", "Space::filled", "Space::origin", "Space::distance_squared", "Space::sum", "Space::zip_map", "Space::finite", "Space::is_finite"]),
+        ("spaces_are_lists_of_scalars",          &["Space::reduce", "Space::all", "Space::max_abs", "Space::filled", "Space::origin", "Space::distance_squared", "Space::sum", "Space::zip_map", "Space::finite", "Space::all_finite"]),
         ("spaces_have_lanes",                    &["Space::lane", "Space::set_lane", "Space::side_by_side"]),
         ("clocks_do_not_drift",                  &["Clock::now", "Time::at", "Time::now", "Time::after_step", "Time::take_lane"]),
         ("conserved_values_have_names",          &["Conserved::new", "Conserved::names", "Conserved::values", "Conserved::get", "Conserved::iter", "Conserved::lane"]),

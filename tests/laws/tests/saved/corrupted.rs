@@ -154,7 +154,7 @@ where
                 self.refused += 1;
                 return;
             };
-            assert!(next.configuration().is_finite() && next.momentum().is_finite(), "{case}not finite");
+            assert!(next.configuration().all_finite() && next.momentum().all_finite(), "{case}not finite");
             let defect = self.defect(&next);
             let rounding = 256.0 * <S::Scalar as Scalar>::EPSILON.lane(0).to_f64();
             assert!(defect <= 4.0 * start + rounding, "{case}step {step} is off its space by {defect:e}");
