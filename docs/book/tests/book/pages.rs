@@ -19,7 +19,7 @@ pub fn files(folder: &Path, extension: &str) -> Vec<PathBuf> {
 fn collect(folder: &Path, extension: &str, found: &mut Vec<PathBuf>) {
     for entry in fs::read_dir(folder).expect("a folder") {
         let path = entry.expect("an entry").path();
-        if path.is_dir() {
+        if path.is_dir() && path.file_name().is_none_or(|name| name != "target") {
             collect(&path, extension, found);
         } else if path.extension().is_some_and(|found| found == extension) {
             found.push(path);
