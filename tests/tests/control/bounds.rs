@@ -145,7 +145,7 @@ fn bounds_of_random_sizes_are_kept() {
     assert!(found > 200, "{found} of 400");
 }
 
-/// A guess that is dear by many orders hides no slope of the price: the price is that of the plan from no guess, to 10⁻⁶.
+/// A guess that is dear by many orders hides no slope of the price. The price is that of the plan from no guess, to 10⁻⁶.
 ///
 /// One of the hundred plans, from 2·10⁶ N, is dearer by 3·10⁻⁶, and its residual is round-off. The cause is not known.
 #[test]
