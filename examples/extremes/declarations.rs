@@ -1,11 +1,11 @@
-//! Three scenes, each declared with several dials, over any scalar.
+//! Four scenes, each declared with several dials, over any scalar.
 
 use crate::motion::{Moving, Scene};
 use crate::probe::{Dial, LongRun, dial, long_run};
 use crate::setup::Setup;
 use clebsch::{Clebsch, Declared, DoubleDouble, Error, Method, Real, State, Stepper};
 use clebsch_examples::counted::Counted;
-use nalgebra::{Matrix3, Vector3};
+use nalgebra::{Matrix3, Vector3, Vector6};
 
 fn matrix<T: Real>(entries: &Matrix3<f64>) -> Matrix3<T> {
     entries.map(T::from_f64)
@@ -257,6 +257,56 @@ pub fn pendulums() -> Vec<Dial> {
         dial!("exponential, order 4", "spherical pendulum", Pendulum, PendulumExponential),
         dial!("order = 16", "spherical pendulum", Pendulum, PendulumCollocated),
         dial!("compensated", "spherical pendulum", Chord, PendulumCompensated),
+    ]
+}
+
+pub struct SeriesCompensated;
+
+/// Two bobs in series on rods of one length: the cost couples configuration and group element.
+#[derive(Clebsch, Clone, Debug)]
+#[clebsch(
+    action    = |(F, G): (SO<3>, SO<3>), (p, q): (Unit<Vector3>, Unit<Vector3>)| (F * p, G * q),
+    cost      = |h, (p, q), (F, G)| {
+        let separate = (F - I).norm_squared() + (G - I).norm_squared() / 2;
+        self.inertia * (separate + 2 * (F * p - p).dot(&(G * q - q))) / (2 * h)
+    },
+    potential = |(p, q)| self.weight * self.arm * (2 * p.z + q.z),
+    method SeriesCompensated = (summation = compensated),
+)]
+pub struct Series<T: clebsch::Scalar> {
+    /// m·l² of each bob, kg·m².
+    pub inertia: T,
+    /// m·g of each bob, N.
+    pub weight: T,
+    /// Length of each rod, m.
+    pub arm: T,
+}
+
+impl<T: Real> Scene for Series<T> {
+    fn of(setup: &Setup) -> Self {
+        let [inertia, weight, arm] = [setup.moments[0], setup.weight, setup.arm.norm()].map(T::from_f64);
+        Self { inertia, weight, arm }
+    }
+    fn start<M: Method<Self>>(setup: &Setup, stepper: &Stepper<Self, M>) -> Result<State<Self, M>, Error> {
+        let q = [2, 0].map(|column| vector(&setup.attitude.column(column).into_owned()));
+        let n = vector(&setup.momentum);
+        let n = stepper.project(&q.into(), &Vector6::from_iterator(n.iter().chain(&n).copied()))?;
+        stepper.state(q.into(), n)
+    }
+    fn numbers<M: Method<Self>>(state: &State<Self, M>) -> Vec<f64> {
+        let (p, q) = state.configuration();
+        p.iter().chain(q).chain(&state.momentum()).map(|x| x.to_f64()).collect()
+    }
+    fn conserved<M: Method<Self>>(stepper: &Stepper<Self, M>, state: &State<Self, M>) -> [f64; 3] {
+        [stepper.conserved(state).values()[0].to_f64(), 0.0, 0.0]
+    }
+}
+
+/// The double pendulum.
+pub fn series() -> Vec<Dial> {
+    vec![
+        dial!("chords", "double pendulum", Series, Declared),
+        dial!("compensated", "double pendulum", Series, SeriesCompensated),
     ]
 }
 
