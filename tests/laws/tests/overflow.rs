@@ -58,12 +58,12 @@ struct Free {
 )]
 struct Ring<const N: usize>;
 
-/// A point on a large sphere in a field that overflows.
+/// A point on a large sphere, which falls in a field that overflows.
 #[derive(Clebsch, Clone, Debug)]
 #[clebsch(
     action    = |F: SO<12>, q: Unit<SVector<12>>| F * q,
     cost      = |h, F| (F - I).norm_squared() / (4 * h),
-    potential = |q| (self.steepness * q[11]).exp(),
+    potential = |q| -(self.steepness * q[11]).exp(),
 )]
 struct Pointer {
     steepness: f64,
@@ -110,7 +110,7 @@ fn runs_that_overflow_end() -> Result<(), Error> {
     }
     assert!(most > 2048, "the longest run has {most} steps only");
     let q = SVector::<f64, 12>::from_fn(|i, _| if i == 0 { 1.0 } else { 0.0 });
-    let pointer = Pointer { steepness: -800.0 };
+    let pointer = Pointer { steepness: 800.0 };
     let mu = pointer.momentum_map(&q, &SVector::from_fn(|i, _| if i == 11 { 1.0 } else { 0.0 }));
     ends(&pointer, 1e-3, q, mu).map(|_| ())
 }

@@ -25,7 +25,7 @@ impl<'g> Elaborator<'_, '_, 'g> {
             (Member::Unnamed(Index { index, span }), other) => {
                 let (base, is) = (spell(&field.base), other.describe());
                 let error = error!(*span, "`{base}` is {is} and has no part `.{index}`");
-                self.refuse(error.maybe_help(instead_of_part(&parenthesized(&field.base), *index as usize, &other)))
+                self.refuse(error.help(instead_of_part(&parenthesized(&field.base), *index as usize, &other)))
             }
             (Member::Named(name), Value::Quaternion(q)) => self.coordinate(field, q, name),
             (Member::Named(name), base) => {
@@ -121,18 +121,23 @@ impl<'g> Elaborator<'_, '_, 'g> {
 }
 
 /// The replacement of `base.index`, if the base has that entry.
-fn instead_of_part(base: &str, index: usize, value: &Value) -> Option<String> {
+fn instead_of_part(base: &str, index: usize, value: &Value) -> String {
     match value {
-        Value::Array(_) => Some(format!("write `{base}[{index}]`")),
+        Value::Array(_) => format!("write `{base}[{index}]`"),
         Value::Matrix(expr) if expr.shape().is_column() && !expr.shape().is_scalar() => {
             let component = COMPONENTS.get(index).map(|name| format!("`{base}.{name}` or "));
             let component = component.unwrap_or_default();
-            (index < expr.shape().rows).then(|| format!("write {component}`{base}[{index}]`"))
+            let rows = expr.shape().rows;
+            if index < rows {
+                format!("write {component}`{base}[{index}]`")
+            } else {
+                format!("write `{base}[0]` to `{base}[{}]`", rows - 1)
+            }
         }
         Value::Matrix(expr) if !expr.shape().is_scalar() => {
-            Some(format!("write `{base}[(i, j)]` for an entry, counted from 0"))
+            format!("write `{base}[(i, j)]` for an entry, counted from 0")
         }
-        _ => None,
+        _ => format!("leave out `.{index}`"),
     }
 }
 
