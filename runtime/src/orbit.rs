@@ -154,7 +154,9 @@ pub(crate) fn longer<T: Scalar>(missing: T) -> T {
 #[cold]
 #[inline(never)]
 fn much_longer<T: Scalar>(missing: T) -> T {
-    let is_known = missing.abs().at_most(T::from_f64(LARGEST_DEFECT));
+    // of the value alone: |x| of a number with derivatives may count them
+    let limit = T::from_f64(LARGEST_DEFECT);
+    let is_known = missing.at_most(limit) & (-limit).at_most(missing);
     known(is_known, (T::one() - missing).sqrt().recip() - T::one())
 }
 

@@ -89,7 +89,7 @@ fn refused<T>(result: Result<T, Error>) -> Error {
 
 /// At least one for each variant.
 pub fn scenes() -> Vec<Scene> {
-    [parameters(), states(), steps(), extremals(), plans()].into_iter().flatten().collect()
+    [parameters(), states(), steps(), extremals(), through_a_singularity(), plans()].into_iter().flatten().collect()
 }
 
 fn scene(error: Error, told: &'static [&'static str]) -> Scene {
@@ -239,6 +239,27 @@ fn extremals() -> Vec<Scene> {
             &["2.000e0 were left", "check that the target is on the orbit", "give a velocity as the guess"],
         ),
     ]
+}
+
+/// A body about a sun.
+#[derive(Clebsch, Clone, Debug)]
+#[clebsch(
+    action    = |a: Translation<3>, x: Vector3| x + a,
+    cost      = |h, a| a.norm_squared() / (2 * h),
+    potential = |x| -self.gravity / x.norm(),
+    emit      = [boundary],
+)]
+struct Kepler {
+    gravity: f64,
+}
+
+/// Straight through the sun.
+fn through_a_singularity() -> Vec<Scene> {
+    let stepper = Kepler { gravity: 1.0 }.into_stepper(0.1).expect("a sun");
+    let (boundary, x) = (stepper.boundary(), Vector3::new(0.9, 0.23, -0.41));
+    let mut path = vec![boundary.rest(&x); 20];
+    let error = refused(boundary.solve(&x, &-x, Guess::Geodesic, &mut path));
+    vec![scene(error, &["no extremal: momenta jump by", "it may pass a singularity", "by another guess"])]
 }
 
 fn plans() -> Vec<Scene> {

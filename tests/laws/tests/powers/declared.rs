@@ -236,7 +236,7 @@ twice!(rod_of_sections, beams, |random: &mut Random| {
 #[test]
 fn gradients_are_gathered_where_few_terms_read_a_site() {
     const GATHERED: &str = "the gradient of a site is gathered from the terms that read it";
-    const ADDED: &str = "what a term has for its sites is added there";
+    const ADDED: &str = "the share of a term is added at each of its sites";
     for (derivation, chosen) in [
         (ring_of_spins::Looped::<4>::DERIVATION, GATHERED),
         (open_chain::Looped::<4>::DERIVATION, GATHERED),

@@ -20,6 +20,10 @@ pub const PROPERTIES: &[(&str, &[Property])] = &[
         ("points_turn_by_the_step_over_the_inertia", &["GreatCircles::turn"]),
         ("edges_are_those_of_substeps",    &["VariedSubstep::edge", "VariedSubstep::momenta", "VariedSubstep::carried", "VariedSubstep::slopes"]),
     ]),
+    ("tests/laws/tests/saved/corrupted.rs", &[
+        ("a_wrong_number_is_an_error_or_a_state", &["Scheme::resumed"]),
+        ("what_is_held_of_a_momentum_is_checked", &["Scheme::held_defect"]),
+    ]),
     ("runtime/src/double_double/tests.rs", &[
         ("pairs_are_unevaluated_sums", &["DoubleDouble::new", "DoubleDouble::parts"]),
     ]),
