@@ -86,6 +86,10 @@ proptest! {
         let left = SixthOrder::left(at, &r, &mu);
         prop_assert_eq!(top.impulse(&same, 0.0, &r, &mu), left);
         prop_assert_eq!(SixthOrder::left_after(at, &r, &mu, &left), left);
+        // saved data stays, and wrong data is made anew
+        prop_assert_eq!(SixthOrder::resumed(at, &r, &mu, &left), left);
+        prop_assert_eq!(SixthOrder::resumed(at, &r, &mu, &(left + Vector3::repeat(1e16))), left);
+        prop_assert_eq!(<SixthOrder as Scheme<SixthOrderTop>>::held_defect(&r, &held), 0.0);
         let one = SixthOrder::step(at, (&r, &held, &left), &())?;
         prop_assert_eq!(Stepping::step(&top, &same, 0.0, &r, &held, &left, &())?, one);
         prop_assert_eq!((one.0, one.1), stepper.step(&stepper.state(r, mu)?)?.into_parts());

@@ -11,7 +11,7 @@ pub const PROPERTIES: &[(&str, &[Property])] = &[
     ]),
     ("tests/laws/tests/properties/schemes.rs", &[
         ("steps_are_their_parts",          &["Parts::advance", "Parts::element", "Parts::increment", "Parts::lift", "Parts::motion", "Parts::on_space", "Substep::solve", "Substep::start_kick", "Substep::end_kick", "Substep::update", "Substep::start_gradient", "Substep::end_gradient"]),
-        ("schemes_step_systems",           &["Scheme::constants", "Scheme::whole", "Scheme::held", "Scheme::momentum", "Scheme::left", "Scheme::left_after", "Scheme::scaled", "Scheme::step", "Scheme::step_into", "Scheme::steps", "Scheme::step_symmetric", "Scheme::inverse_legendre", "At::new"]),
+        ("schemes_step_systems",           &["Scheme::constants", "Scheme::whole", "Scheme::held", "Scheme::held_defect", "Scheme::resumed", "Scheme::momentum", "Scheme::left", "Scheme::left_after", "Scheme::scaled", "Scheme::step", "Scheme::step_into", "Scheme::steps", "Scheme::step_symmetric", "Scheme::inverse_legendre", "At::new"]),
         ("forces_push_at_both_ends",       &["Substep::start_force", "Substep::moving_force", "Substep::end_force"]),
         ("coupled_costs_have_slopes",      &["Substep::rest", "Substep::coupled_gradient"]),
         ("free_motions_are_followed",      &["FreeMotion::kept", "FreeMotion::follow"]),
@@ -19,10 +19,6 @@ pub const PROPERTIES: &[(&str, &[Property])] = &[
         ("slopes_are_those_of_hamilton",   &["HamiltonEquations::step_size", "HamiltonEquations::slope", "HamiltonEquations::covector", "HamiltonEquations::momentum", "HamiltonEquations::guess", "HamiltonEquations::part", "HamiltonEquations::joined", "HamiltonEquations::parted"]),
         ("points_turn_by_the_step_over_the_inertia", &["GreatCircles::turn"]),
         ("edges_are_those_of_substeps",    &["VariedSubstep::edge", "VariedSubstep::momenta", "VariedSubstep::carried", "VariedSubstep::slopes"]),
-    ]),
-    ("tests/laws/tests/saved/corrupted.rs", &[
-        ("a_wrong_number_is_an_error_or_a_state", &["Scheme::resumed"]),
-        ("what_is_held_of_a_momentum_is_checked", &["Scheme::held_defect"]),
     ]),
     ("runtime/src/double_double/tests.rs", &[
         ("pairs_are_unevaluated_sums", &["DoubleDouble::new", "DoubleDouble::parts"]),
