@@ -194,7 +194,7 @@ pub fn check_on_orbit<T: Scalar, Q: Space<T>>(q: &Q, defect: T) -> Result<(), Er
     })
 }
 
-/// Whether (q, N) is a state: its momentum is checked, and the kinetic energy is positive at q where it does not depend on the time.
+/// Whether (q, N) is a state: its momentum is checked. The kinetic energy is positive at q where it does not depend on the time.
 pub fn check_state<S: Clebsch>(system: &S, q: &S::Configuration, mu: &S::Momentum) -> Result<(), Error> {
     check_momentum(system, q, mu)?;
     // a plan starts at a time that is not known here
