@@ -66,6 +66,7 @@ impl<'g> MechanicsFormulas<'g> {
         self.at_increments(change).into_iter().all(|change| self.is_small(change)).then_some(change)
     }
 
+    /// Whether each term of an expression in D is of second order in D, or has a factor h.
     fn is_small(&self, change: Expr<'g>) -> bool {
         let (model, symbols) = (&self.model, &self.symbols);
         let along = |(k, factor): (usize, &Factor<'g>)| (symbols.increments[k], factor.group.wedge(symbols.algebra[k]));
@@ -73,8 +74,9 @@ impl<'g> MechanicsFormulas<'g> {
         let near = at_zero(symbols.increments.iter().copied());
         let is_small = |term: WordTerm<'g>| {
             let term = expression(term, change.graph());
+            let vanishes = |part: Expr<'g>| identity::vanishes(part.substitute(&near));
             term.least_exponent(model.step_size).is_some_and(|least| least >= integer(1))
-                || identity::vanishes(term.differential(&directions).substitute(&near))
+                || vanishes(term) && vanishes(term.differential(&directions))
         };
         change.word_terms().into_iter().all(is_small)
     }
@@ -164,6 +166,7 @@ fn cancels<'g>(added: Expr<'g>, from: Expr<'g>, increments: &[Expr<'g>]) -> bool
     identity::equal(&[left], &[left.substitute(&[(from, graph.zero(from.shape()))])])
 }
 
+/// The product of the scalars and the letters of a term.
 fn expression<'g>(term: WordTerm<'g>, graph: &'g Graph) -> Expr<'g> {
     term.word.iter().fold(term.scale(graph), |product, letter| product * *letter)
 }
