@@ -179,7 +179,12 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: usize
         let closed = PlanEnd { lack: SVector::zeros(), ..end };
         let summary = self.eliminate(&closed, &settings)?;
         // Near a singularity curvatures are so large that no residual needs a correction. Written so that NaN is an error.
-        let is_stationary = summary.residual <= T::EPSILON.sqrt() * summary.terms && summary.residual.is_finite();
+        let unit = T::EPSILON.sqrt();
+        let inputs = self.stages.iter().fold(T::zero(), |largest, stage| larger(largest, stage.input.max_abs()));
+        // All terms are small where a plan stays at rest. There the slope may change the price by a small part, over
+        // inputs of their own size.
+        let is_slight = inputs > T::zero() && summary.residual * inputs <= unit * summary.magnitude;
+        let is_stationary = summary.residual.is_finite() && (summary.residual <= unit * summary.terms || is_slight);
         // Without a price only the barrier is left in a slope, and that is round-off.
         let is_free = summary.magnitude == T::zero();
         if !is_stationary && !is_free {

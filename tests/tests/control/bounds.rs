@@ -227,3 +227,28 @@ fn bounds_that_leave_nothing_are_refused() -> Result<(), Error> {
     assert_eq!(nan, Error::NotFinite { name: "high" });
     Ok(())
 }
+
+/// A unicycle that gains nothing by driving stays where it is. All terms of its slopes are small, and the plan is found.
+#[test]
+fn plans_that_stay_at_rest_are_found() {
+    let mut random = Random::new(708);
+    let mut refused = Vec::new();
+    for k in 0..1000 {
+        let system = Unicycle {
+            turn_price: random.between(0.5, 2.0),
+            top_turn: random.between(0.5, 2.0),
+            time_price: random.between(0.1, 1.0),
+            miss_price: random.between(0.1, 2.0),
+            goal: random.vector(),
+        };
+        let (sine, cosine) = random.between(-1.0, 1.0).sin_cos();
+        let start = Matrix3::new(cosine, -sine, 0.0, sine, cosine, 0.0, 0.0, 0.0, 1.0);
+        let control = system.clone().control(0.1).expect("a unicycle");
+        let mut plan = [control.stage(&start).with_input(Vector2::new(0.0, 0.1)); 8];
+        match control.solve(&start, Target::Free, &mut plan) {
+            Ok(found) => assert_eq!(holds_bounds(control.system(), &found), Ok(()), "{k}, {system:?}"),
+            Err(error) => refused.push(format!("{k}, {system:?}: {error}")),
+        }
+    }
+    assert!(refused.is_empty(), "{} of 1000 are refused, such as {}", refused.len(), refused[0]);
+}
