@@ -73,7 +73,9 @@ fn indefinite<T: Real, const N: usize>(inertia: &SMatrix<T, N, N>) -> Error {
     let first = values.iter().next().map_or(T::zero(), |value| *value);
     let least = values.iter().fold(first, |least, value| if *value < least { *value } else { least });
     let largest = values.iter().fold(first, |largest, value| if *value > largest { *value } else { largest });
-    let (least_eigenvalue, largest_eigenvalue) = (least.to_f64(), largest.to_f64());
+    // an eigenvalue of the largest numbers may be beyond them
+    let known = |value: T| value.to_f64().clamp(-f64::MAX, f64::MAX);
+    let (least_eigenvalue, largest_eigenvalue) = (known(least), known(largest));
     Error::IndefiniteKineticEnergy { least_eigenvalue, largest_eigenvalue }
 }
 
