@@ -212,7 +212,14 @@ proptest! {
         same(refused(boundary.solve(&outside, &inside, Guess::Geodesic, &mut path)));
         // three radii a second, along the first axis alone
         let start = stepper.state(outside, Vector2::new(-3.0 * mass * radius, 0.0))?;
-        prop_assert!(stepper.step(&start).is_ok());
+        // the inertia of a step is the mean of those at its ends: where that has changed its sign, no short step leads there
+        let next = outside.x - 3.0 * radius * H;
+        let mean = (outside.x * outside.x + next * next) / 2.0 - radius * radius;
+        match stepper.step(&start) {
+            Ok(_) => {}
+            Err(Error::Unsolvable { .. }) => prop_assert!(mean < 1e-9 * radius * radius, "{}", mean),
+            Err(error) => prop_assert!(false, "{}", error),
+        }
         let stepper = HoleOfAnySigns { mass, hole: radius * radius }.into_stepper(H)?;
         prop_assert!(stepper.state(inside, none).is_ok());
     }
