@@ -39,6 +39,27 @@ pub fn length_defect<T: Scalar, const N: usize>(q: &SVector<T, N>) -> T {
     (q.iter().fold(T::zero(), |sum, &x| sum + x * x) - T::one()).abs()
 }
 
+/// The largest entry of |P − Pᵀ|, relative to the largest of P.
+pub fn symmetry_defect<T: Scalar, const N: usize>(p: &SMatrix<T, N, N>) -> T {
+    let defect = (p - p.transpose()).max_abs();
+    T::select(defect.at_most(T::zero()), T::zero(), defect / p.max_abs())
+}
+
+/// P with the entries above its diagonal below it too: formulas of symmetric matrices read these.
+#[inline(always)]
+pub fn symmetric<T: Scalar, const N: usize>(p: SMatrix<T, N, N>) -> SMatrix<T, N, N> {
+    SMatrix::from_fn(|i, j| p[(i.min(j), i.max(j))])
+}
+
+/// The same for P + δ, where δ is the rounding error of sums.
+#[inline(always)]
+pub fn symmetric_with_rest<T: Scalar, const N: usize>(
+    p: SMatrix<T, N, N>,
+    rest: SMatrix<T, N, N>,
+) -> (SMatrix<T, N, N>, SMatrix<T, N, N>) {
+    (symmetric(p), symmetric(rest))
+}
+
 /// R, brought back to the next rotation where |Re|², e = (1, …, 1), is off N by more than 8Nε. It takes one step R(3I −
 /// RᵀR)/2 of Newton and Schulz. Without it, rounding of products would add up like √steps. |Re|² costs N² additions
 /// that nothing waits for; corrections are rare.

@@ -107,6 +107,7 @@ macro_rules! every_scene {
             a_top_of_three_ways: three_ways::ThreeWays { moments: Vector3::new(2.0, 1.5, 1.0), weight: 3.0, center: centre() }, turned(), 0.05;
             two_bodies: two_bodies::TwoBodies { mass: [1.0, 2.0], gravitation: 1.1 }, [Vector3::x(), -Vector3::y()], 0.05;
             a_watched_top: watched_top::WatchedTop { mass: principal(), weight: 1.3 }, turned(), 0.05;
+            a_geodesic_of_covariances: covariance_geodesic::CovarianceGeodesic { }, Matrix2::new(1.2, 0.3, 0.3, 0.9), 0.1;
             a_centred_body: centred_body::CentredBody { mass: 1.2, inertia: inertia(), gravity: 9.81 }, placed(), 0.05;
             a_fluid_ellipsoid: fluid_ellipsoid::FluidEllipsoid { mass: 1.2 }, Matrix3::identity(), 0.05;
             a_free_rigid_body: free_rigid_body::FreeRigidBody { inertia: inertia() }, turned(), 0.1;

@@ -70,6 +70,7 @@ A configuration, the second argument, is typed as one of these:
 | `VectorN`, `MatrixN`, `MatrixRxC`, `SVector<n>`, `SMatrix<r, c>` | all vectors or matrices of this shape |
 | `Quaternion` | all quaternions |
 | `Unit<VectorN>` | vectors of length one |
+| `Symmetric<MatrixN>` | symmetric matrices |
 | a group | the elements of the group |
 | a tuple or an array | products of these |
 

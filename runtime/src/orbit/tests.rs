@@ -115,3 +115,17 @@ fn the_largest_number_keeps_what_is_none() {
 fn lengths_are_squared() {
     assert_eq!(length_defect(&Vector3::new(0.0, 3.0, 0.0)), 8.0);
 }
+
+/// The defect does not depend on the size of a matrix, and the entries above the diagonal decide.
+#[test]
+fn matrices_become_symmetric() {
+    let above = Matrix3::new(2.0, 0.5, -1.0, 0.5, 3.0, 0.25, -1.0, 0.25, 4.0);
+    let off = above + Matrix3::new(0.0, 0.0, 0.0, 0.125, 0.0, 0.0, 0.0, -0.5, 0.0);
+    for scale in [1e-150, 1.0, 1e150] {
+        assert_eq!(symmetry_defect(&(off * scale)), 0.125);
+        assert_eq!(symmetric(off * scale), above * scale);
+        assert_eq!(symmetric_with_rest(off * scale, off), (above * scale, above));
+    }
+    assert_eq!(symmetry_defect(&above), 0.0);
+    assert_eq!(symmetry_defect(&Matrix3::<f64>::zeros()), 0.0);
+}

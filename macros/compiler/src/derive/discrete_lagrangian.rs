@@ -4,7 +4,7 @@
 use clebsch_symbolic::{Elements, Expr, IntoList, identity};
 
 use super::symbols::{identities, logarithm, moved, moved_on};
-use super::{exact, trivialisation, velocity};
+use super::{exact, system, trivialisation, velocity};
 use crate::diagnostic::Diagnostics;
 use crate::model::{Discretization, Factor, Kinetic, Mechanics, Order, System};
 
@@ -22,7 +22,7 @@ pub struct DiscreteLagrangian<'g> {
 }
 
 /// The cost K(t, h, q, F), as declared or from a Lagrangian. The latter gives h ℓ(ξ) or h/2 (ℓ(q, ξ) + ℓ(Φ_F q, ξ)),
-/// with the velocity ξ computed from F and h.
+/// with the velocity ξ computed from F and h. If the group leaves ℓ invariant, both are h ℓ(q, ξ), as Ad_F ξ = ξ.
 pub(super) fn cost<'g>(model: &Mechanics<'g>) -> Result<Expr<'g>, Diagnostics> {
     let (energy, velocities, discretization) = match &model.kinetic {
         Kinetic::Cost(cost) => return Ok(*cost),
@@ -40,7 +40,12 @@ pub(super) fn cost<'g>(model: &Mechanics<'g>) -> Result<Expr<'g>, Diagnostics> {
         Discretization::MoserVeselov => velocity::moser_veselov(model, energy, velocities),
         _ => Ok(h * energy.substitute(&discrete)),
     };
-    if !model.reads_configuration(energy) && !energy.depends_on(model.time) {
+    let is_steady = !energy.depends_on(model.time);
+    let is_same_at_both_ends = || {
+        let commutes = matches!(discretization, Discretization::Cayley | Discretization::Exponential);
+        commutes && system::is_invariant(model, energy, velocities)
+    };
+    if is_steady && (!model.reads_configuration(energy) || is_same_at_both_ends()) {
         return at(energy);
     }
     Ok((at(energy)? + at(energy.substitute(&moved_on(model)))?) / 2)
@@ -102,7 +107,14 @@ impl<'g> DiscreteLagrangian<'g> {
             let factors = trivialisation::components(model, &before).into_iter();
             factors.chain(leaves().map(|q| kinetic.gradient(q))).into_list()
         };
+        // log F = Ad_F log F, which functions of log F and F do not know
+        let carry = |(factor, k): (&Factor<'g>, usize)| {
+            let y = logarithm(model, k);
+            (y, system::adjoint(factor, y))
+        };
+        let carried: Vec<_> = model.factors.iter().zip(0..).map(carry).into_list();
         let kinetic = identity::equal(&[self.kinetic], &[adjoint.kinetic])
+            || identity::equal(&[self.kinetic], &[adjoint.kinetic.substitute(&carried)])
             || identity::equal(&variations(self.kinetic), &variations(adjoint.kinetic));
         kinetic && identity::equal(&potentials(self), &potentials(&adjoint))
     }

@@ -7,11 +7,13 @@
 //! equation with W has a solution without vertical part. W vanishes there with its derivative. Therefore q moves as by
 //! the declared cost.
 
-use clebsch_symbolic::{Elements, Expr, Group, IntoList, Shape, identity};
+mod sections;
+
+use clebsch_symbolic::{Elements, Expr, Graph, Group, IntoList, Shape, identity};
 
 use super::symbols::{at_zero, identities, of_columns};
 use super::{Energy, SystemFormulas, energy, structure, trivialisation, velocity};
-use crate::model::{Discretization, Isotropy, Kinetic, Mechanics, Side};
+use crate::model::{Configuration, Discretization, Isotropy, Kinetic, LeafSpace, Mechanics, Side};
 
 /// The vertical term, and the kinetic part with it.
 pub struct Vertical<'g> {
@@ -33,7 +35,7 @@ pub(super) fn vertical<'g>(
     if model.isotropy != Isotropy::Fixed || energy::is_regular(inertia) || system.is_free() {
         return None;
     }
-    let parts: Vec<Part<'_, 'g>> = parts(model, system, inertia);
+    let parts: Vec<Part<'_, 'g>> = parts(model, system, energy.kinetic, inertia);
     let parts: Vec<_> = parts.into_iter().filter(|part| is_left_open_along(model, &part.factors, part.map)).into_list();
     if parts.is_empty() {
         return None;
@@ -103,10 +105,17 @@ enum Form<'g> {
     Difference { weight: Expr<'g>, sphere: Option<usize> },
     /// A diagonal matrix, in the components of the factors.
     Diagonal(Expr<'g>),
+    /// ξ·Vξ = u·Cu of u = Aᵀξ, with sections A of 𝔤_q lowered by an inner product, and a weight C.
+    Sections { along: Expr<'g>, weight: Expr<'g> },
 }
 
 /// The sets of factors that move common leaves, with a vertical form.
-fn parts<'a, 'g>(model: &'a Mechanics<'g>, system: &'a SystemFormulas<'g>, inertia: Expr<'g>) -> Vec<Part<'a, 'g>> {
+fn parts<'a, 'g>(
+    model: &'a Mechanics<'g>,
+    system: &'a SystemFormulas<'g>,
+    kinetic: Expr<'g>,
+    inertia: Expr<'g>,
+) -> Vec<Part<'a, 'g>> {
     let moves = |k: usize, leaf: &Expr<'g>| leaf.depends_on(system.symbols.algebra[k]);
     let share = |i: usize, j: usize| system.generator.iter().any(|leaf| moves(i, leaf) && moves(j, leaf));
     let columns = system.generator_columns();
@@ -123,7 +132,7 @@ fn parts<'a, 'g>(model: &'a Mechanics<'g>, system: &'a SystemFormulas<'g>, inert
         let map = of_columns(model.graph, &columns);
         let own =
             Own { model, inertia, factors: &factors, leaves: &leaves, components: &components, columns: &columns, map };
-        if let Some((form, scale)) = own.form() {
+        if let Some((form, scale)) = own.form(system, kinetic) {
             parts.push(Part { model, system, factors, map, form, scale });
         }
     }
@@ -143,7 +152,7 @@ struct Own<'a, 'g> {
 
 impl<'g> Own<'_, 'g> {
     /// V and κ. `None` where no motion leaves the leaves unchanged, and where no short form is known.
-    fn form(&self) -> Option<(Form<'g>, Expr<'g>)> {
+    fn form(&self, system: &SystemFormulas<'g>, kinetic: Expr<'g>) -> Option<(Form<'g>, Expr<'g>)> {
         let graph = self.model.graph;
         if let Some((leaf, weight)) = self.sphere() {
             let rank = self.model.configurations[leaf].shape.rows as i64 - 1;
@@ -161,7 +170,8 @@ impl<'g> Own<'_, 'g> {
             self.without(|j| range.contains(&self.components[j]), rank)
         };
         let constant = self.without(is_constant, rank).or_else(|| self.factors.iter().find_map(|&k| of_factor(k)));
-        constant.or_else(|| self.difference(rank))
+        let by_sections = || Some((sections::form(self, system, kinetic)?, self.scale_at_points(rank)));
+        constant.or_else(|| self.difference(rank)).or_else(by_sections)
     }
 
     /// The form cI − A with A of ξ ↦ J(q, ξ_Q(q)), where A/c is a projection.
@@ -218,6 +228,22 @@ impl<'g> Own<'_, 'g> {
         if mean.is_defined() && !identity::vanishes(mean) { mean } else { inertia / trace }
     }
 
+    /// The mean of tr Σ/rank over points of the space, a constant. Where Σ is not defined there, it is that at q itself.
+    fn scale_at_points(&self, rank: usize) -> Expr<'g> {
+        let inertia = self.inertia_along(|_| true);
+        let points = self.leaves.each(|&leaf| points(self.model.graph, &self.model.configurations[leaf]));
+        let count = points.iter().map(Vec::len).max().unwrap_or(1);
+        let value = |number: usize| {
+            let at = |(leaf, points): (&usize, &Vec<Expr<'g>>)| {
+                (self.model.configurations[*leaf].symbol, points[number % points.len()])
+            };
+            inertia.substitute(&self.leaves.iter().zip(&points).map(at).into_list())
+        };
+        let sum = self.model.graph.total(Shape::scalar(), (0..count).map(value)).expand();
+        let mean = sum / (count * rank) as i64;
+        if mean.is_defined() && !identity::vanishes(mean) { mean } else { inertia / rank as i64 }
+    }
+
     /// The sum of the values of a function of the leaves at their unit vectors.
     fn over_units(&self, function: Expr<'g>) -> Expr<'g> {
         let graph = self.model.graph;
@@ -235,27 +261,6 @@ impl<'g> Own<'_, 'g> {
 }
 
 impl<'g> Part<'_, 'g> {
-    /// Vξ for each factor.
-    fn form(&self, xi: &[Expr<'g>]) -> Vec<Expr<'g>> {
-        match self.form {
-            Form::Difference { weight, .. } => {
-                let images = self.system.momenta_of(self.system.motion_by(xi));
-                xi.iter().zip(images).map(|(xi, image)| weight * *xi - image).into_list()
-            }
-            Form::Diagonal(matrix) => {
-                let own: Vec<_> = self.factors.each(|&k| xi[k]);
-                let image = matrix * matrix.graph().below(&own);
-                let mut offset = 0;
-                let mut images = xi.each(|xi| xi.graph().zero(xi.shape()));
-                for &k in &self.factors {
-                    images[k] = image.block(offset, 0, xi[k].shape());
-                    offset += xi[k].shape().rows;
-                }
-                images
-            }
-        }
-    }
-
     /// W(q, ξ) = ½ κ ξ·Vξ.
     fn of_lagrangian(&self, velocities: &[Expr<'g>]) -> Term<'g> {
         self.of_motion(velocities, self.scale / 2)
@@ -279,6 +284,11 @@ impl<'g> Part<'_, 'g> {
         self.of_motion(&motions, scale)
     }
 
+    /// The components of these factors, one below the other.
+    fn own(&self, xi: &[Expr<'g>]) -> Expr<'g> {
+        self.model.graph.below(&self.factors.each(|&k| xi[k]))
+    }
+
     fn of_motion(&self, motions: &[Expr<'g>], scale: Expr<'g>) -> Term<'g> {
         let graph = self.model.graph;
         let own = |k: usize, motion: &Expr<'g>| {
@@ -291,12 +301,26 @@ impl<'g> Part<'_, 'g> {
                 motion: scale * weight * sum(&motions.each(|motion| motion.norm_squared())),
                 displacement: scale * sum(&self.system.motion_by(&motions).each(|motion| motion.norm_squared())),
             },
-            Form::Diagonal(_) => {
-                let images = self.form(&motions);
-                let products: Vec<_> = motions.iter().zip(images).map(|(motion, image)| motion.dot(image)).into_list();
-                Term { motion: scale * sum(&products), displacement: graph.integer(0) }
+            Form::Diagonal(matrix) => {
+                let own = self.own(&motions);
+                Term { motion: scale * own.dot(matrix * own), displacement: graph.integer(0) }
+            }
+            Form::Sections { along, weight } => {
+                let along = along.transpose() * self.own(&motions);
+                Term { motion: scale * along.dot(weight * along), displacement: graph.integer(0) }
             }
         }
+    }
+}
+
+/// Points of the space of a leaf.
+fn points<'g>(graph: &'g Graph, leaf: &Configuration<'g>) -> Vec<Expr<'g>> {
+    match leaf.space {
+        LeafSpace::Vectors | LeafSpace::Unit => {
+            leaf.shape.positions().map(|(i, j)| graph.unit(leaf.shape, i, j)).into_list()
+        }
+        LeafSpace::Symmetric => vec![graph.identity(leaf.shape.rows)],
+        LeafSpace::Group(group) => vec![group.identity(graph)],
     }
 }
 

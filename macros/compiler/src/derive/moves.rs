@@ -16,15 +16,23 @@ impl<'g> SystemFormulas<'g> {
             replacements.extend(inverse_by(factor.group, factor.symbol, element));
             replacements.extend([logarithm, (factor.symbol, element)]);
         }
-        let increments = self.symbols.increments.iter().enumerate();
-        replacements.extend(increments.filter_map(|(k, d)| cayley::of_increment(&self.model, k, *d)));
+        replacements.extend(self.cayley_letters());
         replacements
     }
 
-    /// Expressions with I + D put in for F, products distributed.
+    /// The replacement of the letters for Cayley coordinates by D(2I + D)⁻¹.
+    fn cayley_letters(&self) -> Vec<(Expr<'g>, Expr<'g>)> {
+        let increments = self.symbols.increments.iter().enumerate();
+        increments.filter_map(|(k, d)| cayley::of_increment(&self.model, k, *d)).into_list()
+    }
+
+    /// Expressions with I + D put in for F, products distributed. D(2I + D)⁻¹ stays a product: as I − 2(2I + D)⁻¹ it would
+    /// cancel, and 1/h enlarges the rounding.
     pub(super) fn at_increments(&self, parts: &[Expr<'g>]) -> Vec<Expr<'g>> {
-        let elements = self.increments();
-        parts.each(|part| part.substitute(&elements).expand())
+        let (elements, letters) = (self.increments(), self.cayley_letters());
+        let stays = |(letter, _): &(Expr<'g>, Expr<'g>)| !letters.iter().any(|(other, _)| other == letter);
+        let elements = elements.into_iter().filter(stays).into_list();
+        parts.each(|part| part.substitute(&elements).expand().substitute(&letters))
     }
 }
 

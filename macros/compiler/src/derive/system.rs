@@ -9,7 +9,7 @@ use clebsch_symbolic::{Chart, Elements, Expr, IntoElements, IntoList, identity, 
 use super::choice::{Endpoint, Steering};
 use super::symbols::{identities, of_columns};
 use super::{ChartBlock, FormulaTable, Symbols, cayley};
-use crate::model::{Discretization, Side, System};
+use crate::model::{Discretization, Factor, Side, System};
 
 /// The formulas of the action, and of the prices of inputs and of the end.
 pub struct SystemFormulas<'g> {
@@ -137,14 +137,9 @@ impl<'g> SystemFormulas<'g> {
         }
     }
 
-    /// The motion of q⁺ = Φ_F(q) that a motion ξ of q carries along: Ad_F ξ for a left action, Ad_{F⁻¹} ξ for a right one.
+    /// The motion of q⁺ = Φ_F(q) that a motion ξ of q carries along.
     pub(super) fn adjoint(&self, k: usize) -> Expr<'g> {
-        let factor = &self.model.factors[k];
-        let element = match factor.side {
-            Side::Left => factor.symbol,
-            Side::Right => factor.group.inverse(factor.symbol),
-        };
-        factor.group.adjoint(element, self.symbols.algebra[k])
+        adjoint(&self.model.factors[k], self.symbols.algebra[k])
     }
 
     /// (TΦ_F)^{-*} p at q⁺: the gradient of ⟨p, Φ_{F⁻¹}(q⁺)⟩ with respect to q⁺.
@@ -222,4 +217,21 @@ pub(super) fn momentum_map<'g>(symbols: &Symbols<'g>, generator: &[Expr<'g>]) ->
         None => xi.graph().zero(xi.shape()),
     };
     symbols.algebra.each(gradient)
+}
+
+/// Ad_F ξ for a left action, Ad_{F⁻¹} ξ for a right one.
+pub(super) fn adjoint<'g>(factor: &Factor<'g>, xi: Expr<'g>) -> Expr<'g> {
+    let element = match factor.side {
+        Side::Left => factor.symbol,
+        Side::Right => factor.group.inverse(factor.symbol),
+    };
+    factor.group.adjoint(element, xi)
+}
+
+/// Whether the group leaves a function of q and ξ invariant: f(Φ_F(q), Ad_F ξ) = f(q, ξ).
+pub(super) fn is_invariant<'g>(model: &System<'g>, function: Expr<'g>, velocities: &[Expr<'g>]) -> bool {
+    let leaves = model.configurations.iter().map(|leaf| leaf.symbol).zip(model.action.iter().copied());
+    let carried = model.factors.iter().zip(velocities).map(|(factor, xi)| (*xi, adjoint(factor, *xi)));
+    let moved = leaves.chain(carried).into_list();
+    identity::equal(&[function.substitute(&moved)], &[function])
 }

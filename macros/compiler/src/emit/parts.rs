@@ -141,6 +141,7 @@ impl Emitter<'_, '_> {
                 LeafSpace::Group(Group::UnitQuaternions) => ("of_length_one", quote!(#access.coords)),
                 LeafSpace::Group(group) if group.is_orthogonal() => ("orthogonal", quote!(#access)),
                 LeafSpace::Unit => ("of_length_one", quote!(#access)),
+                LeafSpace::Symmetric => ("symmetric", quote!(#access)),
                 LeafSpace::Vectors | LeafSpace::Group(_) => continue,
             };
             let with_rest = format_ident!("{function}_with_rest");

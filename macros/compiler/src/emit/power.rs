@@ -62,7 +62,7 @@ impl<'g> Emitter<'_, 'g> {
         let is_bounded = self.model.configurations.iter().all(|leaf| match leaf.space {
             LeafSpace::Unit => true,
             LeafSpace::Group(group) => Group::element_property(group) == Property::Orthogonal,
-            LeafSpace::Vectors => false,
+            LeafSpace::Vectors | LeafSpace::Symmetric => false,
         });
         let flags = [
             flag("IS_UNIFORM", power.is_uniform),

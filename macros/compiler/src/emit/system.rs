@@ -237,6 +237,7 @@ impl SystemEmitter<'_, '_> {
                 }
                 LeafSpace::Group(Group::UnitQuaternions) => quote!(runtime::length_defect(&q #access.coords)),
                 LeafSpace::Unit => quote!(runtime::length_defect(&q #access)),
+                LeafSpace::Symmetric => quote!(runtime::symmetry_defect(&q #access)),
                 LeafSpace::Vectors | LeafSpace::Group(_) => return None,
             })
         });

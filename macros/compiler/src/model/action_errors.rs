@@ -25,6 +25,7 @@ impl<'g> Action<'_, 'g> {
     pub(super) fn leaves_space(&self, leaf: &Configuration, moved: Expr<'g>, verdict: Verdict) -> Diagnostic {
         let promise = match leaf.space {
             LeafSpace::Group(group) => format!("in {}", group.name(self.graph)),
+            LeafSpace::Symmetric => "symmetric".to_string(),
             _ => "a unit vector".to_string(),
         };
         let which = if verdict == Verdict::Open { "cannot be shown to be always" } else { "is not always" };
@@ -118,6 +119,7 @@ impl<'g> Action<'_, 'g> {
         let space = match leaf.space {
             LeafSpace::Vectors => plain,
             LeafSpace::Unit => format!("Unit<{plain}>"),
+            LeafSpace::Symmetric => format!("Symmetric<{plain}>"),
             LeafSpace::Group(group) => group.name(self.graph),
         };
         let is_affine = group.linear_part().is_some() && !leaf.shape.is_square();

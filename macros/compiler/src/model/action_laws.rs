@@ -67,12 +67,11 @@ impl<'g> Action<'_, 'g> {
     /// A promise about the configuration has to survive the action.
     fn stays_in_space(&self, diagnostics: &Diagnostics) {
         for (leaf, &moved) in self.configurations.iter().zip(self.value) {
+            let obeys = |law| if law { Verdict::Inside } else { Verdict::Outside };
             let verdict = match leaf.space {
                 LeafSpace::Vectors => Verdict::Inside,
-                LeafSpace::Unit => {
-                    let is_unit = identity::equal(&[moved.norm_squared()], &[self.graph.integer(1)]);
-                    if is_unit { Verdict::Inside } else { Verdict::Outside }
-                }
+                LeafSpace::Unit => obeys(identity::equal(&[moved.norm_squared()], &[self.graph.integer(1)])),
+                LeafSpace::Symmetric => obeys(identity::equal(&[moved], &[moved.transpose()])),
                 LeafSpace::Group(group) => lies_on(moved, group),
             };
             if verdict != Verdict::Inside {

@@ -95,6 +95,7 @@ impl System<'_> {
             let space = match leaf.space {
                 LeafSpace::Vectors => String::new(),
                 LeafSpace::Unit => ", unit".to_string(),
+                LeafSpace::Symmetric => ", symmetric".to_string(),
                 LeafSpace::Group(group) => format!(" in {}", name(group)),
             };
             writeln!(f, "  configuration {}: {}{space}", leaf.name, leaf.shape)?;

@@ -34,6 +34,7 @@ impl SpaceType<'_> {
         match self.space {
             LeafSpace::Vectors => Property::General,
             LeafSpace::Unit => Property::Unit,
+            LeafSpace::Symmetric => Property::Symmetric,
             LeafSpace::Group(group) => group.element_property(),
         }
     }
@@ -106,6 +107,11 @@ fn read_space<'t>(ty: &'t Type, names: GroupNames) -> Result<SpaceType<'t>, Diag
             _ => Err(no_unit(ty)),
         },
         ("Unit" | "UnitQuaternion", _) => Err(no_unit(ty)),
+        ("Symmetric", [GenericArgument::Type(inner)]) => match vectors(inner, names.generics).transpose()? {
+            Some(found) if found.0.is_square() => Ok(of_vectors(LeafSpace::Symmetric, found)),
+            _ => Err(no_symmetric(ty)),
+        },
+        ("Symmetric", _) => Err(no_symmetric(ty)),
         ("Quaternion", []) => Ok(of_quaternions(None)),
         ("Quaternion", [GenericArgument::Type(scalar)]) => Ok(of_quaternions(Some(scalar))),
         _ => Err(unknown_space(ty, &name, names)),
@@ -124,6 +130,11 @@ fn no_unit(ty: &Type) -> Diagnostic {
             help "write `SU<2>`"; note "unit quaternions are the elements of SU(2)");
     }
     error!(ty, "`{text}` is no sphere"; help "write `Unit<Vector3>` for unit vectors")
+}
+
+fn no_symmetric(ty: &Type) -> Diagnostic {
+    error!(ty, "`{}` is no space of symmetric matrices", spell_type(ty);
+        help "write `Symmetric<Matrix3>` for symmetric matrices")
 }
 
 fn unknown_space(ty: &Type, name: &str, names: GroupNames) -> Diagnostic {

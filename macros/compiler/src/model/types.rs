@@ -270,6 +270,8 @@ pub enum LeafSpace {
     Vectors,
     /// A vector of length one.
     Unit,
+    /// A symmetric matrix.
+    Symmetric,
     /// An element of a group.
     Group(Group),
 }

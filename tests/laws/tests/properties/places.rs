@@ -57,6 +57,19 @@ proptest! {
         prop_assert_eq!(private::of_length_one_with_rest(q, left), (q, left));
     }
 
+    /// The entries above the diagonal decide, and the defect is that of the entries, relative to the largest.
+    #[test]
+    fn matrices_become_symmetric(a in matrix::<3, 3>(1.0), rest in matrix::<3, 3>(1e-16), scale in -100.0_f64..100.0) {
+        let a = a * 10.0_f64.powf(scale);
+        let back = private::symmetric(a);
+        prop_assert_eq!(back.transpose(), back);
+        prop_assert_eq!(back.upper_triangle(), a.upper_triangle());
+        prop_assert_eq!(private::symmetric_with_rest(a, rest), (back, private::symmetric(rest)));
+        prop_assert_eq!(private::symmetry_defect(&back), 0.0);
+        let expected = (a - a.transpose()).amax() / a.amax();
+        prop_assert!((private::symmetry_defect(&a) - expected).abs() < NEAR);
+    }
+
     /// A promise of a field that is true is accepted, and a value that is off by more than rounding is refused with its
     /// size.
     #[test]

@@ -209,6 +209,11 @@ impl Generator<'_> {
             0..=2 => (name, element, q * f, Side::Right),
             3 | 4 => (name, element, f * q, Side::Left),
             5 if small => (name, element, q * f.method("inverse"), Side::Left),
+            6 if small && self.is_natural => {
+                let start = Matrix::identity(n) + (any.clone() + any.transpose()) * (0.25 / n as f64);
+                let image = f.clone() * q * f.method("transpose");
+                (format!("Symmetric<{square}>"), start, image, Side::Left)
+            }
             6 if small => (square, any, f.clone() * q * f.method("transpose"), Side::Left),
             7 if small => (square, any, f.clone() * q * f.method("inverse"), Side::Left),
             _ if is_affine(group) => {

@@ -115,6 +115,10 @@ fn spaces(formulas: &MechanicsFormulas<'_>) -> String {
         what.push("vectors of length one");
         how.push("by q(3 − |q|²)/2 once |q|² is off by 8ε");
     }
+    if is(|space| *space == LeafSpace::Symmetric) {
+        what.push("symmetric matrices");
+        how.push("by their entries above the diagonal");
+    }
     if what.is_empty() {
         return String::new();
     }
