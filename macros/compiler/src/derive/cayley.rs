@@ -30,6 +30,13 @@ pub(crate) fn of_increment<'g>(model: &System<'g>, k: usize, increment: Expr<'g>
     Some((symbol(model, k), group.projected_coordinates(increment * (increment + twice).inverse())))
 }
 
+/// The same without the inverse in the plane and in space, (D − Dᵀ)/(4 + tr D).
+pub(super) fn of_turn<'g>(model: &System<'g>, k: usize, increment: Expr<'g>) -> Option<(Expr<'g>, Expr<'g>)> {
+    let Group::SpecialOrthogonal(2 | 3) = model.factors[k].group else { return of_increment(model, k, increment) };
+    let turn = 2 * model.factors[k].group.projected_coordinates(increment);
+    Some((symbol(model, k), turn / (increment.trace() + model.graph.integer(4))))
+}
+
 /// The replacements of the components of (F − I)(F + I)⁻¹, block by block, by those of Z.
 pub(super) fn replacements<'g>(model: &System<'g>) -> Vec<(Expr<'g>, Expr<'g>)> {
     let mut replacements = Vec::new();
@@ -55,5 +62,11 @@ pub(super) fn motion<'g>(model: &System<'g>, k: usize, eta: Expr<'g>, from_left:
     let (plus, minus) = (one + group.wedge(z), one - group.wedge(z));
     let wedge = group.wedge(eta);
     let moved = if from_left { minus * wedge * plus } else { plus * wedge * minus };
+    // in the plane and in space −Z η Z is (z·η) Z, and Z η − η Z is (z × η)^
+    if let Group::SpecialOrthogonal(n @ (2 | 3)) = group {
+        let turned = if n == 3 { group.wedge(z) * eta } else { model.graph.zero(z.shape()) };
+        let turned = if from_left { -turned } else { turned };
+        return Some((z, (eta + turned + z.dot(eta) * z) / 2));
+    }
     Some((z, group.projected_coordinates(moved.expand()) / 2))
 }

@@ -3,7 +3,7 @@
 
 use clebsch_symbolic::{Elements, Expr, IntoList, identity};
 
-use super::symbols::{identities, logarithm, moved, moved_on};
+use super::symbols::{identities, images, logarithm, moved, moved_on};
 use super::{exact, system, trivialisation, velocity};
 use crate::diagnostic::Diagnostics;
 use crate::model::{Discretization, Factor, Kinetic, Mechanics, Order, System};
@@ -13,6 +13,8 @@ use crate::model::{Discretization, Factor, Kinetic, Mechanics, Order, System};
 pub struct DiscreteLagrangian<'g> {
     /// K, a function of F (and of h and t) alone unless it couples.
     pub kinetic: Expr<'g>,
+    /// K as a function of both ends, with q⁺ as symbols where it reads Φ_F(q).
+    pub by_ends: Expr<'g>,
     /// U₀(t, q), at the start of the step.
     pub start: Expr<'g>,
     /// U₁(t, q), at its end.
@@ -21,11 +23,26 @@ pub struct DiscreteLagrangian<'g> {
     pub couples: bool,
 }
 
+/// A cost K(t, h, q, F), and the same with symbols for q⁺ = Φ_F(q).
+#[derive(Copy, Clone, PartialEq, Eq)]
+pub(super) struct Cost<'g> {
+    /// K(t, h, q, F).
+    pub kinetic: Expr<'g>,
+    /// K(t, h, q, q⁺, F).
+    pub by_ends: Expr<'g>,
+}
+
+impl<'g> Cost<'g> {
+    fn plain(kinetic: Expr<'g>) -> Cost<'g> {
+        Cost { kinetic, by_ends: kinetic }
+    }
+}
+
 /// The cost K(t, h, q, F), as declared or from a Lagrangian. The latter gives h ℓ(ξ) or h/2 (ℓ(q, ξ) + ℓ(Φ_F q, ξ)),
 /// with the velocity ξ computed from F and h. If the group leaves ℓ invariant, both are h ℓ(q, ξ), as Ad_F ξ = ξ.
-pub(super) fn cost<'g>(model: &Mechanics<'g>) -> Result<Expr<'g>, Diagnostics> {
+pub(super) fn cost<'g>(model: &Mechanics<'g>) -> Result<Cost<'g>, Diagnostics> {
     let (energy, velocities, discretization) = match &model.kinetic {
-        Kinetic::Cost(cost) => return Ok(*cost),
+        Kinetic::Cost(cost) => return Ok(Cost::plain(*cost)),
         Kinetic::Lagrangian { energy, velocities, discretization, .. } => (*energy, velocities, *discretization),
     };
     let h = model.step_size;
@@ -46,13 +63,18 @@ pub(super) fn cost<'g>(model: &Mechanics<'g>) -> Result<Expr<'g>, Diagnostics> {
         commutes && system::is_invariant(model, energy, velocities)
     };
     if is_steady && (!model.reads_configuration(energy) || is_same_at_both_ends()) {
-        return at(energy);
+        return at(energy).map(Cost::plain);
     }
-    Ok((at(energy)? + at(energy.substitute(&moved_on(model)))?) / 2)
+    let start = at(energy)?;
+    let mut arrived: Vec<_> = model.configurations.iter().map(|leaf| leaf.symbol).zip(images(model)).into_list();
+    arrived.push((model.time, model.time + h));
+    let kinetic = (start + at(energy.substitute(&moved_on(model)))?) / 2;
+    Ok(Cost { kinetic, by_ends: (start + at(energy.substitute(&arrived))?) / 2 })
 }
 
 /// Separates the cost into a part of F and a part of q where it is such a sum, and places the potential.
-pub(super) fn separate<'g>(model: &Mechanics<'g>, cost: Expr<'g>) -> DiscreteLagrangian<'g> {
+pub(super) fn separate<'g>(model: &Mechanics<'g>, cost: Cost<'g>) -> DiscreteLagrangian<'g> {
+    let Cost { kinetic: cost, by_ends } = cost;
     let static_part = cost.substitute(&identities(model));
     let difference = cost - static_part;
     let kinetic = if model.reads_configuration(difference) { difference.expand() } else { difference };
@@ -64,10 +86,10 @@ pub(super) fn separate<'g>(model: &Mechanics<'g>, cost: Expr<'g>) -> DiscreteLag
         (Some(potential), _) => (-(h * potential / 2), -(h * potential / 2)),
     };
     if model.reads_configuration(kinetic) {
-        return DiscreteLagrangian { kinetic: cost, start, end, couples: true };
+        return DiscreteLagrangian { kinetic: cost, by_ends, start, end, couples: true };
     }
     let start = if model.reads_configuration(static_part) { start + static_part } else { start };
-    DiscreteLagrangian { kinetic, start, end, couples: false }
+    DiscreteLagrangian { kinetic, by_ends: kinetic, start, end, couples: false }
 }
 
 impl<'g> DiscreteLagrangian<'g> {
@@ -77,10 +99,14 @@ impl<'g> DiscreteLagrangian<'g> {
         let inverse = |factor: &Factor<'g>| (factor.symbol, factor.group.inverse(factor.symbol));
         let mut reversed: Vec<_> = model.factors.each(inverse);
         reversed.extend((0..model.factors.len()).map(|k| logarithm(model, k)).map(|y| (y, -y)));
-        reversed.extend(moved(model));
         reversed.extend([(h, -h), (model.time, model.time + h)]);
+        let leaves = model.configurations.iter().map(|leaf| leaf.symbol).zip(images(model));
+        let exchanged = leaves.flat_map(|(q, image)| [(q, image), (image, q)]);
+        let by_ends: Vec<_> = reversed.iter().copied().chain(exchanged).into_list();
+        reversed.extend(moved(model));
         DiscreteLagrangian {
             kinetic: -self.kinetic.substitute(&reversed),
+            by_ends: -self.by_ends.substitute(&by_ends),
             start: -self.end.substitute(&[(h, -h)]),
             end: -self.start.substitute(&[(h, -h)]),
             couples: self.couples,
@@ -123,8 +149,10 @@ impl<'g> DiscreteLagrangian<'g> {
     /// step.
     fn of_part(&self, model: &System<'g>, step: Expr<'g>, later: Expr<'g>) -> DiscreteLagrangian<'g> {
         let scaled = |part: Expr<'g>| part.substitute(&[(model.step_size, step)]);
+        let at_part = |part: Expr<'g>| part.substitute(&[(model.step_size, step), (model.time, model.time + later)]);
         DiscreteLagrangian {
-            kinetic: self.kinetic.substitute(&[(model.step_size, step), (model.time, model.time + later)]),
+            kinetic: at_part(self.kinetic),
+            by_ends: at_part(self.by_ends),
             start: scaled(self.start),
             end: scaled(self.end),
             couples: self.couples,

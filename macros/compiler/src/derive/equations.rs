@@ -5,23 +5,25 @@ use clebsch_symbolic::{Chart, Elements, Expr, IntoList, Shape, identity, indexed
 use super::clearing;
 use super::closed_form::{closed_form, is_solved_by_predictor};
 use super::equation::{Form, Momentum, MomentumEquation, Solution, Sources, is_diagonal, is_kept};
+use super::letters::Letters;
 use super::{ChartBlock, exact, structure};
 
 pub(super) fn equations<'g>(sources: &Sources<'_, 'g>, momentum: &Momentum<'g>) -> Vec<MomentumEquation<'g>> {
     let (model, symbols) = (sources.model, &sources.symbols);
     let is_free_rotation = |block: &ChartBlock<'g>| exact::is_free_rotation(model, block.factor);
-    let late = late(sources, momentum);
+    let letters = Letters::new(sources, momentum);
     let mut residuals: Vec<Residual<'g>> = Vec::new();
     for k in 0..model.factors.len() {
         let (residual, cleared) = if exact::is_free_rotation(model, k) {
             (model.graph.zero(symbols.momenta[k].shape()), true)
         } else {
-            residual(sources, momentum, (k, &late))
+            residual(sources, momentum, (k, &letters))
         };
         residuals.extend(symbols.blocks.iter().filter(|block| block.factor == k).map(|block| {
             let start = block.offset - model.offset(k);
-            let is_near = momentum.couples && late.iter().any(|(d, _)| residual.depends_on(*d));
-            Residual { rows: residual.block(start, 0, block.coordinates.shape()).substitute(&late), cleared, is_near }
+            let is_near = momentum.couples && letters.occur_in(residual);
+            let rows = letters.replaced(residual.block(start, 0, block.coordinates.shape()));
+            Residual { rows, cleared, is_near }
         }));
     }
     if !momentum.is_forced {
@@ -91,21 +93,6 @@ fn explicit<'g>(sources: &Sources<'_, 'g>, residuals: &[Residual<'g>], i: usize)
     Some(graph.stack(block.coordinates.shape(), indexed(block.dimension(), entry)))
 }
 
-/// The increments D(x) that are substituted last, with their symbols. Terms that cancel in F − I do so before.
-///
-/// They belong to charts with roots and to exponentials. If the cost couples, they belong to Cayley's chart too, unless a denominator
-/// depends on F.
-fn late<'g>(sources: &Sources<'_, 'g>, momentum: &Momentum<'g>) -> Vec<(Expr<'g>, Expr<'g>)> {
-    let (model, symbols) = (sources.model, &sources.symbols);
-    let parts = || momentum.before.iter().map(|before| before.array).chain(momentum.coupling.iter().flatten().copied());
-    let is_polynomial = |k: usize| !parts().any(|part| part.has_poles_in(&[model.factors[k].symbol]));
-    let is_late = |k: &usize| match symbols.charts[*k] {
-        Chart::Cayley | Chart::Product => momentum.couples && is_polynomial(*k),
-        chart => is_kept(chart, momentum.coupling.is_some()),
-    };
-    (0..model.factors.len()).filter(is_late).map(|k| (symbols.increments[k], sources.chart_increment(k))).into_list()
-}
-
 /// ρ_k(x): the components of T* ∂_F K − J(q, ∂_q K), less their value at F = I, less μ.
 ///
 /// They are freed of denominators by A (…) C where that is possible. The second value says whether they were. Increments that are
@@ -113,28 +100,26 @@ fn late<'g>(sources: &Sources<'_, 'g>, momentum: &Momentum<'g>) -> Vec<(Expr<'g>
 fn residual<'g>(
     sources: &Sources<'_, 'g>,
     momentum: &Momentum<'g>,
-    (k, late): (usize, &[(Expr<'g>, Expr<'g>)]),
+    (k, letters): (usize, &Letters<'_, 'g>),
 ) -> (Expr<'g>, bool) {
     let (model, symbols) = (sources.model, &sources.symbols);
     let Momentum { before, coupling, rest, .. } = momentum;
     let group = model.factors[k].group;
-    let is_late = |j: &usize| late.iter().any(|(d, _)| *d == symbols.increments[*j]);
-    let by_increment = |j: usize| model.factors[j].group.identity(model.graph) + symbols.increments[j];
-    let element = |j: usize| if is_late(&j) { by_increment(j) } else { sources.chart_element(j) };
-    let mut elements: Vec<_> = indexed(model.factors.len(), |j| (model.factors[j].symbol, element(j)));
-    elements.extend((0..model.factors.len()).map(|j| (symbols.logarithms[j], symbols.stacked_coordinates(j))));
-    elements.extend((0..model.factors.len()).filter_map(|j| sources.cayley_coordinates(j, is_late(&j))));
-    let array = before[k].array.substitute(&elements).expand();
+    let elements = &letters.elements;
+    let array = before[k].array.substitute(elements).expand();
     let mu = rest.as_ref().map_or(symbols.momenta[k], |rest| symbols.momenta[k] - rest[k]);
     let mut plain = group.components(array).expand() - mu;
     if let Some(rational) = before[k].rational {
-        plain = plain + rational.substitute(&elements).expand();
+        plain = plain + rational.map.substitute(elements).expand();
     }
     if symbols.charts[k] == Chart::Product {
         plain = plain.blockwise().expand();
     }
     if let Some(coupling) = coupling {
-        plain = plain + coupling[k].substitute(&elements).expand();
+        plain = plain + coupling[k].substitute(elements).expand();
+    }
+    if momentum.couples {
+        plain = letters.near(plain);
     }
     if let Some((gradient, slope)) = before[k].logarithmic {
         // dexp_y^T leaves ∂K/∂y as it is where ad_y^T does: ∂K/∂y = μ, for bi-invariant energies
@@ -142,15 +127,15 @@ fn residual<'g>(
         let invariant =
             identity::equal(&[group.ad(y).transpose() * gradient, group.components(before[k].array)], &[zero; 2]);
         if coupling.is_none() && invariant {
-            return ((gradient.substitute(&elements) - mu).expand(), true);
+            return ((gradient.substitute(elements) - mu).expand(), true);
         }
         // freed of dexp⁻¹ by dexp, which is regular near the identity
-        let (gradient, slope) = (gradient.substitute(&elements), slope.substitute(&elements));
+        let (gradient, slope) = (gradient.substitute(elements), slope.substitute(elements));
         let freed = slope.transpose() * plain;
         let expanded = || gradient.expand() + freed.expand();
-        return (if late.is_empty() { expanded() } else { gradient + freed }, true);
+        return (if letters.increments.is_empty() { expanded() } else { gradient + freed }, true);
     }
-    if coupling.is_some() || !late.is_empty() {
+    if coupling.is_some() || !letters.increments.is_empty() {
         return (plain, false);
     }
     match clearing::by_congruence(sources, k, (array, mu, plain)) {

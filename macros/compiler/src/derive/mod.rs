@@ -12,6 +12,7 @@ mod clearing;
 mod closed_form;
 mod collocation;
 mod control;
+mod cross;
 mod degenerate;
 mod derivation;
 mod discrete_lagrangian;
@@ -24,6 +25,7 @@ mod formula;
 mod formulas;
 mod isotropy;
 mod latex;
+mod letters;
 mod matrices;
 mod moves;
 mod naming;
@@ -48,13 +50,14 @@ use std::rc::Rc;
 
 use crate::diagnostic::{Diagnostics, bail};
 use crate::model::features::{self, Feature, Found};
-use crate::model::{Discretization, Mechanics, Model, Order, Steered, System};
+use crate::model::{Discretization, Kinetic, Mechanics, Model, Order, Steered, System};
 
 pub use catalogue::{Entry, Heat, Id, Reference};
 pub use choice::{Choice, Endpoint, Jet, Steering, StepOfChoice};
 pub use collocation::Collocation;
 pub use control::{Bend, InputStep};
 pub use derivation::{Iteration, Lowered, derivation, derivation_of_control};
+use discrete_lagrangian::Cost;
 pub use discrete_lagrangian::DiscreteLagrangian;
 pub use energy::Energy;
 use equation::Sources;
@@ -89,6 +92,9 @@ pub fn derive(model: Model<'_>) -> Result<Formulas<'_>, Diagnostics> {
 fn mechanics(mut model: Mechanics<'_>) -> Result<MechanicsFormulas<'_>, Diagnostics> {
     variation::check(&model)?;
     let mut system = system(model.system.clone(), model.kinetic.discretization());
+    if let Kinetic::Lagrangian { energy, .. } = &mut model.kinetic {
+        *energy = cross::shortened(*energy);
+    }
     let KineticPart { declared, cost, energy, inertia, vertical } = kinetic_part(&mut model, &system)?;
     let lagrangian = discrete_lagrangian::separate(&model, cost);
     // symmetries and Legendre transforms are those of the declared cost
@@ -171,9 +177,9 @@ fn mechanics(mut model: Mechanics<'_>) -> Result<MechanicsFormulas<'_>, Diagnost
 /// The kinetic part of a model.
 struct KineticPart<'g> {
     /// The cost K as declared.
-    declared: Expr<'g>,
+    declared: Cost<'g>,
     /// The cost with the vertical term.
-    cost: Expr<'g>,
+    cost: Cost<'g>,
     /// The continuous Lagrangian, with the vertical term.
     energy: Energy<'g>,
     /// Its Σ, which is regular.

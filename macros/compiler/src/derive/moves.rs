@@ -3,6 +3,7 @@
 
 use clebsch_symbolic::{Chart, Elements, Expr, Group, IntoElements, IntoList, Property, Role, Shape, identity};
 
+use super::summation::with_arrival;
 use super::{MechanicsFormulas, Substep, SystemFormulas, cayley};
 use crate::model::{Factor, Isotropy};
 
@@ -20,19 +21,32 @@ impl<'g> SystemFormulas<'g> {
         replacements
     }
 
-    /// The replacement of the letters for Cayley coordinates by D(2I + D)⁻¹.
+    /// The replacements of Cayley coordinates by functions of D.
     fn cayley_letters(&self) -> Vec<(Expr<'g>, Expr<'g>)> {
         let increments = self.symbols.increments.iter().enumerate();
-        increments.filter_map(|(k, d)| cayley::of_increment(&self.model, k, *d)).into_list()
+        increments.filter_map(|(k, d)| cayley::of_turn(&self.model, k, *d)).into_list()
+    }
+
+    /// An expression with I + D put in for F, products distributed, with symbols for q⁺ and for Cayley coordinates.
+    pub(super) fn near_elements(&self, part: Expr<'g>) -> Expr<'g> {
+        let is_element = |(letter, _): &(Expr<'g>, Expr<'g>)| !matches!(letter.role(), Some(Role::Cayley(_)));
+        let elements: Vec<_> = self.increments().into_iter().filter(is_element).into_list();
+        part.substitute(&elements).expand()
+    }
+
+    /// Functions of both ends with I + D put in for F, and q⁺ and Cayley coordinates as functions of D.
+    pub(super) fn at_both_ends(&self, parts: &[Expr<'g>]) -> Vec<Expr<'g>> {
+        let action = self.at_increments(&self.model.action);
+        let images = self.symbols.images.iter().copied().zip(action);
+        let late: Vec<_> = images.chain(self.cayley_letters()).into_list();
+        parts.each(|part| self.near_elements(*part).substitute(&late))
     }
 
     /// Expressions with I + D put in for F, products distributed. D(2I + D)⁻¹ stays a product: as I − 2(2I + D)⁻¹ it would
     /// cancel, and 1/h enlarges the rounding.
     pub(super) fn at_increments(&self, parts: &[Expr<'g>]) -> Vec<Expr<'g>> {
-        let (elements, letters) = (self.increments(), self.cayley_letters());
-        let stays = |(letter, _): &(Expr<'g>, Expr<'g>)| !letters.iter().any(|(other, _)| other == letter);
-        let elements = elements.into_iter().filter(stays).into_list();
-        parts.each(|part| part.substitute(&elements).expand().substitute(&letters))
+        let letters = self.cayley_letters();
+        parts.each(|part| self.near_elements(*part).substitute(&letters))
     }
 }
 
@@ -71,12 +85,22 @@ impl<'g> MechanicsFormulas<'g> {
         if acts { gradients } else { Vec::new() }
     }
 
-    /// ∂_q K of a cost that couples, at F = I + D; none of another.
+    /// ∂_q K of a cost that couples, at F = I + D; none of another. A function of both ends has ∂_q K + (TΦ_F)* ∂_q⁺ K.
     pub(super) fn coupled_kick(&self, substep: &Substep<'g>) -> Vec<Expr<'g>> {
-        let acts = substep.lagrangian.couples && self.model.force.is_none();
-        let moved = self.increments();
-        let kick = || self.gradients(substep.lagrangian.kinetic).each(|part| part.substitute(&moved));
-        if acts { kick() } else { Vec::new() }
+        if !substep.lagrangian.couples || self.model.force.is_some() {
+            return Vec::new();
+        }
+        let symbols = &self.symbols;
+        let by_ends = substep.lagrangian.by_ends.substitute(&cayley::replacements(&self.model));
+        let pairs = self.model.action.iter().zip(&symbols.covectors).map(|(image, p)| p.dot(*image));
+        let pulled = self.gradients(self.model.graph.total(Shape::scalar(), pairs));
+        let arrived = symbols.images.each(|image| by_ends.gradient(*image));
+        let covectors: Vec<_> = symbols.covectors.iter().copied().zip(arrived).into_list();
+        let own = self.gradients(by_ends).into_iter().zip(pulled);
+        let kick = own.map(|(own, pulled)| own + pulled.substitute(&covectors));
+        let images: Vec<_> = symbols.images.iter().copied().zip(self.model.action.iter().copied()).into_list();
+        let (letters, moved) = (self.cayley_letters(), self.increments());
+        kick.map(|part| part.substitute(&images).substitute(&letters).substitute(&moved)).into_list()
     }
 
     /// A force that depends on the velocity, in the chart: with its elements, and with their logarithms.
@@ -125,13 +149,15 @@ impl<'g> MechanicsFormulas<'g> {
             return self.momentum_increments(substep);
         }
         if self.small_change(substep).is_some() {
-            return self.carried_on(substep).map(|carried| self.at_increments(&carried));
+            return self.carried_on(substep).map(|carried| self.at_both_ends(&carried));
         }
         // the move is linear in M: M, which may be long, is substituted last
         let momenta = self.momenta_of_move(substep)?;
-        let momenta: Vec<_> = self.symbols.momenta.iter().copied().zip(self.at_increments(&momenta)).into_list();
+        let momenta: Vec<_> = self.symbols.momenta.iter().copied().zip(self.at_both_ends(&momenta)).into_list();
         let carried = self.at_increments(&self.carried_by_move(substep));
-        Some(carried.into_each(|carried| carried.substitute(&momenta)))
+        let carried = carried.into_each(|carried| carried.substitute(&momenta));
+        let arrival = substep.coupling.as_ref().map(|coupling| self.at_both_ends(&coupling.arrival));
+        Some(with_arrival(carried, arrival.as_deref()))
     }
 
     /// q⁺ = q + α x_Q(q) + β x_Q(x_Q(q)) of vectors that turn in one plane, without the matrix of the turn.

@@ -4,7 +4,7 @@ use clebsch_symbolic::{Chart, Elements, Expr, IntoList, identity, indexed};
 
 use super::equation::{Momentum, MomentumEquation, Solution, Sources};
 use super::force::total;
-use super::symbols::{at_zero, identities};
+use super::symbols::{at_zero, identities, images};
 use super::trivialisation::{self, Covector};
 use super::{
     DiscreteLagrangian, EdgeDerivatives, EdgeForce, Symbols, SystemFormulas, cayley, equations, exact, variation,
@@ -42,22 +42,25 @@ pub struct Substep<'g> {
     pub variation: Option<EdgeDerivatives<'g>>,
 }
 
-/// The momenta that a coupled cost K(q, F) adds in a move.
+/// The momenta that a coupled cost K(q, q⁺, F) adds in a move, with symbols for q⁺.
 pub struct Coupling<'g> {
     /// J(q, ∂_q K) for each factor, which r(F) lacks of ∂_F K.
     pub kick: Vec<Expr<'g>>,
-    /// r⁺(F) − r(F) for each factor, with the other trivialisation r⁺ of ∂_F K.
+    /// J(q⁺, ∂_q⁺ K) for each factor.
+    pub arrival: Vec<Expr<'g>>,
+    /// r⁺(F) − r(F) for each factor, with the other Legendre transform r⁺ = T* ∂_F K + J(q⁺, ∂_q⁺ K).
     pub change: Vec<Expr<'g>>,
 }
 
 impl<'g> Coupling<'g> {
-    fn new(sources: &Sources<'_, 'g>, kinetic: Expr<'g>) -> Coupling<'g> {
+    fn new(sources: &Sources<'_, 'g>, by_ends: Expr<'g>) -> Coupling<'g> {
         let model = sources.model;
-        let (before, after) = trivialisation::of_all(model, kinetic);
+        let (before, after) = trivialisation::of_all(model, by_ends);
         let (before, after) = (trivialisation::components(model, &before), trivialisation::components(model, &after));
-        let kick = sources.momenta_of(sources.gradients(kinetic));
-        let change = (0..model.factors.len()).map(|k| (after[k] - before[k] + kick[k]).expand()).into_list();
-        Coupling { kick, change }
+        let kick = sources.momenta_of(sources.gradients(by_ends));
+        let arrival = sources.arrival(by_ends);
+        let change = |k: usize| (after[k] - before[k] + kick[k] + arrival[k]).expand();
+        Coupling { change: (0..model.factors.len()).map(change).into_list(), kick, arrival }
     }
 }
 
@@ -73,7 +76,7 @@ impl<'g> Substep<'g> {
         let model = sources.model;
         // no congruence clears the denominators of coupled costs: their Cayley coordinates are letters
         let letters = if lagrangian.couples { cayley::replacements(model) } else { Vec::new() };
-        let kinetic = lagrangian.kinetic.substitute(&letters);
+        let kinetic = lagrangian.by_ends.substitute(&letters);
         let (before, after) = trivialisation::of_all(model, kinetic);
         let coupling = lagrangian.couples.then(|| sources.coupling(kinetic));
         // the part of the force that depends on the velocity joins the equation, at the time at which the step starts
@@ -138,6 +141,7 @@ fn at_rest<'g>(model: &System<'g>, before: &[Covector<'g>], coupling: Option<&[E
     if coupling.is_some() {
         let letters = (0..model.factors.len()).map(|k| cayley::symbol(model, k));
         at_identity.extend(at_zero(letters));
+        at_identity.extend(images(model).into_iter().zip(model.configurations.iter().map(|leaf| leaf.symbol)));
     }
     let of_factor = |(k, factor): (usize, &Factor<'g>)| {
         let kinetic = before[k].components(factor.group);
@@ -155,7 +159,7 @@ pub(super) fn legendre<'g>(
     system: &SystemFormulas<'g>,
     lagrangian: &DiscreteLagrangian<'g>,
 ) -> (Vec<Expr<'g>>, Vec<Expr<'g>>) {
-    let (before, after) = trivialisation::of_all(model, lagrangian.kinetic);
+    let (before, after) = trivialisation::of_all(model, lagrangian.by_ends);
     let mut before = trivialisation::components(model, &before);
     let mut after = trivialisation::components(model, &after);
     // with the symbol μ for the momentum of the free motion that makes F
@@ -164,8 +168,12 @@ pub(super) fn legendre<'g>(
         after[k] = system.carried(k, before[k]);
     }
     if lagrangian.couples {
-        let coupling = system.coupling(lagrangian.kinetic);
+        let coupling = system.coupling(lagrangian.by_ends);
         before.iter_mut().zip(coupling).for_each(|(before, coupling)| *before = *before + coupling);
+        let arrival = system.arrival(lagrangian.by_ends);
+        after.iter_mut().zip(arrival).for_each(|(after, arrival)| *after = *after + arrival);
+        let arrived: Vec<_> = system.symbols.images.iter().copied().zip(model.action.iter().copied()).into_list();
+        before.iter_mut().chain(&mut after).for_each(|part| *part = part.substitute(&arrived));
     }
     if let Some(start) = system.impulse(lagrangian.start) {
         before.iter_mut().zip(start).for_each(|(before, start)| *before = *before - start);

@@ -12,7 +12,7 @@ use clebsch_symbolic::{Expr, Graph, IntoElements, IntoList, Property, Role, Word
 
 use super::moves::inverse_by;
 use super::symbols::at_zero;
-use super::{MechanicsFormulas, Substep};
+use super::{MechanicsFormulas, Substep, cayley};
 use crate::diagnostic::Diagnostics;
 use crate::model::Factor;
 use crate::model::features::{self, Feature, Found};
@@ -26,15 +26,17 @@ impl<'g> MechanicsFormulas<'g> {
     /// The increment of the momentum M by the move, for each factor; `None` if it is zero.
     pub(super) fn momentum_increments(&self, substep: &Substep<'g>) -> Option<Vec<Expr<'g>>> {
         if let Some(change) = self.small_change(substep) {
-            return Some(self.at_increments(change));
+            return Some(self.at_both_ends(change));
         }
         let inverses = self.inverses();
-        let coupling = substep.coupling.as_ref().map(|coupling| self.at_increments(&coupling.kick));
+        let coupling = substep.coupling.as_ref();
+        let kick = coupling.map(|coupling| self.at_both_ends(&coupling.kick));
+        let arrival = coupling.map(|coupling| self.at_both_ends(&coupling.arrival));
         let added = |(k, m): (usize, &Expr<'g>)| {
             let change = || self.beside(self.carried(k, *m), *m).substitute(&inverses);
             let change = if substep.unchanged[k] { self.model.graph.zero(m.shape()) } else { change() };
-            let Some(coupling) = &coupling else { return change };
-            change.substitute(&[(*m, *m + coupling[k])]) + coupling[k]
+            let Some((kick, arrival)) = kick.as_ref().zip(arrival.as_ref()) else { return change };
+            change.substitute(&[(*m, *m + kick[k])]) + kick[k] + arrival[k]
         };
         let changes = coupling.is_some() || substep.unchanged.contains(&false);
         changes.then(|| self.symbols.momenta.iter().enumerate().map(added).into_list())
@@ -54,7 +56,8 @@ impl<'g> MechanicsFormulas<'g> {
             return Some(momenta.into_list());
         }
         let momenta: Vec<_> = self.symbols.momenta.iter().copied().zip(self.momenta_of_move(substep)?).into_list();
-        Some(self.carried_by_move(substep).into_each(|carried| carried.substitute(&momenta)))
+        let carried = self.carried_by_move(substep).into_each(|carried| carried.substitute(&momenta));
+        Some(with_arrival(carried, substep.coupling.as_ref().map(|coupling| coupling.arrival.as_slice())))
     }
 
     /// r⁺(F) − r(F) of a cost that couples, where each of its terms is of second order in D = F − I or has a factor h.
@@ -63,22 +66,32 @@ impl<'g> MechanicsFormulas<'g> {
     /// but their rounding does not.
     pub(super) fn small_change<'a>(&self, substep: &'a Substep<'g>) -> Option<&'a [Expr<'g>]> {
         let change = substep.coupling.as_ref()?.change.as_slice();
-        self.at_increments(change).into_iter().all(|change| self.is_small(change)).then_some(change)
+        change.iter().all(|change| self.is_small(*change)).then_some(change)
     }
 
-    /// Whether each term of an expression in D is of second order in D, or has a factor h.
+    /// Whether each term of a function of both ends is of second order in D, or has a factor h.
     fn is_small(&self, change: Expr<'g>) -> bool {
         let (model, symbols) = (&self.model, &self.symbols);
         let along = |(k, factor): (usize, &Factor<'g>)| (symbols.increments[k], factor.group.wedge(symbols.algebra[k]));
-        let directions: Vec<_> = model.factors.iter().enumerate().map(along).into_list();
-        let near = at_zero(symbols.increments.iter().copied());
+        let mut directions: Vec<_> = model.factors.iter().enumerate().map(along).into_list();
+        let mut near = at_zero(symbols.increments.iter().copied());
+        // z is half of D at first
+        for (k, algebra) in symbols.algebra.iter().enumerate() {
+            let z = cayley::symbol(model, k);
+            directions.push((z, *algebra / 2));
+            near.push((z, z.graph().zero(z.shape())));
+        }
+        for ((leaf, image), motion) in model.configurations.iter().zip(&symbols.images).zip(&self.generator) {
+            directions.push((*image, *motion));
+            near.push((*image, leaf.symbol));
+        }
         let is_small = |term: WordTerm<'g>| {
             let term = expression(term, change.graph());
             let vanishes = |part: Expr<'g>| identity::vanishes(part.substitute(&near));
             term.least_exponent(model.step_size).is_some_and(|least| least >= integer(1))
                 || vanishes(term) && vanishes(term.differential(&directions))
         };
-        change.word_terms().into_iter().all(is_small)
+        self.near_elements(change).word_terms().into_iter().all(is_small)
     }
 
     /// M⁺ of M = μ, which is μ itself where both trivialisations of ∂_F K agree.
@@ -135,6 +148,12 @@ impl<'g> MechanicsFormulas<'g> {
     }
 }
 
+/// Momenta M⁺ with the impulse at q⁺ of a coupled cost.
+pub(super) fn with_arrival<'g>(carried: Vec<Expr<'g>>, arrival: Option<&[Expr<'g>]>) -> Vec<Expr<'g>> {
+    let Some(arrival) = arrival else { return carried };
+    carried.iter().zip(arrival).map(|(carried, arrival)| *carried + *arrival).into_list()
+}
+
 /// Compensated sums need increments.
 ///
 /// # Errors
@@ -167,6 +186,6 @@ fn cancels<'g>(added: Expr<'g>, from: Expr<'g>, increments: &[Expr<'g>]) -> bool
 }
 
 /// The product of the scalars and the letters of a term.
-fn expression<'g>(term: WordTerm<'g>, graph: &'g Graph) -> Expr<'g> {
+pub(super) fn expression<'g>(term: WordTerm<'g>, graph: &'g Graph) -> Expr<'g> {
     term.word.iter().fold(term.scale(graph), |product, letter| product * *letter)
 }

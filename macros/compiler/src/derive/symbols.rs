@@ -126,10 +126,6 @@ impl<'g> Symbols<'g> {
         let groups = || model.factors.iter().map(|factor| factor.group);
         let vectors: Vec<Shape> = groups().map(|group| Shape::vector(group.dimension())).into_list();
         let matrices: Vec<Shape> = groups().map(|group| group.element_shape()).into_list();
-        // q⁺ lies in the same space as q
-        let image = |(i, leaf): (usize, &Configuration<'g>)| {
-            graph.symbol(&format!("{}⁺", leaf.name), leaf.shape, Role::Image(i), leaf.symbol.property())
-        };
         Symbols {
             covectors: numbered(&["p", "α", "β"], Role::Covector, &leaves),
             algebra: numbered(&["ξ", "η", "ζ"], Role::Algebra, &vectors),
@@ -145,10 +141,18 @@ impl<'g> Symbols<'g> {
             logarithms: indexed(model.factors.len(), |k| logarithm(model, k)),
             increments: numbered(&["D", "Δ", "B"], Role::Increment, &matrices),
             following: numbered(&["D⁺"], Role::Following, &matrices),
-            images: model.configurations.iter().enumerate().map(image).into_list(),
+            images: images(model),
             momentum_matrices: numbered(&["M", "N", "P"], Role::MomentumMatrix, &matrices),
         }
     }
+}
+
+/// The symbols of q⁺, which lies in the same space as q.
+pub(super) fn images<'g>(model: &System<'g>) -> Vec<Expr<'g>> {
+    let image = |(i, leaf): (usize, &Configuration<'g>)| {
+        model.graph.symbol(&format!("{}⁺", leaf.name), leaf.shape, Role::Image(i), leaf.symbol.property())
+    };
+    model.configurations.iter().enumerate().map(image).into_list()
 }
 
 /// The replacement of every group element by the identity, and of its logarithm by zero.

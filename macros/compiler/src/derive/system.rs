@@ -158,6 +158,17 @@ impl<'g> SystemFormulas<'g> {
         self.momenta_of(self.gradients(kinetic)).into_each(|momentum| -momentum)
     }
 
+    /// J(q⁺, ∂_q⁺ K) for each factor, of a function of both ends.
+    pub(super) fn arrival(&self, by_ends: Expr<'g>) -> Vec<Expr<'g>> {
+        let gradients = self.symbols.images.each(|image| by_ends.gradient(*image));
+        let place: Vec<_> = self
+            .images_of_leaves()
+            .into_iter()
+            .chain(self.symbols.covectors.iter().copied().zip(gradients))
+            .into_list();
+        self.momentum_map.each(|momentum| momentum.substitute(&place))
+    }
+
     /// J(q, ∂U(q)), the impulse of a function of q; `None` if it moves nothing.
     pub(super) fn impulse(&self, potential: Expr<'g>) -> Option<Vec<Expr<'g>>> {
         let impulse = self.momenta_of(self.gradients(potential));

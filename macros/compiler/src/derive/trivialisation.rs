@@ -14,14 +14,27 @@ pub(super) struct Covector<'g> {
     /// dexp_y^T of the components that come from log F, and dexp_y itself: `None` where K does not depend on log F.
     pub logarithmic: Option<(Expr<'g>, Expr<'g>)>,
     /// The components that come from Cayley coordinates; `None` where K does not depend on them.
-    pub rational: Option<Expr<'g>>,
+    pub rational: Option<Rational<'g>>,
+}
+
+/// The components ⟨∂K/∂z, δz⟩ that come from Cayley coordinates z, as a linear map of ∂K/∂z.
+#[derive(Copy, Clone)]
+pub(super) struct Rational<'g> {
+    /// The map, of z and of the letter.
+    pub map: Expr<'g>,
+    /// The letter for ∂K/∂z.
+    pub letter: Expr<'g>,
+    /// ∂K/∂z.
+    pub gradient: Expr<'g>,
 }
 
 impl<'g> Covector<'g> {
     /// The components.
     pub fn components(&self, group: Group) -> Expr<'g> {
         let plain = group.components(self.array);
-        let plain = self.rational.map_or(plain, |rational| plain + rational);
+        let plain = self
+            .rational
+            .map_or(plain, |rational| plain + rational.map.substitute(&[(rational.letter, rational.gradient)]));
         self.logarithmic.map_or(plain, |(gradient, slope)| plain + slope.transpose().inverse() * gradient)
     }
 }
@@ -46,7 +59,9 @@ fn of_factor<'g>(model: &System<'g>, kinetic: Expr<'g>, k: usize) -> (Covector<'
     // ⟨∂K/∂z, δz⟩ is linear in the motion
     let rational = |from_left: bool| {
         let (z, moved) = cayley::motion(model, k, xi, from_left)?;
-        kinetic.depends_on(z).then(|| kinetic.gradient(z).dot(moved).gradient(xi).expand())
+        let letter = model.graph.symbol("∂K/∂z", z.shape(), Role::Following(k), Property::General);
+        let map = || letter.dot(moved).gradient(xi).expand();
+        kinetic.depends_on(z).then(|| Rational { map: map(), letter, gradient: kinetic.gradient(z) })
     };
     let left = Covector { array: left, logarithmic: along(y, -1), rational: rational(false) };
     let right = Covector { array: right, logarithmic: along(y, 1), rational: rational(true) };

@@ -117,8 +117,12 @@ impl<'g> Scalars {
         Grid::vector(basis.elements.each(component))
     }
 
-    /// The product of letters, associated so that vectors are multiplied first.
+    /// The product of letters, associated so that vectors are multiplied first. A column times a row is made last.
     fn word(&mut self, word: &[Expr<'g>]) -> Grid {
+        if let Some(cut) = between_column_and_row(word).filter(|_| word.len() > 2) {
+            let (column, row) = (self.word(&word[..cut]), self.word(&word[cut..]));
+            return self.multiply(&column, &row);
+        }
         let from_right = word.last().is_some_and(|letter| letter.shape().columns == 1) && word[0].shape().rows != 1;
         let mut grids: Vec<Rc<Grid>> = word.each(|letter| self.grid(*letter));
         if from_right {
@@ -163,7 +167,8 @@ impl<'g> Scalars {
 
     fn gathered(&mut self, shape: Shape, terms: Vec<WordTerm<'g>>) -> Grid {
         type Key<'g> = (Vec<(Expr<'g>, (i64, i64))>, Vec<Expr<'g>>, Vec<Expr<'g>>);
-        let mut groups: BTreeMap<Key<'g>, Vec<Grid>> = BTreeMap::new();
+        type Run<'g> = (Scalar, Vec<Expr<'g>>);
+        let mut groups: BTreeMap<Key<'g>, Vec<Run<'g>>> = BTreeMap::new();
         let mut grids = Vec::new();
         for term in terms {
             let scalars: Vec<_> = term.scalars.each(|(base, exponent)| (*base, exponent.parts()));
@@ -179,24 +184,45 @@ impl<'g> Scalars {
             let start = term.word.iter().position(|letter| self.is_constant(*letter)).unwrap_or(0);
             let length = term.word[start..].iter().take_while(|letter| self.is_constant(**letter)).count();
             let (prefix, suffix) = (term.word[..start].to_vec(), term.word[start + length..].to_vec());
-            let rows = suffix.first().map_or(shape.columns, |letter| letter.shape().rows);
-            let rows = if length > 0 { term.word[start].shape().rows } else { rows };
-            let run = match length {
-                0 => self.scaled_identity(rows, scale),
-                _ => {
-                    let product = self.word(&term.word[start..start + length]);
-                    self.scaled(&product, scale)
-                }
-            };
-            groups.entry((varying, prefix, suffix)).or_default().push(run);
+            let run = term.word[start..start + length].to_vec();
+            groups.entry((varying, prefix, suffix)).or_default().push((scale, run));
         }
         for ((varying, prefix, suffix), runs) in groups {
-            let middle = self.total_of(runs[0].shape, &runs);
-            let product = self.between(&prefix, middle, &suffix);
+            let product = self.of_rank_one(&prefix, &runs, &suffix).unwrap_or_else(|| {
+                let rows = suffix.first().map_or(shape.columns, |letter| letter.shape().rows);
+                let runs: Vec<Grid> = runs.each(|(scale, run)| self.constant_run(rows, *scale, run));
+                let middle = self.total_of(runs[0].shape, &runs);
+                self.between(&prefix, middle, &suffix)
+            });
             let scale = self.monomial(&integer(1), &varying);
             grids.push(self.scaled(&product, scale));
         }
         self.total_of(shape, &grids)
+    }
+
+    /// The product of the constant letters of a term, or a multiple of the identity where there are none.
+    fn constant_run(&mut self, rows: usize, scale: Scalar, run: &[Expr<'g>]) -> Grid {
+        if run.is_empty() {
+            return self.scaled_identity(rows, scale);
+        }
+        let product = self.word(run);
+        self.scaled(&product, scale)
+    }
+
+    /// prefix · run · suffix of one term whose constant letters are a column times a row: vectors first. `None` for others.
+    fn of_rank_one(
+        &mut self,
+        prefix: &[Expr<'g>],
+        runs: &[(Scalar, Vec<Expr<'g>>)],
+        suffix: &[Expr<'g>],
+    ) -> Option<Grid> {
+        let [(scale, run)] = runs else { return None };
+        let cut = between_column_and_row(run)?;
+        let column = self.word(&run[..cut]);
+        let column = self.scaled(&column, *scale);
+        let column = self.between(prefix, column, &[]);
+        let row = self.word(&[&run[cut..], suffix].concat());
+        Some(self.multiply(&column, &row))
     }
 
     /// Whether an expression is fixed once per stepper.
@@ -297,6 +323,12 @@ impl<'g> Scalars {
             self.multiply(&letter, &product)
         })
     }
+}
+
+/// The place in a product of matrices where a column meets a row, so that the product has rank one.
+fn between_column_and_row(word: &[Expr<'_>]) -> Option<usize> {
+    let is_tall = word.first().is_some_and(|letter| letter.shape().rows != 1);
+    (1..word.len()).find(|&cut| is_tall && word[cut].shape().rows == 1)
 }
 
 fn without(indices: &[usize], index: usize) -> Vec<usize> {
