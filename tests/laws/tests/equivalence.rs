@@ -268,3 +268,53 @@ fn potential_inside_of_the_cost() {
         assert_near(&whole.momentum(), &split.momentum(), NEAR, "π");
     }
 }
+
+/// A body whose constant inertia stands in space, as a left action leaves it: most often a mistake.
+#[derive(Clebsch, Clone, Debug)]
+#[clebsch(
+    action     = |F: SO<3>, R: SO<3>| F * R,
+    lagrangian = |omega| omega.dot(&(self.inertia * omega)) / 2,
+)]
+pub struct SpatialInertia {
+    pub inertia: Matrix3<f64>,
+}
+
+/// A frame that only its first factor moves.
+#[derive(Clebsch, Clone, Debug)]
+#[clebsch(
+    action     = |a: Translation<3>, (x, y): (Vector3, Vector3)| (x + a, y),
+    lagrangian = |v| self.mass * v.norm_squared() / 2,
+    potential  = |(x, y)| self.mass * (x - y).norm_squared() / 2,
+)]
+pub struct Anchored {
+    pub mass: f64,
+}
+
+#[test]
+fn the_inertia_of_a_left_action_does_not_turn() {
+    let sentence = "The inertia is constant in space and does not turn with R.";
+    assert!(SpatialInertia::DERIVATION.contains(sentence), "{}", SpatialInertia::DERIVATION);
+    assert!(!LeftTop::DERIVATION.contains("constant in space") && !HeavyTop::DERIVATION.contains("constant in space"));
+    let random = &mut Random::new(61);
+    let body = SpatialInertia { inertia: random.inertia() };
+    let inverse = body.inertia.try_inverse().expect("a regular inertia");
+    let stepper = body.stepper(H).expect("a body");
+    let mu = random.vector::<3>();
+    for _ in 0..20 {
+        let state = stepper.state(random.attitude(), mu).expect("a state");
+        let energy = mu.dot(&(inverse * mu)) / 2.0;
+        assert!((stepper.energy(&state) - energy).abs() < NEAR * energy, "{} and not {energy}", stepper.energy(&state));
+    }
+}
+
+#[test]
+fn a_configuration_that_nothing_moves_stays() {
+    assert!(Anchored::DERIVATION.contains("Nothing moves y: it stays as it is."), "{}", Anchored::DERIVATION);
+    let random = &mut Random::new(62);
+    let (x, y) = (random.vector::<3>(), random.vector::<3>());
+    let stepper = Anchored { mass: 1.2 }.into_stepper(H).expect("a system");
+    let start = stepper.state((x, y), random.vector::<3>()).expect("a state");
+    let last = stepper.trajectory(start).take(50).last().expect("steps").expect("a step");
+    assert_eq!(last.configuration().1, y);
+    assert_ne!(last.configuration().0, x);
+}

@@ -4,7 +4,7 @@ mod conserved;
 mod equations;
 mod step;
 
-use clebsch_symbolic::{Elements, IntoList, joined};
+use clebsch_symbolic::{Elements, Group, IntoList, joined};
 
 use super::symbols::subscript;
 use super::{MechanicsFormulas, SteeredFormulas, Structure};
@@ -42,6 +42,7 @@ pub fn derivation(formulas: &MechanicsFormulas<'_>, lowered: &Lowered) -> String
         sites(formulas, lowered),
         frames(model),
         energy(formulas, lowered),
+        constant_in_space(formulas),
         vertical(formulas),
         conserved::forces(formulas),
         conserved::conserved(formulas),
@@ -152,7 +153,10 @@ fn frames(model: &System<'_>) -> String {
         }
     };
     let frames: String = model.factors.iter().map(frame).collect();
-    frames + "⟨A, E⟩ stands for the components tr(AᵀE_i); x^ for Σ x_i E_i; h for the step.\n"
+    let points = model.configurations.iter().zip(&model.action);
+    let still = points.filter(|(leaf, moved)| model.action.len() > 1 && leaf.symbol == **moved);
+    let still: String = still.map(|(leaf, _)| format!("Nothing moves {}: it stays as it is.\n", leaf.name)).collect();
+    frames + &still + "⟨A, E⟩ stands for the components tr(AᵀE_i); x^ for Σ x_i E_i; h for the step.\n"
 }
 
 /// The kinetic energy in coordinates, to check the meaning of the cost.
@@ -186,6 +190,22 @@ fn energy(formulas: &MechanicsFormulas<'_>, lowered: &Lowered) -> String {
     let to_second_order = if formulas.energy.general.is_some() { " to second order" } else { "" };
     let linear = if formulas.energy.gyroscopic.is_zero() { "" } else { ", and a part that is linear in the velocity" };
     format!("Kinetic energy in these coordinates{to_second_order}: {terms}{linear}. It is {signature}.{symmetric}\n")
+}
+
+/// The frame of a constant inertia of rotations from the left: the usual inertia of a body turns with it.
+fn constant_in_space(formulas: &MechanicsFormulas<'_>) -> String {
+    let model = &formulas.model;
+    let ([factor], [leaf]) = (model.factors.as_slice(), model.configurations.as_slice()) else { return String::new() };
+    let Factor { name, group, symbol, .. } = factor;
+    let is_rigid = matches!(group, Group::SpecialOrthogonal(3..) | Group::UnitQuaternions | Group::SpecialEuclidean(_));
+    let turns_frames = is_rigid && model.action[0] == group.compose(*symbol, leaf.symbol);
+    if !turns_frames || formulas.uniform_inertia.is_some() || formulas.inertia_moves() {
+        return String::new();
+    }
+    format!(
+        "The inertia is constant in space and does not turn with {q}. A rigid body has an inertia that is constant in the body: its action is {q}·{name}, from the right.\n",
+        q = leaf.name
+    )
 }
 
 /// The reason for a vertical term.

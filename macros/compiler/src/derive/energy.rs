@@ -4,9 +4,9 @@ use clebsch_symbolic::{Elements, Expr, IntoList, Shape, identity, integer};
 
 use super::symbols::{at_zero, identities};
 use super::symmetric::vanishing_for_symmetric;
-use super::{DiscreteLagrangian, Symbols, SystemFormulas, degenerate};
+use super::{DiscreteLagrangian, Symbols, SystemFormulas, degenerate, signature};
 use crate::diagnostic::{Diagnostics, bail};
-use crate::model::{Factor, Kinetic, Mechanics, System};
+use crate::model::{Factor, Kinetic, Mechanics, Signature, System};
 
 /// The Lagrangian ℓ(t, q, ξ) = ½ ξ·Σξ + A·ξ − V(t, q) that is the limit of ℓd(t, h, q, exp hξ)/h, less the potential.
 pub struct Energy<'g> {
@@ -167,7 +167,9 @@ fn check_scaling<'g>(model: &System<'g>, energy: Expr<'g>) -> Result<Expr<'g>, D
         power => format!("h.powi({power})"),
     };
     let (help, limit) = match power {
-        Some(1..) => (format!("divide by `{of_step}`, as in `… / (2 * h)`"), "vanishes"),
+        // the cost does not read the step
+        Some(1) => ("take `h` as the first argument, and divide by it, as in `… / h`".to_string(), "vanishes"),
+        Some(1..) => (format!("divide by `{of_step}`"), "vanishes"),
         Some(_) => (format!("multiply by `{of_step}`"), "grows without bound"),
         None => ("divide a quadratic form of `F - I` by `2 * h`".to_string(), ""),
     };
@@ -227,7 +229,23 @@ pub(super) fn check_rank<'g>(
     system: &SystemFormulas<'g>,
     inertia: Expr<'g>,
 ) -> Result<(), Diagnostics> {
-    if is_regular(inertia) { Ok(()) } else { Err(degenerate::error(model, system, inertia).into()) }
+    if is_regular(inertia) { check_sign(model, inertia) } else { Err(degenerate::error(model, system, inertia).into()) }
+}
+
+/// A kinetic energy without parameters has one signature, and `stepper()` would refuse it for every value of them.
+fn check_sign<'g>(model: &Mechanics<'g>, inertia: Expr<'g>) -> Result<(), Diagnostics> {
+    if model.signature == Signature::Indefinite || !inertia.symbols().is_empty() {
+        return Ok(());
+    }
+    // spheres of many dimensions have a large one
+    let inertia = if is_multiple_of_identity(inertia) { inertia.entry(0, 0) } else { inertia };
+    let (is, help) = match signature::signature(inertia) {
+        None | Some((_, 0)) => return Ok(()),
+        Some((0, _)) => ("negative", "change its sign: the potential is subtracted, not the kinetic energy"),
+        Some(_) => ("indefinite", "change the sign of the negative terms"),
+    };
+    bail!(model.spans.kinetic.place, "the kinetic energy is {is}";
+        help "{help}"; help "or write `signature = indefinite`, where negative energies are meant");
 }
 
 /// Whether a matrix is written as a multiple of the identity that does not vanish.

@@ -3,7 +3,7 @@
 use clebsch_symbolic::{Expr, Group, Shape, identity};
 
 use super::action_laws::{Action, Verdict};
-use super::{Configuration, Factor, LeafSpace};
+use super::{Configuration, Factor, LeafSpace, Side};
 use crate::diagnostic::{Diagnostic, error};
 use crate::parse::{joined, shortened, spell};
 
@@ -44,6 +44,21 @@ impl<'g> Action<'_, 'g> {
         };
         let body = &self.closure.body;
         error!(body, "`|{names}| {}` is not an action of {group}", spell(body))
+    }
+
+    /// The error for a factor that moves nothing and a configuration of its own kind that nothing moves.
+    pub(super) fn unmoved(&self, sides: &[(Option<Side>, bool)]) -> Option<Diagnostic> {
+        let still = self.configurations.iter().zip(self.value).filter(|(leaf, image)| leaf.symbol == **image);
+        let mut idle = self.factors.iter().zip(sides).filter(|(_, (_, moves))| !moves).map(|(factor, _)| factor);
+        let (factor, (leaf, _)) = idle.find_map(|factor| {
+            let mut still = still.clone();
+            Some((factor, still.find(|(leaf, _)| acts_on(factor.group, leaf))?))
+        })?;
+        let (f, q) = (&factor.name, &leaf.name);
+        let product = if factor.group.is_translation() { format!("{q} + {f}") } else { format!("{f} * {q}") };
+        Some(error!(&self.closure.body, "`{f}` moves nothing, and nothing moves `{q}`";
+            help "write `{product}` in place of `{q}`";
+            note "the action is the moved configuration, and `{q}` would never change"))
     }
 
     pub(super) fn composition(&self, index: usize, composed: &[Expr<'g>]) -> String {
@@ -125,6 +140,17 @@ impl<'g> Action<'_, 'g> {
         let is_affine = group.linear_part().is_some() && !leaf.shape.is_square();
         let moved = if is_affine { format!("{f}.rotation() * {q} + {f}.translation()") } else { format!("{f} * {q}") };
         format!("write one group: `|{f}: {}, {q}: {space}| {moved}`", group.name(self.graph))
+    }
+}
+
+/// Whether a group moves the points of a leaf in the usual way.
+fn acts_on(group: Group, leaf: &Configuration) -> bool {
+    match leaf.space {
+        LeafSpace::Group(space) => space == group,
+        LeafSpace::Unit => group == Group::SpecialOrthogonal(leaf.shape.rows),
+        LeafSpace::Symmetric => false,
+        LeafSpace::Vectors if leaf.is_quaternion => group == Group::UnitQuaternions,
+        LeafSpace::Vectors => group.element_shape() == leaf.shape || group.element_shape().rows == leaf.shape.rows,
     }
 }
 

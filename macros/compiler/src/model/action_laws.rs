@@ -33,6 +33,10 @@ pub(super) fn check(action: &Action, diagnostics: &Diagnostics) -> Option<Vec<(S
     // a factor on which both laws hold takes the side of the others, else left; so does one that moves nothing
     let is_of = |side| sides.iter().any(|(found, _)| *found == Some(side));
     let open = if is_of(Side::Right) && !is_of(Side::Left) { Side::Right } else { Side::Left };
+    // an offered symmetry has an error of its own
+    if let Some(error) = action.unmoved(&sides).filter(|_| action.closure.key == "action") {
+        return diagnostics.refuse(error);
+    }
     let laws = sides.iter().map(|&(side, moves)| (side.unwrap_or(open), moves));
     (diagnostics.len() == before).then(|| laws.into_list())
 }

@@ -4,9 +4,10 @@ use proc_macro2::Ident;
 use syn::ext::IdentExt;
 use syn::{Generics, Type};
 
+use super::groups::{GroupNames, group};
 use super::scope::check_reserved;
-use super::shapes::{const_generic, plain};
-use crate::diagnostic::{Diagnostic, Diagnostics, error, refuse, report};
+use super::shapes::{const_generic, last_name, plain, vectors};
+use crate::diagnostic::{Diagnostic, Diagnostics, bail, error, refuse, report};
 use crate::parse::{Argument, Declaration, Kinetic, Pattern, spell, spell_type};
 
 /// The two arguments of the action: the group element and the configuration, with their types. Those of a power are those of one site.
@@ -40,7 +41,7 @@ pub(super) fn of_action<'d>(declaration: &'d Declaration, diagnostics: &'d Diagn
         check_reserved(ident, "an argument", diagnostics);
         let name = ident.unraw();
         if seen.contains(&name) {
-            report!(diagnostics, ident, "`{name}` is the name of two arguments"; help "choose another name for one of them");
+            refuse!(diagnostics, ident, "`{name}` is the name of two arguments"; help "choose another name for one of them");
         }
         seen.push(name);
     }
@@ -79,6 +80,33 @@ impl<'d> TypedArguments<'d> {
             (Some((length, inner)), _) => Err(unequal(self.space, inner, length)),
             (None, Some((length, inner))) => Err(unequal(self.group, inner, length)),
         }
+    }
+}
+
+/// Refuses a space before the group that moves it.
+pub(super) fn check_order(types: &TypedArguments, names: GroupNames) -> Result<(), Diagnostic> {
+    let is_group = group(first_leaf(types.space), names).is_some();
+    if !is_group || !is_column(first_leaf(types.group), names.generics) {
+        return Ok(());
+    }
+    let (element, space) = (types.element.spell(), spell_type(types.group));
+    let (configuration, of_group) = (types.configuration.spell(), spell_type(types.space));
+    bail!(types.group, "`{space}` is a space, but the first argument of the action is a group element";
+        help "write the group first: `|{configuration}: {of_group}, {element}: {space}|`")
+}
+
+/// Whether a type is a space of columns. A matrix may be meant for a group of matrices.
+fn is_column(ty: &Type, generics: &Generics) -> bool {
+    let column = vectors(ty, generics).and_then(Result::ok).is_some_and(|(shape, _)| shape.is_column());
+    column || ["Unit", "Quaternion"].contains(&last_name(ty).as_str())
+}
+
+/// The first type inside tuples and arrays.
+fn first_leaf(ty: &Type) -> &Type {
+    match plain(ty) {
+        Type::Tuple(tuple) => tuple.elems.first().map_or(ty, first_leaf),
+        Type::Array(array) => first_leaf(&array.elem),
+        leaf => leaf,
     }
 }
 

@@ -1,6 +1,6 @@
 //! The values of the closures, and the types that they must have.
 
-use clebsch_symbolic::{Expr, Graph, IntoList, Shape, both};
+use clebsch_symbolic::{Elements, Expr, Graph, Group, IntoList, Shape, both, identity};
 use syn::{BinOp, Expr as Syntax, ExprBinary};
 
 use super::elaborate::{Context, Elaborator};
@@ -12,9 +12,9 @@ use super::slots::{COST, LAGRANGIAN, POTENTIAL, Slot};
 use super::space::new_value_of;
 use super::typed::{Arguments, Typed, Velocity};
 use super::value::{Each, Value};
-use super::{Discretization, Factor, Kinetic, Written};
+use super::{Discretization, Factor, Kinetic, Leaf, Parameter, Written};
 use crate::diagnostic::{Location, error, refuse, report};
-use crate::parse::{self, Closure, Declaration, Opaque, parenthesized, spell, tail};
+use crate::parse::{self, Closure, Declaration, Opaque, Pattern, parenthesized, spell, tail};
 
 /// The value of an optional closure, if it is there; `None` if it has an error, which was reported.
 pub(super) fn optional<C, T>(closure: Option<C>, read: impl FnOnce(C) -> Option<T>) -> Option<Option<T>> {
@@ -66,7 +66,14 @@ impl<'g> Closures<'_, '_, 'g> {
         let cost =
             scalar(self.context, closure, self.arguments.scope_of(closure, COST), "a discrete Lagrangian is a scalar")?;
         let factors = self.typed.factors.as_deref()?;
-        for Factor { name, group, .. } in factors.iter().filter(|factor| !cost.depends_on(factor.symbol)) {
+        for factor in factors.iter().filter(|factor| !cost.depends_on(factor.symbol)) {
+            let Factor { name, group, .. } = factor;
+            if self.depends_on_increment(closure, factor) {
+                report!(self.context.diagnostics, tail(&closure.body), "`{name}` cancels in the cost";
+                    help "write `({name} - I)` in place of `{name}`";
+                    note "products like `{name}` times its inverse are the identity, whatever `{name}` is");
+                continue;
+            }
             let mass = parse::mass(&self.declaration.fields, None);
             let example = if group.is_translation() {
                 format!("{mass} * {name}.norm_squared() / (2 * h)")
@@ -78,6 +85,25 @@ impl<'g> Closures<'_, '_, 'g> {
                 note "the momentum of `{name}` is the derivative of the cost, and cannot be inverted where that is 0");
         }
         Some(cost)
+    }
+
+    /// Whether the cost would depend on F if it were written in F − I.
+    fn depends_on_increment(&mut self, closure: &Closure, factor: &Factor<'g>) -> bool {
+        let element = factor.symbol;
+        if factor.group.is_translation() || factor.group == Group::UnitQuaternions {
+            return false;
+        }
+        let increment = Value::Matrix(element - factor.group.identity(self.context.graph));
+        let diagnostics = self.context.diagnostics;
+        diagnostics.quietly(|| {
+            let mut scope = self.arguments.scope_of(closure, COST);
+            for (_, value) in &mut scope.names {
+                let is_element = matches!(value, Some(Value::Matrix(known)) if *known == element);
+                *value = if is_element { Some(increment.clone()) } else { value.take() };
+            }
+            let value = self.context.value(closure, scope);
+            value.and_then(|value| value.matrix()).is_some_and(|cost| cost.depends_on(element))
+        })
     }
 
     fn lagrangian(&mut self, closure: &Closure) -> Option<Kinetic<'g>> {
@@ -103,8 +129,33 @@ impl<'g> Closures<'_, '_, 'g> {
             refuse!(diagnostics, tail(&closure.body), "the lagrangian does not depend on the velocity `{velocity}`{of}";
                 help "add the kinetic energy, as in `{velocity}.dot(&({inertia} * {velocity})) / 2`");
         }
+        self.check_momentum(closure, pattern, energy, &velocities)?;
         let discretization = chosen_discretization(graph, self.declaration, factors);
         Some(Kinetic::Lagrangian { energy, velocities, name: pattern.spell(), discretization })
+    }
+
+    /// Refuses p²/(2m): a kinetic energy that falls with the mass is a function of the momentum.
+    fn check_momentum(
+        &mut self,
+        closure: &Closure,
+        pattern: &Pattern,
+        lagrangian: Expr<'g>,
+        velocities: &[Expr<'g>],
+    ) -> Option<()> {
+        let parameters = self.context.fields.parameters.iter();
+        let masses: Vec<&Parameter<'g>> = parameters.filter(|field| parse::is_mass(&field.name)).into_list();
+        let leaves = masses.iter().flat_map(|field| &field.leaves).map(|leaf| leaf.symbol);
+        let heavier: Vec<_> = leaves.map(|symbol| (symbol, 2 * symbol)).into_list();
+        let at_rest: Vec<_> = velocities.each(|velocity| (*velocity, self.context.graph.zero(velocity.shape())));
+        let kinetic = lagrangian - lagrangian.substitute(&at_rest);
+        let falls = !heavier.is_empty() && identity::equal(&[2 * kinetic.substitute(&heavier)], &[kinetic]);
+        if let Some(field) = masses.first().filter(|_| falls) {
+            let (mass, v) = (&field.name, pattern.spell());
+            refuse!(self.context.diagnostics, tail(&closure.body), "the kinetic energy is divided by `self.{mass}`, as that of a momentum is";
+                help "{}", of_mass(&format!("self.{mass}"), &field.leaves, &v, velocities);
+                note "`{v}` is the velocity: the last argument of the lagrangian is ξ, in the basis of the group");
+        }
+        Some(())
     }
 
     /// V(t, q), or its terms in a power; an opaque one is known by the name of its method alone. With an error, which was reported, there
@@ -146,6 +197,22 @@ pub(super) fn chosen_discretization(graph: &Graph, declaration: &Declaration, fa
     }
 }
 
+/// The advice for the kinetic energy of a velocity, where a mass or an inertia fits it.
+fn of_mass(mass: &str, leaves: &[Leaf], name: &str, velocities: &[Expr]) -> String {
+    let ([leaf], [velocity]) = (leaves, velocities) else {
+        return "write it as a function of the velocity: multiply by the mass".to_string();
+    };
+    let n = velocity.shape().rows;
+    let form = match (leaf.shape.rows, leaf.shape.columns) {
+        (1, 1) if n == 1 => format!("{mass} * {name}.powi(2) / 2"),
+        (1, 1) => format!("{mass} * {name}.norm_squared() / 2"),
+        (rows, 1) if rows == n => format!("{name}.dot(&{mass}.component_mul(&{name})) / 2"),
+        (rows, columns) if rows == n && columns == n => format!("{name}.dot(&({mass} * {name})) / 2"),
+        _ => return "write it as a function of the velocity: multiply by the mass".to_string(),
+    };
+    format!("write it as a function of the velocity, as in `{form}`")
+}
+
 /// The value of a closure that has to give a scalar.
 pub(super) fn scalar<'g>(
     context: &mut Context<'_, 'g>,
@@ -174,15 +241,27 @@ pub(super) fn scalar<'g>(
     }
     let diagnostics = elaborator.context.diagnostics;
     let reason = diagnostics.quietly(|| because(&mut elaborator, tail, &value));
-    let error = error!(tail, "the {key} is {}, but {is}", value.describe()).maybe_help(to_scalar(tail, &value));
+    let help = of_velocity(closure, &value, &elaborator).or_else(|| to_scalar(&key, tail, &value));
+    let error = error!(tail, "the {key} is {}, but {is}", value.describe()).maybe_help(help);
     diagnostics.refuse(reason.into_iter().fold(error, |error, reason| error.note(reason)))
 }
 
+/// The kinetic energy, where a Lagrangian gives a vector with the shape of its velocity, a momentum.
+fn of_velocity<'g>(closure: &Closure, value: &Value<'g>, elaborator: &Elaborator<'_, '_, 'g>) -> Option<String> {
+    let velocity = closure.arguments.last().filter(|_| closure.key == "lagrangian")?.pattern.spell();
+    let shape = elaborator.named(&velocity)?.shape();
+    value.matrix().filter(|momentum| momentum.shape() == shape && shape.is_column())?;
+    Some(format!("write `{velocity}.dot(&({}))`", spell(tail(&closure.body))))
+}
+
 /// How a scalar is made from a value.
-fn to_scalar(tail: &Syntax, value: &Value) -> Option<String> {
+fn to_scalar(key: &str, tail: &Syntax, value: &Value) -> Option<String> {
     let is_operation = matches!(tail, Syntax::Binary(_) | Syntax::Unary(_));
     let text = if is_operation { parenthesized(tail) } else { spell(tail) };
     Some(match value {
+        Value::Matrix(expr) if expr.shape().is_column() && key != "potential" => {
+            format!("take the square of its length, as in `{text}.norm_squared()`")
+        }
         Value::Matrix(expr) if expr.shape() == Shape::vector(3) => format!("take a component, as in `{text}.z`"),
         Value::Matrix(expr) if expr.shape().is_column() => format!("take a component, as in `{text}[0]`"),
         Value::Matrix(expr) if expr.shape().is_square() => format!("take the trace, as in `{text}.trace()`"),

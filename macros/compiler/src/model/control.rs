@@ -12,8 +12,8 @@ use super::space::{Space, new_value_of};
 use super::typed::ActedSystem;
 use super::value::Value;
 use super::{Bound, Discretization, InputChoice, Motion};
-use crate::diagnostic::{Diagnostics, refuse};
-use crate::parse::{self, Closure, Declaration, Located, shortened, spell, tail};
+use crate::diagnostic::{Diagnostic, Diagnostics, error, refuse};
+use crate::parse::{self, Argument, Closure, Declaration, Located, joined, parenthesized, shortened, spell, tail};
 
 impl<'g> ActedSystem<'_, '_, 'g> {
     /// The motion that inputs give, with the input; `None` with an error, which was reported.
@@ -100,7 +100,7 @@ impl<'g> ActedSystem<'_, '_, 'g> {
         let Syntax::Array(list) = body else {
             let name = self.arguments.names.input.map_or("u".into(), |pattern| pattern.spell());
             refuse!(diagnostics, body, "bounds are a list of inequalities";
-                help "write `bounds = |{name}| [-1 <= {name}.x, {name}.x <= 1]`");
+                help "write `bounds = |{}| [{}]`", joined(closure.arguments.iter().map(Argument::spell)), conjuncts(body).unwrap_or(format!("-1 <= {name}.x, {name}.x <= 1")));
         };
         // arguments are matched once, so that a mistake in them is told once
         let matched = self.arguments.matched(closure, BOUNDS);
@@ -113,16 +113,41 @@ impl<'g> ActedSystem<'_, '_, 'g> {
             let Some(scalar) = value.matrix().filter(|value| value.shape().is_scalar()) else {
                 let (text, is) = (shortened(side), value.describe());
                 refuse!(diagnostics, side, "`{text}` is {is}, and a bound compares scalars";
-                    help "compare component by component");
+                    help "compare component by component, as in `{}.x <= 1`", parenthesized(side));
             };
             Some(scalar)
         };
         let bound = |inequality: &Syntax| {
             let (lower, upper) = sides(inequality, diagnostics)?;
+            if let Some(error) = without_absolute_value((lower, upper)) {
+                return diagnostics.refuse(error);
+            }
             Some(Bound { value: side(lower)? - side(upper)?, text: spell(inequality) })
         };
         list.elems.iter().map(bound).collect()
     }
+}
+
+/// The inequalities of `a <= b && c <= d`, separated by commas.
+fn conjuncts(body: &Syntax) -> Option<String> {
+    let Syntax::Binary(link) = body else { return None };
+    let part = |side: &Syntax| conjuncts(side).unwrap_or_else(|| spell(side));
+    match link.op {
+        BinOp::And(_) => Some(format!("{}, {}", part(&link.left), part(&link.right))),
+        BinOp::Le(_) | BinOp::Ge(_) => Some(spell(body)),
+        _ => None,
+    }
+}
+
+/// The advice for `x.abs() <= a`.
+fn without_absolute_value((lower, upper): (&Syntax, &Syntax)) -> Option<Diagnostic> {
+    let Syntax::MethodCall(call) = lower else { return None };
+    if call.method != "abs" {
+        return None;
+    }
+    let (inside, limit) = (parenthesized(&call.receiver), parenthesized(upper));
+    Some(error!(&call.method, "`abs` has no derivative at 0, so no bounds can use it";
+        help "write two bounds, `-{limit} <= {inside}, {inside} <= {limit}`"))
 }
 
 /// The smaller and the larger side of an inequality.

@@ -140,8 +140,11 @@ fn explain(field: &Field) -> Diagnostic {
         "Quaternion" | "UnitQuaternion" => Some(format!(
             "write `Vector4<f64>`, and `Quaternion::new(self.{name}.w, self.{name}.x, self.{name}.y, self.{name}.z)` in the closure"
         )),
+        "Option" => Some("write the number itself, with a value that stands for none, as 0".into()),
+        "bool" => Some("write `f64`, with the values 0 and 1".into()),
+        "String" | "str" => Some("write a number".into()),
         _ if matches!(field.ty, Type::Reference(_)) => Some("keep the value itself, without `&`".into()),
-        _ => hint(&ty),
+        _ => hint(&ty).or_else(|| Some(format!("write the numbers of `{text}` as fields of this struct"))),
     };
     error!(&field.ty, "a closure reads `self.{name}`, and its type `{text}` has no meaning there")
         .maybe_help(help)

@@ -213,11 +213,13 @@ fn unknown_group(ty: &Type, names: GroupNames) -> Diagnostic {
         });
     }
     let error = error!(ty, "unknown group `{text}`");
+    let known = format!("the groups that are built in are {}", listed(GROUPS.iter().map(|maker| maker.name)));
+    if name.is_empty() {
+        return error.help("write a group, as in `SO<3>`, or a tuple of groups").note(known);
+    }
     match suggestion(&name, names) {
         Some(suggestion) => error.help(format!("write `{suggestion}`")),
-        None => error
-            .help(format!("declare it, `group {name} = |F: Matrix3| F.transpose() * F == I`"))
-            .note(format!("the groups that are built in are {}", listed(GROUPS.iter().map(|maker| maker.name)))),
+        None => error.help(format!("declare it, `group {name} = |F: Matrix3| F.transpose() * F == I`")).note(known),
     }
 }
 

@@ -71,6 +71,10 @@ pub fn model<'g>(graph: &'g Graph, declaration: &Declaration) -> Result<Model<'g
     if sites.is_some() {
         sites::check(declaration, &diagnostics);
     }
+    if let Some(types) = &types {
+        // the types mean nothing in another order
+        arguments::check_order(types, names)?;
+    }
     let groups = types.and_then(|types| spaces::read_groups(types.group, names));
     let spaces = types.and_then(|types| spaces::read_spaces(types.space, names));
     let scalars: Vec<&syn::Type> =

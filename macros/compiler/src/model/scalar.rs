@@ -7,6 +7,9 @@ use super::shapes::last_name;
 use crate::diagnostic::{Diagnostics, refuse, report};
 use crate::parse::{Declaration, spell_type};
 
+/// The name of the dial in messages.
+const DIAL: &str = "`scalar`";
+
 /// The scalar that all types agree on.
 pub(super) struct Agreement<'d> {
     generics: &'d Generics,
@@ -20,7 +23,7 @@ impl<'d> Agreement<'d> {
     pub fn new(declaration: &'d Declaration, diagnostics: &'d Diagnostics) -> Agreement<'d> {
         let generics = &declaration.generics;
         let named = |ident: &Ident| match named_scalar(&ident.to_string(), generics) {
-            Some(scalar) => Some((scalar, "`scalar`".to_string())),
+            Some(scalar) => Some((scalar, DIAL.to_string())),
             None => refuse!(diagnostics, ident, "`{ident}` is no scalar";
                 help "write `f64`, `f32` or a type parameter of the struct"),
         };
@@ -45,8 +48,9 @@ impl<'d> Agreement<'d> {
             None => self.found = Some((scalar, whose.to_string())),
             Some((other, first)) if *other != scalar => {
                 let other = spell_scalar(other);
+                let dial = if first == DIAL { ", or leave out `scalar`" } else { "" };
                 report!(self.diagnostics, ty, "the scalar of {whose} is `{text}`, that of {first} is `{other}`";
-                    help "write `{other}`"; note "a system has one scalar type");
+                    help "write `{other}`{dial}"; note "a system has one scalar type");
             }
             Some(_) => {}
         }

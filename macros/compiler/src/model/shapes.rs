@@ -61,8 +61,11 @@ fn no_size(place: Location, text: &str, generics: &Generics) -> Diagnostic {
     if const_generic(text, generics).is_some() {
         return Diagnostic::later(place, format!("the const generic `{text}` as a size"), Some("write a number"));
     }
+    let is_word = |c: char| c.is_alphanumeric() || c == '_';
+    let constant = text.split(|c| !is_word(c)).find_map(|word| const_generic(word, generics));
+    let of_sites = constant.map(|n| format!(", or `[…; {n}]` for one value at each of {n} sites"));
     error!(place, "the size `{text}` is not a number";
-        help "write a number"; note "a macro sees the text of the declaration, not the values of constants")
+        help "write a number{}", of_sites.unwrap_or_default(); note "a macro sees the text of the declaration, not the values of constants")
 }
 
 pub(super) fn const_generic<'p>(name: &str, generics: &'p Generics) -> Option<&'p syn::Ident> {

@@ -218,7 +218,13 @@ impl<'d> Matched<'d> {
     fn of_velocity(&self) -> Option<(&'d Pattern, String)> {
         let velocity = self.names.velocity.filter(|_| self.slots == POTENTIAL)?;
         let name = velocity.spell();
-        Some((velocity, format!("a force may depend on the velocity: write `force = |{name}| …`")))
+        let q = self.names.configuration.spell();
+        Some((
+            velocity,
+            format!(
+                "write `force = |{name}| …`; a term linear in the velocity, as of a magnetic field, belongs to `lagrangian = |{q}, {name}| …`"
+            ),
+        ))
     }
 
     /// The error for an argument that the action does not know.

@@ -7,8 +7,8 @@ use syn::{Expr as Syntax, Ident};
 use super::spaces::{Product, SpaceType};
 use super::value::Value;
 use super::{Configuration, Layout, LeafSpace, quaternion};
-use crate::diagnostic::{Diagnostics, refuse};
-use crate::parse::{Pattern, shortened, tail};
+use crate::diagnostic::{Diagnostics, error, refuse};
+use crate::parse::{Pattern, joined, shortened, tail};
 
 /// A configuration or an input: its leaves, and how they nest.
 #[derive(Clone)]
@@ -78,10 +78,22 @@ impl<'g> Space<'g> {
         match value.leaves(&self.layout, &leaf) {
             Ok(leaves) => Some(leaves),
             Err((found, needed)) => {
-                refuse!(diagnostics, tail(body), "the {key} gives {found}, but it has to give {needed}";
-                note "`{}` is {is}", shortened(body))
+                let error = error!(tail(body), "the {key} gives {found}, but it has to give {needed}";
+                    note "`{}` is {is}", shortened(body));
+                diagnostics.refuse(error.maybe_help(self.in_another_order(value)))
             }
         }
+    }
+
+    /// The advice for a tuple that has all parts in another order.
+    fn in_another_order(&self, value: &Value<'g>) -> Option<String> {
+        let Value::Tuple(parts) = value else { return None };
+        let mut given: Vec<String> = parts.each(Value::describe);
+        let mut needed: Vec<String> = self.leaves.each(|leaf| Value::leaf(leaf.symbol, leaf.is_quaternion).describe());
+        given.sort();
+        needed.sort();
+        let names = self.leaves.iter().map(|leaf| leaf.name.as_str());
+        (given == needed).then(|| format!("write its parts in the order `({})`", joined(names)))
     }
 }
 

@@ -7,7 +7,7 @@ use syn::{DeriveInput, Meta, Token};
 
 use super::keys::{KEYS, Key, Keys};
 use super::spelling::listed;
-use super::{groups, methods, values};
+use super::{expected, groups, methods, values};
 use crate::diagnostic::{Diagnostic, Diagnostics, bail, nearest, report};
 
 /// Reads all attributes of the struct as one.
@@ -55,9 +55,17 @@ fn read_item(stream: ParseStream, keys: &mut Keys) -> Result<(), Diagnostic> {
     if let Some(found) = find(&key) {
         return read_value(&key, found, stream, keys);
     }
+    keys.has_unknown = true;
+    let similar = nearest(&key.to_string(), KEYS.iter().map(|key| key.name)).and_then(found);
+    if let Some(later) = similar.filter(|similar| similar.comes_later()) {
+        return Err(Diagnostic::later(&key, format!("the key `{}`", later.name), None));
+    }
     let known = KEYS.iter().filter(|key| !key.comes_later()).map(|key| key.name);
-    let similar = nearest(&key.to_string(), KEYS.iter().map(|key| key.name)).map(|key| format!("write `{key}`"));
-    let help = similar.unwrap_or_else(|| format!("the keys are {}", listed(known)));
+    let help = match (expected::advice(&key), similar) {
+        (Some(advice), _) => advice.to_string(),
+        (None, Some(similar)) => format!("write `{}`", similar.name),
+        (None, None) => format!("the keys are {}", listed(known)),
+    };
     bail!(&key, "unknown key `{key}`"; help "{help}")
 }
 
@@ -85,7 +93,11 @@ fn end_of_item(key: &Ident, stream: ParseStream) -> Result<(), Diagnostic> {
 }
 
 fn find(key: &Ident) -> Option<&'static Key> {
-    KEYS.iter().find(|known| key == known.name)
+    found(&key.to_string())
+}
+
+fn found(name: &str) -> Option<&'static Key> {
+    KEYS.iter().find(|known| known.name == name)
 }
 
 /// Whether a name follows a key that may occur several times.

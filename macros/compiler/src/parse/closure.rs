@@ -1,14 +1,16 @@
 //! Closures as values of keys: arguments that are names or tuples of names, and a body.
 
 use clebsch_symbolic::IntoList;
-use proc_macro2::Ident;
+use proc_macro2::{Ident, TokenTree};
+use quote::ToTokens;
 use syn::ext::IdentExt;
+use syn::parse::ParseStream;
 use syn::spanned::Spanned;
-use syn::{Expr, ExprClosure, Pat, ReturnType, Type};
+use syn::{Expr, ExprClosure, Pat, ReturnType, Token, Type};
 
 use super::spell_type;
 use super::spelling::{joined, spell, tokens};
-use crate::diagnostic::{Diagnostics, Location, refuse};
+use crate::diagnostic::{Diagnostic, Diagnostics, Location, error, refuse};
 
 /// A closure of the declaration.
 #[derive(Clone)]
@@ -37,6 +39,38 @@ pub enum Pattern {
     Name(Ident),
     /// A tuple of patterns, and where it is.
     Tuple(Vec<Pattern>, Location),
+}
+
+/// Reads the syntax of a closure. Where its mistake is one of mathematicians, the error says how Rust writes it.
+pub(super) fn parse(stream: ParseStream) -> Result<ExprClosure, Diagnostic> {
+    let start = stream.fork();
+    stream.parse().map_err(|error| {
+        if let Some(word) = keyword(&start) {
+            return error!(&word, "`{word}` is a word of Rust and cannot be a name"; help "choose another name");
+        }
+        if error.to_string().contains("cannot be chained") {
+            return error!(error.span(), "comparisons cannot be chained";
+                help "write two of them, `[a <= x, x <= b]`");
+        }
+        Diagnostic::from(error)
+    })
+}
+
+/// The first argument whose name is a word of Rust.
+fn keyword(stream: ParseStream) -> Option<Ident> {
+    let mut is_name = stream.parse::<Token![|]>().is_ok();
+    while !stream.is_empty() && !stream.peek(Token![|]) {
+        let token = stream.parse::<TokenTree>().ok()?;
+        match token {
+            TokenTree::Ident(word) if is_name && syn::parse2::<Ident>(word.to_token_stream()).is_err() => {
+                let is_part = ["_", "mut", "ref", "self"].iter().any(|part| word == part);
+                return Some(word).filter(|_| !is_part);
+            }
+            TokenTree::Punct(mark) => is_name = mark.as_char() == ',',
+            _ => is_name = false,
+        }
+    }
+    None
 }
 
 impl Closure {

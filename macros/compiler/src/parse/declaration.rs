@@ -117,6 +117,8 @@ pub(super) fn assemble(input: &DeriveInput, mut keys: Keys, fields: Vec<Field>) 
     let (kinetic, control) = control::read(&mut keys);
     // a closure that was given and could not be read has its own error
     let nothing_readable = keys.is_empty() && !diagnostics.is_empty();
+    // one of the keys that are missing may have been meant
+    let nothing_readable = nothing_readable || keys.has_unknown;
     let moved_by_inputs = keys.was_given("controls") || keys.was_given("dynamics");
     if !keys.was_given("action") && !keys.was_given("dynamics") && !nothing_readable {
         diagnostics.push(missing_action(&input.ident, keys.is_empty()));

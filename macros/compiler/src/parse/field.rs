@@ -57,10 +57,22 @@ pub(crate) fn declared_mass(fields: &[Field], size: Option<usize>) -> Option<Str
     let is_mass = |field: &&Field| {
         let name = field.name().to_lowercase();
         // the mass matrix of a cost, ½tr(J)I − J, is no inertia
-        let is_mass = size.is_none() && name.contains("mass");
-        fits(&field.ty) && (is_mass || INERTIAS.iter().any(|word| name.contains(word)))
+        if name.contains("inv") {
+            // an inverse mass
+            return false;
+        }
+        let is_mass = size.is_none() && (name.contains("mass") || name == "m");
+        let is_inertia = size.is_some() && name == "j";
+        fits(&field.ty) && (is_mass || is_inertia || INERTIAS.iter().any(|word| name.contains(word)))
     };
     fields.iter().find(is_mass).map(|field| format!("self.{}", field.name()))
+}
+
+/// Whether a field is called a mass or an inertia, and not an inverse or a ratio of such.
+pub(crate) fn is_mass(name: &str) -> bool {
+    let name = name.to_lowercase();
+    let is_other = ["inv", "ratio"].iter().any(|word| name.contains(word));
+    !is_other && (name == "m" || ["mass", "inertia", "moments"].iter().any(|word| name.contains(word)))
 }
 
 /// Reads a field and its `#[clebsch(…)]`.

@@ -4,10 +4,11 @@ use clebsch_symbolic::IntoList;
 use proc_macro2::Ident;
 use syn::ext::IdentExt;
 use syn::parse::ParseStream;
-use syn::{Expr, ExprClosure, Token};
+use syn::{Expr, Token, Type};
 
 use super::keys::Keys;
-use super::{Closure, values};
+use super::spell_type;
+use super::{Closure, closure, values};
 use crate::diagnostic::{Diagnostic, Location, bail};
 
 /// A group of the user's own.
@@ -26,8 +27,20 @@ pub enum Definition {
     Basis(Vec<Expr>, Location),
 }
 
+/// The type of `= SO<3>`, where a group that is built in was written as a value.
+fn assigned_type(stream: ParseStream) -> Option<Type> {
+    let fork = stream.fork();
+    fork.parse::<Token![=]>().ok()?;
+    fork.parse::<Type>().ok().filter(|ty| matches!(ty, Type::Path(_) | Type::Tuple(_) | Type::Array(_)))
+}
+
 /// Reads the tokens after the word `group`.
 pub(super) fn read(word: &Ident, stream: ParseStream, keys: &mut Keys) -> Result<(), Diagnostic> {
+    if let Some(ty) = assigned_type(stream) {
+        bail!(&ty, "`group` declares a group of one's own, and `{}` is a type", spell_type(&ty);
+            help "write it in the action, as in `action = |F: {}, q| …`", spell_type(&ty);
+            note "the type of the first argument of the action is the group");
+    }
     let Ok(name) = stream.call(Ident::parse_any) else {
         bail!(word, "a group of one's own has a name";
             help "write `group Lorentz = |F: Matrix4| …`, and `F: Lorentz` in the action");
@@ -37,7 +50,7 @@ pub(super) fn read(word: &Ident, stream: ParseStream, keys: &mut Keys) -> Result
     }
     let is_defined = stream.parse::<Token![=]>().is_ok();
     if is_defined && values::is_closure(stream) {
-        let closure: ExprClosure = stream.parse()?;
+        let closure = closure::parse(stream)?;
         if let Some(closure) = Closure::read(word, closure, keys.diagnostics) {
             keys.groups.push(DeclaredGroup { name, definition: Definition::Equation(Box::new(closure)) });
         }

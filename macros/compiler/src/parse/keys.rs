@@ -191,6 +191,8 @@ pub(super) struct Keys<'d> {
     /// Each method with its keys, and where each of these was given.
     pub methods: Vec<(Ident, Keys<'d>)>,
     pub dials: Dials,
+    /// Whether a name stands in the place of a key that is none.
+    pub has_unknown: bool,
     given: Vec<(String, Span)>,
 }
 
@@ -204,6 +206,7 @@ impl<'d> Keys<'d> {
             groups: Vec::new(),
             methods: Vec::new(),
             dials: Dials::default(),
+            has_unknown: false,
             given: Vec::new(),
         }
     }

@@ -7,12 +7,12 @@ use quote::ToTokens;
 use syn::ext::IdentExt;
 use syn::parse::{Parse, ParseBuffer, ParseStream};
 use syn::punctuated::Punctuated;
-use syn::{Expr, ExprClosure, Path, Token, bracketed, parenthesized};
+use syn::{Expr, Lit, Path, Token, bracketed, parenthesized};
 
 use super::dials::{EMITTED, Emit, Word};
 use super::keys::{Key, Keys, Kind, Located};
 use super::spelling::tokens;
-use super::{Closure, Potential, opaque};
+use super::{Closure, Potential, closure, opaque};
 use crate::diagnostic::{Diagnostic, Diagnostics, Location, bail, error, nearest, refuse, report};
 
 /// Reads the value of a key and puts it in its place.
@@ -45,8 +45,16 @@ pub(super) struct Reader<'a, 's> {
 impl Reader<'_, '_> {
     /// Where a value is not of its key's kind, the error shows one that is.
     fn expected(&self, stream: ParseStream, what: &str) -> Diagnostic {
+        // `"4"` and `4.0` mean 4
+        let meant = stream.fork().parse::<Lit>().ok().and_then(|literal| match literal {
+            Lit::Str(text) => Some(text.value()),
+            Lit::Float(number) => number.base10_digits().strip_suffix(".0").map(str::to_string),
+            _ => None,
+        });
+        let is_word = |text: &String| syn::parse_str::<Ident>(text).is_ok() || text.parse::<u32>().is_ok();
+        let value = meant.filter(is_word).unwrap_or_else(|| self.example.to_string());
         error!(stream.span(), "the value of `{}` has to be {what}", self.name;
-            help "write `{} = {}`", self.name, self.example)
+            help "write `{} = {value}`", self.name)
     }
 
     /// `|a, b| …`; `None` if it can be read over and has an error.
@@ -54,7 +62,7 @@ impl Reader<'_, '_> {
         if !is_closure(stream) {
             return Err(self.expected(stream, "a closure"));
         }
-        let closure: ExprClosure = stream.parse()?;
+        let closure = closure::parse(stream)?;
         Ok(Closure::read(self.name, closure, self.diagnostics))
     }
 
@@ -112,7 +120,8 @@ impl Reader<'_, '_> {
         value: impl Fn(&L) -> Option<T>,
         error: impl Fn(Location, String) -> Diagnostic,
     ) -> Result<(), Diagnostic> {
-        let literal: L = self.stream.parse().map_err(|_| self.expected(self.stream, "a number"))?;
+        let start = self.stream.fork();
+        let literal: L = self.stream.parse().map_err(|_| self.expected(&start, "a number"))?;
         let place = Location::from(&literal);
         *dial = value(&literal).map(|value| Located { value, span: place.start });
         if dial.is_none() {

@@ -3,9 +3,17 @@
 use syn::{BinOp, Block, Expr as Syntax, Local, Stmt};
 
 use super::super::scope::bindings;
+use super::errors::is_assignment;
 use super::{Elaborator, Value};
 use crate::diagnostic::{error, refuse, report};
 use crate::parse::{Pattern, shortened};
+
+/// The loop or the assignment that a statement is.
+fn imperative(statement: &Stmt) -> Option<&Syntax> {
+    let Stmt::Expr(syntax, _) = statement else { return None };
+    let is_loop = matches!(syntax, Syntax::ForLoop(_) | Syntax::While(_) | Syntax::Loop(_) | Syntax::Assign(_));
+    (is_loop || is_assignment(syntax)).then_some(syntax)
+}
 
 impl<'g> Elaborator<'_, '_, 'g> {
     /// Does something after which the names that it introduces are forgotten.
@@ -20,6 +28,10 @@ impl<'g> Elaborator<'_, '_, 'g> {
         let Some((last, before)) = block.stmts.split_last() else {
             refuse!(self, block.brace_token.span.join(), "this block is empty"; help "end it with an expression");
         };
+        if let Some(imperative) = block.stmts.iter().find_map(imperative) {
+            // the names that it changes have no meaning either
+            return self.refused(imperative);
+        }
         before.iter().for_each(|statement| self.statement(statement));
         match last {
             Stmt::Expr(value, None) => self.elaborate(value),

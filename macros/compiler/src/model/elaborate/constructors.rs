@@ -182,6 +182,10 @@ impl<'g> Elaborator<'_, '_, 'g> {
     pub(super) fn macro_call(&mut self, written: &Macro) -> Option<Value<'g>> {
         let name = written.path.segments.last().map(|segment| segment.ident.to_string()).unwrap_or_default();
         let is_vector = name == "vector";
+        if name == "vec" {
+            refuse!(self, &written.path, "`vec!` makes a vector on the heap, which no {} has", self.key;
+                help "write `[a, b]` for an array, `vector![a, b, c]` for a column of numbers");
+        }
         if !is_vector && name != "matrix" {
             refuse!(self, &written.path, "unknown macro `{name}!` in the {}", self.key;
                 help "the macros are `vector![a, b, c]` and `matrix![a, b; c, d]`");

@@ -1,12 +1,15 @@
 //! Errors with the text to type instead: operands whose shapes do not fit, and Rust that is no mathematics, by its name.
 
-use clebsch_symbolic::{Expr, Shape};
+use clebsch_symbolic::{Expr, Role, Shape};
 use proc_macro2::Span;
 use syn::{BinOp, Expr as Syntax, ExprBinary};
 
 use super::{Elaborator, Value};
 use crate::diagnostic::{Diagnostic, Location, error};
 use crate::parse::{parenthesized, spell};
+
+/// The replacement of a loop.
+const IN_SUMS: &str = "write a sum, `(0..3).map(|i| …).sum()`";
 
 /// The verb for an operator, for messages.
 pub(super) fn verb(operator: &BinOp) -> &'static str {
@@ -19,12 +22,28 @@ pub(super) fn verb(operator: &BinOp) -> &'static str {
     }
 }
 
+/// `sum += x` and the like.
+pub(super) fn is_assignment(syntax: &Syntax) -> bool {
+    use BinOp::{AddAssign, DivAssign, MulAssign, RemAssign, SubAssign};
+    matches!(
+        syntax,
+        Syntax::Binary(link)
+            if matches!(link.op, AddAssign(_) | SubAssign(_) | MulAssign(_) | DivAssign(_) | RemAssign(_))
+    )
+}
+
+/// The first line of the error for a sum.
+pub(super) fn not_added(link: &ExprBinary, left: Expr, right: Expr) -> Diagnostic {
+    let (a, b, verb) = (spell(&link.left), spell(&link.right), verb(&link.op));
+    let (left, right) = (Value::Matrix(left).describe(), Value::Matrix(right).describe());
+    error!(link, "`{a}` is {left} and `{b}` is {right}: they cannot be {verb}")
+}
+
 /// A sum of matrices of different shapes.
 pub(super) fn unequal_shapes(link: &ExprBinary, left: Expr, right: Expr) -> Diagnostic {
-    let (a, b, verb) = (spell(&link.left), spell(&link.right), verb(&link.op));
+    let (a, b) = (spell(&link.left), spell(&link.right));
     let (l, r) = (left.shape(), right.shape());
-    let (left, right) = (Value::Matrix(left).describe(), Value::Matrix(right).describe());
-    let error = error!(link, "`{a}` is {left} and `{b}` is {right}: they cannot be {verb}");
+    let error = not_added(link, left, right);
     let is_vector = |shape: Shape| shape.is_column() && !shape.is_scalar();
     if is_vector(r) && l.columns == r.rows {
         error.help(format!("multiply the vector, as in `{}`", applied(&link.left, &b)))
@@ -70,7 +89,12 @@ pub(super) fn no_product(link: &ExprBinary, left: Expr, right: Expr, meant: Opti
     } else if left == right && left.is_column() {
         error.help(format!("write `{a}.dot(&{b})` for the scalar product, `{a}.cross(&{b})` for the cross product"))
     } else if left.is_column() && right.is_square() && right.rows == left.rows {
-        error.help(format!("write the matrix first: `{b} * {a}`"))
+        let quadratic = if matches!(&*link.left, Syntax::Path(_)) {
+            format!("; a quadratic form is `{a}.dot(&({b} * {a}))`")
+        } else {
+            String::new()
+        };
+        error.help(format!("write the matrix first: `{b} * {a}`{quadratic}"))
     } else if left.rows == right.rows {
         error.help(format!("transpose the first: `{a}.transpose() * {b}`"))
     } else if left.columns == right.columns {
@@ -82,6 +106,13 @@ pub(super) fn no_product(link: &ExprBinary, left: Expr, right: Expr, meant: Opti
 }
 
 impl<'g> Elaborator<'_, '_, 'g> {
+    /// The advice for a constant where a vector or a matrix is needed.
+    pub(super) fn of_constant(&self, operands: [(Expr<'g>, &Syntax); 2]) -> Option<String> {
+        let is_constant = |(expr, _): &&(Expr<'g>, &Syntax)| matches!(expr.role(), Some(Role::Constant(_)));
+        let (_, constant) = operands.iter().find(is_constant)?;
+        Some(format!("constants are scalars: write a field in place of `{}`", spell(constant)))
+    }
+
     /// The error for an expression that no closure can hold.
     pub(super) fn refused(&mut self, syntax: &Syntax) -> Option<Value<'g>> {
         let (place, what, help) = describe(syntax);
@@ -102,9 +133,9 @@ fn describe(syntax: &Syntax) -> (Location, &'static str, String) {
             at(inner.if_token.span, "`if`", "write one formula that holds everywhere, smooth where the cases meet")
         }
         Syntax::Match(inner) => at(inner.match_token.span, "`match`", "write one formula that holds everywhere"),
-        Syntax::ForLoop(inner) => at(inner.for_token.span, "`for`", "write a sum, `(0..3).map(|i| …).sum()`"),
-        Syntax::While(inner) => at(inner.while_token.span, "`while`", ""),
-        Syntax::Loop(inner) => at(inner.loop_token.span, "`loop`", ""),
+        Syntax::ForLoop(inner) => at(inner.for_token.span, "`for`", IN_SUMS),
+        Syntax::While(inner) => at(inner.while_token.span, "`while`", IN_SUMS),
+        Syntax::Loop(inner) => at(inner.loop_token.span, "`loop`", IN_SUMS),
         Syntax::Cast(inner) => {
             let place = Location { start: inner.as_token.span, end: Location::from(&inner.ty).start };
             (place, "`as`", format!("write `{}`: numbers mix freely", spell(&inner.expr)))
@@ -115,6 +146,7 @@ fn describe(syntax: &Syntax) -> (Location, &'static str, String) {
         Syntax::Continue(_) => whole("`continue`", ""),
         Syntax::Closure(_) => whole("a closure", "closures stand only in `.map(|i| …)`"),
         Syntax::Assign(_) => whole("an assignment", "give the new value a name with `let`"),
+        _ if is_assignment(syntax) => whole("an assignment", "give the new value a name with `let`"),
         Syntax::Await(_) | Syntax::Async(_) => whole("`async`", ""),
         Syntax::Unsafe(_) => whole("`unsafe`", ""),
         Syntax::Struct(_) => whole("a struct", "write a vector, `vector![a, b, c]`"),

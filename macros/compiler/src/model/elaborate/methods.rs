@@ -4,7 +4,7 @@ use clebsch_symbolic::{Expr, Function, Rational, Role, Shape, integer};
 use syn::{Expr as Syntax, ExprMethodCall, Ident};
 
 use super::access::{is_self, strip};
-use super::tables::{Binary, METHODS, NEEDLESS, REFUSED, Rule, SYNONYMS, Unary};
+use super::tables::{Binary, ITERATORS, METHODS, NEEDLESS, REFUSED, Rule, SYNONYMS, Unary};
 use super::{Elaborator, Growth, Value, open_identity};
 use crate::diagnostic::{Diagnostic, LATER, error, meant, refuse};
 use crate::parse::{listed, parenthesized, shortened, spell};
@@ -19,6 +19,11 @@ impl<'g> Elaborator<'_, '_, 'g> {
             let error = error!(&call.method, "the method `{name}` of the struct in a formula is not supported yet";
                 help "write its formula here");
             return self.refuse(error.maybe_help(self.opaque()).note(LATER));
+        }
+        if ITERATORS.contains(&name.as_str()) {
+            refuse!(self, &call.method, "`{name}` has no meaning in the {}", self.key;
+                help "go over indices, as in `(0..3).map(|i| a[i] * b[i]).sum()`";
+                note "the operations on arrays and ranges are `map` and `sum`");
         }
         let receiver = self.elaborate(&call.receiver);
         if let Some(error) = receiver.as_ref().and_then(|receiver| self.function_of_matrix(call, receiver)) {
@@ -79,7 +84,7 @@ impl<'g> Elaborator<'_, '_, 'g> {
     }
 
     fn unknown_method(&mut self, call: &ExprMethodCall, name: &str, receiver: Option<Value<'g>>) -> Option<Value<'g>> {
-        let method = &call.method;
+        let (method, has_error) = (&call.method, receiver.is_none());
         if ["scalar", "imag", "conjugate"].contains(&name) {
             // a receiver with an error of its own may have been a quaternion
             let found = receiver?.describe();
@@ -101,6 +106,8 @@ impl<'g> Elaborator<'_, '_, 'g> {
         self.refuse(match meant(name, &SYNONYMS, names.clone()) {
             Some(meant) if meant.contains('(') => error.help(format!("write `{receiver}.{meant}`")),
             Some(meant) => error.help(format!("a method with a similar name exists: `{meant}`")),
+            // the receiver has an error of its own, which was reported
+            None if has_error => return None,
             None => error.note(format!("the methods are {}", listed(names))),
         })
     }
@@ -162,7 +169,10 @@ impl<'g> Elaborator<'_, '_, 'g> {
         let needs = if of_three { "`cross` is of two vectors 3x1" } else { &equal };
         let (receiver, argument) = (spell(&call.receiver), spell(strip(&call.args[0])));
         let error = error!(call, "`{receiver}` is {left} and `{argument}` is {right}: {needs}");
-        self.refuse(if left == right.transposed() {
+        let of_constant = self.of_constant([(a, &*call.receiver), (b, strip(&call.args[0]))]);
+        self.refuse(if let Some(help) = of_constant {
+            error.help(help)
+        } else if left == right.transposed() {
             error.help(format!("transpose one of them, as in `{argument}.transpose()`"))
         } else {
             error.note(format!("`{method}` combines entries of equal position"))

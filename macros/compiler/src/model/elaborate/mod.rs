@@ -110,6 +110,11 @@ impl<'e, 'c, 'g> Elaborator<'e, 'c, 'g> {
         Elaborator { context, key, scope, members, sizes: Table::default(), depth: 0, work: 0 }
     }
 
+    /// The matrix that an argument stands for.
+    pub fn named(&self, name: &str) -> Option<Expr<'g>> {
+        self.scope.value(name)?.as_ref()?.matrix()
+    }
+
     /// The group on which an expression is known to lie.
     fn group_of(&self, expr: Expr<'g>) -> Option<Group> {
         self.members.get(&expr).copied()

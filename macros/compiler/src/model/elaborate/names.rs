@@ -5,6 +5,7 @@ use syn::ext::IdentExt;
 use syn::{ExprLit, ExprPath, Ident, Lit, Path};
 
 use super::super::Constant;
+use super::super::scalar::spell_scalar;
 use super::super::shapes::const_generic;
 use super::{Elaborator, Value};
 use crate::diagnostic::{error, nearest, refuse};
@@ -82,8 +83,18 @@ impl<'g> Elaborator<'_, '_, 'g> {
             None if name.chars().all(char::is_uppercase) => error
                 .help(format!("if it is a constant, write `self::{name}`, or its path"))
                 .note("a single letter is taken for an argument, a longer name in capitals for a constant"),
-            None => error.note(format!("known here are {}", listed(names().chain(["I", "self"])))),
+            None => error
+                .maybe_help(self.as_field(name))
+                .note(format!("known here are {}", listed(names().chain(["I", "self"])))),
         })
+    }
+
+    /// How a parameter is declared; `None` in a group, whose definition reads none.
+    fn as_field(&self, name: &str) -> Option<String> {
+        let scalar = spell_scalar(&self.context.fields.scalar);
+        let advice =
+            format!("if it is a parameter, write `self.{name}`, with a field `{name}: {scalar}` of the struct");
+        Some(advice).filter(|_| self.key != "group")
     }
 
     fn similar<'s>(&self, name: &str, names: impl Iterator<Item = &'s str>) -> Option<String> {

@@ -3,7 +3,7 @@
 use clebsch_symbolic::{Expr, Group, Rational, Role, integer};
 use syn::{BinOp, Expr as Syntax, ExprBinary, ExprUnary, UnOp};
 
-use super::errors::{no_product, point_moved, unequal_shapes, verb};
+use super::errors::{no_product, not_added, point_moved, unequal_shapes, verb};
 use super::{Elaborator, Growth, Value};
 use crate::diagnostic::{Diagnostic, error, refuse};
 use crate::parse::{parenthesized, spell, spell_tokens};
@@ -28,16 +28,26 @@ impl<'g> Elaborator<'_, '_, 'g> {
                 BinOp::Add(_) | BinOp::Sub(_) | BinOp::Mul(_) | BinOp::Div(_) | BinOp::Rem(_) => {
                     value.zip(right).and_then(|(left, right)| self.apply(link, left, right))
                 }
-                other => self.refused_operator(other),
+                other => {
+                    let is_scalar = value.and_then(|left| left.matrix()).is_some_and(|left| left.shape().is_scalar());
+                    self.refused_operator(other, link, is_scalar)
+                }
             };
         }
         value
     }
 
-    fn refused_operator(&mut self, operator: &BinOp) -> Option<Value<'g>> {
+    fn refused_operator(&mut self, operator: &BinOp, link: &ExprBinary, is_scalar: bool) -> Option<Value<'g>> {
         let text = spell_tokens(operator);
         let error = error!(operator, "the operator `{}` has no meaning in the {}", text.trim(), self.key);
         self.refuse(match operator {
+            BinOp::Eq(_) if self.key == "endpoint" => {
+                let square = if is_scalar { "powi(2)" } else { "norm_squared()" };
+                let (left, right) = (spell(&link.left), parenthesized(&link.right));
+                error
+                    .help(format!("write the price of the distance, as in `self.price * ({left} - {right}).{square}`"))
+                    .note("the endpoint is a price, and a plan ends where it is small")
+            }
             BinOp::Eq(_) | BinOp::Le(_) | BinOp::Ge(_) | BinOp::Lt(_) | BinOp::Gt(_) | BinOp::Ne(_) => {
                 error.note("an equation or an inequality stands only where a key asks for one")
             }
@@ -96,9 +106,24 @@ impl<'g> Elaborator<'_, '_, 'g> {
             (left, right) => (left.matrix()?, right.matrix()?),
         };
         if left.shape() != right.shape() {
-            return self.refuse(unequal_shapes(at, left, right));
+            let of_constant = self.of_constant([(left, &at.left), (right, &at.right)]);
+            let error = match of_constant.or_else(|| self.of_translation([left, right])) {
+                Some(help) => not_added(at, left, right).help(help),
+                None => unequal_shapes(at, left, right),
+            };
+            return self.refuse(error);
         }
         self.build(at, &[left, right], Growth::Sum, || combined(at, left, right))
+    }
+
+    /// The advice for an action that adds an element of a group of matrices to a column.
+    fn of_translation(&self, operands: [Expr<'g>; 2]) -> Option<String> {
+        let group = operands.iter().find_map(|operand| self.group_of(*operand))?;
+        let column = operands.iter().find(|operand| operand.shape().is_column())?;
+        let n = column.shape().rows;
+        (self.key == "action").then(|| {
+            format!("elements of `{}` multiply; `Translation<{n}>` is the group that adds", group.name(self.graph()))
+        })
     }
 
     /// The identity that fits a matrix, times a scalar.

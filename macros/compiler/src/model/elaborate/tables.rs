@@ -121,8 +121,8 @@ pub(super) const METHODS: [(&str, usize, Rule, &str); 39] = [
 /// Methods without a derivative everywhere: the reason, and the replacement, with `…` for the receiver.
 #[rustfmt::skip]
 pub(super) const REFUSED: [(&str, &str, &str); 19] = [
-    ("abs",        "has no derivative at 0",               "smooth it, `(… * … + self.width * self.width).sqrt()`"),
-    ("signum",     "has no derivative at 0",               "smooth it, `(… / self.width).tanh()`"),
+    ("abs",        "has no derivative at 0",               "smooth it, `(… * … + self.width * self.width).sqrt()`, with a small field `width`"),
+    ("signum",     "has no derivative at 0",               "smooth it, `(… / self.width).tanh()`, with a small field `width`"),
     ("min",        "has no derivative where both are equal", "write a formula that is smooth there"),
     ("max",        "has no derivative where both are equal", "write a formula that is smooth there"),
     ("clamp",      "has no derivative at its ends",        "write a formula that is smooth there"),
@@ -158,4 +158,11 @@ pub(super) const SYNONYMS: [(&str, &str); 24] = [
 #[rustfmt::skip]
 pub(super) const NEEDLESS: [&str; 12] = [
     "clone", "to_owned", "into", "into_inner", "as_ref", "iter", "collect", "unwrap", "clone_owned", "evaluate", "eval", "copied",
+];
+
+/// Adapters of iterators: a closure goes over indices.
+#[rustfmt::skip]
+pub(super) const ITERATORS: [&str; 16] = [
+    "zip", "enumerate", "fold", "filter", "windows", "chunks", "rev", "skip", "take", "step_by", "for_each", "flat_map", "product",
+    "chain", "try_fold", "reduce",
 ];
