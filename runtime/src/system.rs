@@ -73,6 +73,9 @@ pub trait Clebsch: Sized {
     const ORDER: u32;
     /// Whether a step is the free motion itself, without an error in h: its longest step is then known without trying. `false` as provided.
     const IS_FREE_MOTION: bool = false;
+    /// Whether rounding may move a configuration off its orbit in one step, as it may on groups that are not compact: then every step checks
+    /// [`orbit_defect`](Self::orbit_defect). `false` as provided.
+    const MAY_LEAVE_ORBIT: bool = false;
     /// The derivation in words and formulas, with operation counts. With `emit = [latex]` there is a constant `DERIVATION_LATEX` too, for a paper.
     const DERIVATION: &'static str;
 
@@ -92,9 +95,13 @@ pub trait Clebsch: Sized {
     fn coadjoint(&self, f: &Self::Element, mu: &Self::Momentum) -> Self::Momentum;
 
     /// The discrete Legendre transform F⁻ℓd: the momentum N_k before the step that moves q by F.
+    ///
+    /// F is a rounded matrix, and F − I is known to ε only. So N is known to ε‖∂²ℓd/∂F²‖, at most about ε·inertia/h. That is in
+    /// F itself, whatever the formula. Steps take D = F − I, without this loss.
     fn legendre(&self, h: Self::Scalar, t: Self::Scalar, q: &Self::Configuration, f: &Self::Element) -> Self::Momentum;
 
-    /// The discrete Legendre transform F⁺ℓd: the momentum N_{k+1} after the step that moves q by F.
+    /// The discrete Legendre transform F⁺ℓd: the momentum N_{k+1} after the step that moves q by F. It is known as
+    /// [`legendre`](Self::legendre) is.
     fn legendre_next(
         &self,
         h: Self::Scalar,
@@ -146,6 +153,9 @@ pub trait Clebsch: Sized {
     fn momentum_components(m: &Self::MomentumMatrix) -> Self::Momentum;
 
     /// By how much q violates the promise of the declaration, as the largest entry of |RᵀR − I| or ||q|² − 1|.
+    ///
+    /// Relative to ((1 + |F|²/n)/2)^(d/2) on groups that are not compact, where F is n×n and the equations have the degree d. Terms of
+    /// equations grow as this does, and so does round-off.
     ///
     /// 0 for plain vectors and matrices, +∞ on the wrong component of a group (det < 0).
     #[inline]

@@ -328,6 +328,6 @@ where
         let left = B::Scheme::left_after(self.at(time.now()), &q, &mu, &state.left);
         let held = B::Scheme::held(&q, &mu);
         let next = State { time, configuration: q, held, left, h: self.step_size() };
-        if next.is_finite() { Ok(next) } else { Err(self.overflow(&next, 0)) }
+        if self.is_sound(&next) { Ok(next) } else { Err(self.overflow(&next, 0)) }
     }
 }

@@ -2,7 +2,7 @@
 
 use crate::memory::{self, Images, Map};
 use crate::node::{Exponent, ExprNode, Id, Operation, Term};
-use crate::{Elements, Expr, Graph, IntoList, Rational, Shape, work};
+use crate::{Elements, Expr, Graph, IntoList, Rational, Shape, Table, work};
 
 impl<'g> Expr<'g> {
     /// All nodes that this expression is made of, children before parents, itself last.
@@ -54,6 +54,37 @@ impl<'g> Expr<'g> {
     /// Whether the symbol occurs.
     pub fn depends_on(self, symbol: Expr<'g>) -> bool {
         self.reachable_where(|id| id >= symbol.id).contains(&symbol.id)
+    }
+
+    /// The degree in a symbol of a polynomial, before terms cancel. Quotients count by their numerator, inverses as
+    /// the matrix itself.
+    pub fn degree(self, symbol: Expr<'g>) -> u32 {
+        let mut degrees: Table<Id, u32> = Table::default();
+        for id in self.reachable() {
+            let node = self.graph.node(id);
+            let of = |part: &Id| degrees.get(part).copied().unwrap_or(0);
+            let product = |parts: &[Id]| parts.iter().fold(0, |sum, part| of(part).saturating_add(sum));
+            let largest = |parts: &[Id]| parts.iter().map(of).max().unwrap_or(0);
+            let power = |(base, exponent): &(Id, Exponent)| of(base).saturating_mul(exponent.floor().max(0) as u32);
+            let scalars = |term: &Term| term.scalars.iter().map(power).fold(0, u32::saturating_add);
+            let degree = match &*node {
+                _ if id == symbol.id => 1,
+                ExprNode::Sum(terms) => {
+                    let of_term = |term: &Term| scalars(term).saturating_add(product(&term.word));
+                    terms.iter().map(of_term).max().unwrap_or(0)
+                }
+                ExprNode::Word(parts) | ExprNode::Trace(parts) => product(parts),
+                ExprNode::Hadamard(a, b) => product(&[*a, *b]),
+                ExprNode::Of(Operation::Determinant, a) => {
+                    of(a).saturating_mul(self.graph.expr(*a).shape().rows as u32)
+                }
+                ExprNode::Of(_, a) => of(a),
+                ExprNode::Stack(parts) | ExprNode::Opaque(_, _, parts) => largest(parts),
+                ExprNode::Symbol(_) | ExprNode::Pi | ExprNode::Literal(_) => 0,
+            };
+            degrees.insert(id, degree);
+        }
+        degrees.get(&self.id).copied().unwrap_or(0)
     }
 
     /// Whether the inverse of a matrix occurs.

@@ -1,6 +1,7 @@
 //! The state of a power in storage of the user's choice.
 
 use super::Drive;
+use crate::stepper::check_on_orbit;
 use crate::fields::getters;
 use crate::power::{Point, Power, SiteMomentum};
 use crate::scheme::{At, Scheme};
@@ -227,6 +228,11 @@ where
             && let Some(error) = not_finite(next, moved, next_kick)
         {
             return Err(error);
+        }
+        if P::MAY_LEAVE_ORBIT {
+            for (i, q) in next.iter().enumerate() {
+                check_on_orbit(q, system.site(i).orbit_defect(q)).map_err(|error| SiteError { site: Some(i), error })?;
+            }
         }
         let SiteStorage { configuration, momentum, more_points: [next, _], more_momenta: [moved, kick, next_kick] } =
             &mut self.storage;

@@ -14,21 +14,25 @@ impl<S: Clebsch, M: Method<S>> Stepper<S, M> {
     }
 
     /// The discrete Legendre transform F⁻ℓd: the momentum N_k before the step that starts at the time t and moves q by F.
+    ///
+    /// It is known to about ε·inertia/h, as F is a rounded matrix: see [`Clebsch::legendre`].
     #[inline]
     pub fn legendre_at(&self, t: S::Scalar, q: &S::Configuration, f: &S::Element) -> S::Momentum {
         M::legendre(&self.system, self.h, t, q, f)
     }
 
     /// The discrete Legendre transform F⁺ℓd: the momentum N_{k+1} after the step that starts at the time t and moves q by F.
+    ///
+    /// It is known to about ε·inertia/h, as F is a rounded matrix: see [`Clebsch::legendre`].
     #[inline]
     pub fn legendre_next_at(&self, t: S::Scalar, q: &S::Configuration, f: &S::Element) -> S::Momentum {
         M::legendre_next(&self.system, self.h, t, q, f)
     }
 
-    /// The group element F of the step that starts at (q, N) and the time t: the implicit solve.
+    /// The group element F of the step that starts at (q, N) and the time t: the implicit solve. (q, N) is checked as by [`state`](Self::state).
     ///
     /// # Errors
-    /// As [`step`](Self::step).
+    /// As [`state`](Self::state) and [`step`](Self::step); [`Error::NotFinite`] for the time too.
     #[inline]
     pub fn inverse_legendre_at(
         &self,
@@ -37,9 +41,13 @@ impl<S: Clebsch, M: Method<S>> Stepper<S, M> {
         mu: &S::Momentum,
     ) -> Result<S::Element, Error> {
         check_finite("the time", &t)?;
-        check_finite("the configuration", q)?;
-        check_finite("the momentum", mu)?;
-        self.computed(t, |_, _| "the group element of the step", |at| M::Scheme::inverse_legendre(at, q, mu))
+        self.check_state(t, q, mu)?;
+        let name = |_: &_, _| "the group element of the step";
+        let f = self.computed(t, name, |at| M::Scheme::inverse_legendre(at, q, mu))?;
+        if S::MAY_LEAVE_ORBIT {
+            self.check_configuration(&self.system.act(&f, q))?;
+        }
+        Ok(f)
     }
 
     /// The action Φ_F(q).
@@ -82,21 +90,25 @@ impl<S: Clebsch<Time = ()>, M: Method<S>> Stepper<S, M> {
     }
 
     /// The discrete Legendre transform F⁻ℓd: the momentum N_k before the step that moves q by F.
+    ///
+    /// It is known to about ε·inertia/h, as F is a rounded matrix: see [`Clebsch::legendre`].
     #[inline]
     pub fn legendre(&self, q: &S::Configuration, f: &S::Element) -> S::Momentum {
         self.legendre_at(S::Scalar::zero(), q, f)
     }
 
     /// The discrete Legendre transform F⁺ℓd: the momentum N_{k+1} after the step that moves q by F.
+    ///
+    /// It is known to about ε·inertia/h, as F is a rounded matrix: see [`Clebsch::legendre`].
     #[inline]
     pub fn legendre_next(&self, q: &S::Configuration, f: &S::Element) -> S::Momentum {
         self.legendre_next_at(S::Scalar::zero(), q, f)
     }
 
-    /// The group element F of the step that starts at (q, N): the implicit solve.
+    /// The group element F of the step that starts at (q, N): the implicit solve. (q, N) is checked as by [`state`](Self::state).
     ///
     /// # Errors
-    /// As [`step`](Self::step).
+    /// As [`state`](Self::state) and [`step`](Self::step).
     #[inline]
     pub fn inverse_legendre(&self, q: &S::Configuration, mu: &S::Momentum) -> Result<S::Element, Error> {
         self.inverse_legendre_at(S::Scalar::zero(), q, mu)

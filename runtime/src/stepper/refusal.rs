@@ -1,7 +1,7 @@
 //! Steps that fail: the failure of one body while others go on, the quantity that is not finite, and the longest step
 //! that succeeds.
 
-use super::{Stepper, first_without, whole_or_lane};
+use super::{Stepper, check_on_orbit, first_without, whole_or_lane};
 use crate::scheme::{At, AtOf, Constants, Held, Left, Scheme};
 use crate::{Clebsch, Error, Mask, Method, Scalar, Space, State, Time};
 use num_traits::Zero;
@@ -24,7 +24,7 @@ impl<S: Clebsch, M: Method<S>> Stepper<S, M> {
         let Ok(next) = self.attempt(state, &S::Input::origin()) else {
             return (*state, <S::Scalar as Scalar>::Mask::nowhere());
         };
-        let stepped = next.finite();
+        let stepped = self.sound(&next);
         if stepped.all() { (next, stepped) } else { (Self::merged(&next, state, stepped), stepped) }
     }
 
@@ -40,7 +40,7 @@ impl<S: Clebsch, M: Method<S>> Stepper<S, M> {
         alone.left.set_lane(lane, &state.left.lane(lane));
         match self.attempt_again(&alone, &S::Input::origin()) {
             Err(error) => Some(self.refusal(&alone, &S::Input::origin(), lane, error)),
-            Ok(next) if next.finite().lane(lane) => None,
+            Ok(next) if self.sound(&next).lane(lane) => None,
             Ok(next) => Some(self.overflow(&next, lane)),
         }
     }
@@ -100,11 +100,17 @@ impl<S: Clebsch, M: Method<S>> Stepper<S, M> {
         }
     }
 
-    /// The error of a step to a state that is not finite in this lane.
+    /// The error of a step to a state that is not finite in this lane, or off its orbit.
     #[cold]
     #[inline(never)]
     pub(crate) fn overflow(&self, next: &State<S, M>, lane: usize) -> Error {
         let State { time, configuration, .. } = next;
+        if next.finite().lane(lane)
+            && let Err(error) =
+                check_on_orbit(&configuration.lane(lane), self.system.orbit_defect(configuration).lane(lane))
+        {
+            return error;
+        }
         let name = if !configuration.finite().lane(lane) {
             "the configuration after the step"
         } else if !time.now().finite().lane(lane) {

@@ -48,7 +48,7 @@ impl<S: Clebsch, M: Method<S>> Stepper<S, M> {
         let (configuration, held, left) = advanced.map_err(|error| self.refused_after(state, steps, error))?;
         let time = (0..steps).fold(*time, |time, _| time.after_step(self.h));
         let next = State { time, configuration, held, left, h: self.h };
-        if !next.is_finite() {
+        if !self.is_sound(&next) {
             return Err(self.refused_after(state, steps, self.beyond(&next)));
         }
         Ok(next)
@@ -75,7 +75,7 @@ impl<S: Clebsch, M: Method<S>> Stepper<S, M> {
             let (before, u) = (*state, *u);
             return Err(self.refused(&before, &u));
         };
-        if !next.is_finite() {
+        if !self.is_sound(&next) {
             let reached = next;
             return Err(self.beyond(&reached));
         }
@@ -100,7 +100,7 @@ impl<S: Clebsch, M: Method<S>> Stepper<S, M> {
             return Err(self.refused(state, u));
         }
         (next.time, next.h) = (state.time.after_step(self.h), self.h);
-        if next.is_finite() { Ok(()) } else { Err(self.beyond(next)) }
+        if self.is_sound(next) { Ok(()) } else { Err(self.beyond(next)) }
     }
 
     pub(super) fn checked_state(&self, t: T<S>, q: Q<S>, mu: Mu<S>) -> Result<State<S, M>, Error> {
@@ -186,10 +186,28 @@ impl<S: Clebsch, M: Method<S>> Stepper<S, M> {
         failed.unwrap_or_else(|| whole_or_lane::<S::Scalar>(0, known))
     }
 
-    /// The error of a step whose state is not finite in some lane.
+    /// Whether a state after a step is finite and on its orbit.
+    #[inline(always)]
+    pub(crate) fn is_sound(&self, next: &State<S, M>) -> bool {
+        next.is_finite() && (!S::MAY_LEAVE_ORBIT || self.on_orbit(&next.configuration).all())
+    }
+
+    /// The lanes in which a state after a step is finite and on its orbit.
+    #[inline(always)]
+    pub(crate) fn sound(&self, next: &State<S, M>) -> <S::Scalar as Scalar>::Mask {
+        let finite = next.finite();
+        if S::MAY_LEAVE_ORBIT { finite & self.on_orbit(&next.configuration) } else { finite }
+    }
+
+    /// The lanes in which a configuration is on its orbit, up to √ε as [`state`](Self::state) accepts it.
+    fn on_orbit(&self, q: &Q<S>) -> <S::Scalar as Scalar>::Mask {
+        self.system.orbit_defect(q).at_most(S::Scalar::EPSILON.sqrt())
+    }
+
+    /// The error of a step whose state is not finite, or off its orbit, in some lane.
     #[cold]
     fn beyond(&self, next: &State<S, M>) -> Error {
-        let lane = first_without::<S::Scalar>(next.finite());
+        let lane = first_without::<S::Scalar>(self.sound(next));
         whole_or_lane::<S::Scalar>(lane, self.overflow(next, lane))
     }
 }

@@ -36,6 +36,9 @@ impl<S: Clebsch, M: Method<S>> Stepper<S, M> {
             let (q, p) = M::Scheme::step_symmetric(at, &state.configuration, &state.covector)?;
             Ok((q, time.now(), p))
         })?;
+        if S::MAY_LEAVE_ORBIT {
+            self.check_configuration(&configuration)?;
+        }
         Ok(CotangentState { time, configuration, covector })
     }
 

@@ -5,6 +5,7 @@
 use clebsch::Clebsch;
 use clebsch_tests::fixtures::first_order_top::FirstOrderTop;
 use clebsch_tests::fixtures::heavy_top::HeavyTop;
+use clebsch_tests::fixtures::midpoint_top::MidpointTop;
 use clebsch_tests::fixtures::neumann::Neumann;
 use clebsch_tests::fixtures::paper_pendulum::PaperPendulum;
 use clebsch_tests::fixtures::planar_pendulum::PlanarPendulum;
@@ -246,5 +247,30 @@ fn kinetic_energy_is_that_of_the_body() {
         let r = random.attitude::<3>();
         assert!((top.kinetic_energy(&constants, 0.0, &r, &pi) - energy).abs() < NEAR);
         assert!((top.potential(0.0, &r) - top.weight * (r * top.center).z).abs() < NEAR);
+    }
+}
+
+/// A rounded F determines N to ε‖∂²ℓd/∂F²‖, as its documentation says. A unit in the last place of F moves N by as much, so no formula
+/// gives more digits.
+#[test]
+fn legendre_transforms_are_known_to_rounding_over_h() {
+    let mut random = Random::new(12);
+    for h in [1e-1, 1e-3, 1e-5, 1e-7] {
+        let mut most = 0.0_f64;
+        for _ in 0..SAMPLES {
+            let HeavyTop { mass_matrix, weight, center } = heavy_top(&mut random);
+            let coupled = MidpointTop { mass_matrix, weight, stiffness: 0.7, center }.stepper(h).expect("a top");
+            let top = HeavyTop { mass_matrix, weight, center }.stepper(h).expect("a top");
+            let (r, mu) = (random.attitude::<3>(), random.vector::<3>());
+            let bound = 16.0 * f64::EPSILON * (1.0 + mass_matrix.amax() / h);
+            let f = top.inverse_legendre(&r, &mu).expect("a solvable step");
+            assert_near(&top.legendre(&r, &f), &mu, bound, "a separable cost");
+            let mut next = f;
+            next[(0, 0)] += f64::EPSILON;
+            most = most.max((top.legendre(&r, &next) - top.legendre(&r, &f)).amax());
+            let f = coupled.inverse_legendre(&r, &mu).expect("a solvable step");
+            assert_near(&coupled.legendre(&r, &f), &mu, bound, "a coupled cost");
+        }
+        assert!(most > 0.01 * f64::EPSILON / h, "{h}: {most:e}");
     }
 }

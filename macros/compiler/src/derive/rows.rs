@@ -66,13 +66,16 @@ impl<'g> SystemFormulas<'g> {
         parts.each(|part| part.substitute(&inverses))
     }
 
-    /// The terms that vanish where q lies on its groups. Those of SO(n) and of the unit sphere are the runtime's.
+    /// The terms that vanish where q lies on its groups, relative to their growth with q. Those of SO(n) and of the unit
+    /// sphere are the runtime's.
     fn row_of_membership(&self) -> Formula<'g> {
         let mut equations = Vec::new();
         for leaf in &self.model.configurations {
             match leaf.space {
                 LeafSpace::Group(group) if group.element_property() != Property::Orthogonal => {
-                    equations.extend(group.equations(leaf.symbol));
+                    let growth = group.growth(leaf.symbol);
+                    let relative = |equation| growth.map_or(equation, |growth| equation / growth);
+                    equations.extend(group.equations(leaf.symbol).into_iter().map(relative));
                 }
                 _ => {}
             }

@@ -38,6 +38,11 @@ impl<'g> Emitter<'_, 'g> {
     pub(super) fn stepping(&self, name: Option<TokenStream>, derivation: &str) -> TokenStream {
         let (scheme, order) = (self.scheme(), self.model.order.number());
         let free_motion = self.formulas.is_exact.then(|| flag("IS_FREE_MOTION", true));
+        let leaves = self.model.configurations.iter().any(|leaf| match leaf.space {
+            LeafSpace::Group(group) => group.growth(leaf.symbol).is_some(),
+            _ => false,
+        });
+        let may_leave = (leaves && name.is_some()).then(|| flag("MAY_LEAVE_ORBIT", true));
         let functions = self.functions(SYSTEM, (0, 0), &no_words, |function, kernel| {
             let is_asked = self.method.is_none() || function.is_of_method();
             if is_asked { self.function_of_system(function, kernel) } else { None }
@@ -49,6 +54,7 @@ impl<'g> Emitter<'_, 'g> {
             #name
             const ORDER: ::core::primitive::u32 = #order;
             #free_motion
+            #may_leave
             const DERIVATION: &'static ::core::primitive::str = #derivation;
 
             #functions

@@ -2,7 +2,8 @@
 
 use super::{Block, Group};
 use crate::algebra::Sparse;
-use crate::{Expr, Graph, IntoList, Rational, Shape, indexed, integer};
+use crate::node::Operation;
+use crate::{Expr, Graph, IntoList, Rational, Shape, indexed, integer, rational};
 
 impl Group {
     /// The identity element.
@@ -175,11 +176,12 @@ impl Group {
             }
             Group::Similarity(n) => {
                 let square = linear().transpose() * linear();
-                vec![square - square.trace() / n as i64 * graph.identity(n), last_row()]
+                vec![n as i64 * square / square.trace() - graph.identity(n), last_row()]
             }
             Group::Affine(_) => vec![last_row()],
             Group::Translation(_) | Group::GeneralLinear(_) => Vec::new(),
-            Group::SpecialLinear(_) => vec![f.determinant() - graph.integer(1)],
+            // not `determinant`, which knows that it is 1 on the group
+            Group::SpecialLinear(_) => vec![f.atom_of(Operation::Determinant, Shape::scalar()) - graph.integer(1)],
             Group::Unitary(n) | Group::SpecialUnitary(n) => {
                 let complex = graph.symplectic_form(2 * n);
                 let mut equations = vec![form(graph.identity(2 * n)), f * complex - complex * f];
@@ -196,6 +198,21 @@ impl Group {
             }
             Group::Declared(declared) => graph.definition(declared).equation(f),
         }
+    }
+
+    /// How the terms of [`equations`](Self::equations) grow with F, and their rounding error with them:
+    /// ((1 + |F|²/n)/2)^(d/2) for equations of the degree d. It is 1 at the identity. `None` where terms are bounded on the
+    /// group, or of first degree.
+    pub fn growth(self, f: Expr<'_>) -> Option<Expr<'_>> {
+        let degree = match self {
+            Group::PseudoOrthogonal(..) | Group::Symplectic(_) => 2,
+            Group::SpecialLinear(n) => n as u32,
+            Group::Declared(_) => self.equations(f).iter().map(|equation| equation.degree(f)).max().unwrap_or(0),
+            _ => 0,
+        };
+        let n = i64::from(self.element_shape().rows as u32);
+        let mean = (f.graph().integer(1) + f.norm_squared() / n) / 2;
+        (degree > 1).then(|| mean.power(rational(i64::from(degree), 2)))
     }
 }
 

@@ -54,7 +54,8 @@ impl<S: Clebsch, M: Method<S>> Chunk<State<S, M>> {
         if let Ok(next) = stepper.attempt_with(&self.state, &self.state.left, &S::Input::origin()) {
             // quicker than to look at each number; where the sum overflows, `part` looks at each
             let finite = (next.configuration.sum() + next.held.sum() + next.time.now()).finite();
-            if finite.bits() & self.live == self.live {
+            let sound = if S::MAY_LEAVE_ORBIT { stepper.sound(&next) } else { finite };
+            if sound.bits() & self.live == self.live {
                 let State { time, configuration, held, left, h: _ } = next;
                 self.state = State { time, configuration, held, left, h: self.state.h };
                 return;

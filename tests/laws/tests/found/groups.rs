@@ -1,6 +1,6 @@
 //! Section 2.4: other groups, built in and declared.
 
-use clebsch::Clebsch;
+use clebsch::{Clebsch, Error};
 use clebsch_tests::fixtures::fluid_ellipsoid::FluidEllipsoid;
 use clebsch_tests::fixtures::heisenberg_geodesic::HeisenbergGeodesic;
 use clebsch_tests::fixtures::linear_optics::LinearOptics;
@@ -167,4 +167,114 @@ fn heisenberg_geodesic() {
     let names = *found.names();
     assert_conserved(system.clone(), q, mu, names);
     assert_reversible(&system, q, mu);
+}
+
+/// Geodesics of SL(2) in a potential that grows with q.
+#[derive(Clebsch, Clone, Debug)]
+#[clebsch(
+    action    = |F: SL<2>, q: SL<2>| q * F,
+    cost      = |h, F| (F - I).norm_squared() / (2 * h),
+    potential = |q| self.stiffness * q.norm_squared(),
+)]
+struct Shear {
+    stiffness: f64,
+}
+
+/// Geodesics of SO(2, 1), whose group is built in.
+#[derive(Clebsch, Clone, Debug)]
+#[clebsch(action = |F: SO<2, 1>, q: SO<2, 1>| F * q, cost = |h, F| (F - I).norm_squared() / (2 * h))]
+struct Boosts;
+
+/// A number of any size.
+fn hostile(random: &mut Random) -> f64 {
+    match (random.between(0.0, 10.0)) as u32 {
+        0 => 0.0,
+        1 => -0.0,
+        2 => random.number() * 10_f64.powf(random.number() * 300.0),
+        3..=5 => random.number() * 10_f64.powf(random.number() * 8.0),
+        _ => random.number() * 10_f64.powf(random.number() * 3.0),
+    }
+}
+
+/// Steps with numbers of any size. The state after each is on its group, relative to the size of its terms, and `state`
+/// takes it as a start. Gives the number of steps, and of those that are refused as off their group.
+fn stay_on_their_group<S, const N: usize, const M: usize>(
+    make: impl Fn(&mut Random) -> S,
+    relative: impl Fn(&SMatrix<f64, N, N>) -> f64,
+) -> [usize; 2]
+where
+    S: Clebsch<Scalar = f64, Configuration = SMatrix<f64, N, N>, Momentum = SVector<f64, M>>,
+{
+    let random = &mut Random::new(261);
+    let [mut made, mut refused] = [0; 2];
+    for case in 0..3000 {
+        let h = if case % 2 == 0 { 0.05 } else { hostile(random) };
+        let Ok(stepper) = make(random).into_stepper(h) else { continue };
+        let mu = SVector::from_fn(|_, _| hostile(random));
+        let Ok(start) = stepper.state(SMatrix::identity(), mu) else { continue };
+        for state in stepper.trajectory(start).take(7) {
+            match state {
+                Ok(state) => {
+                    let off = relative(state.configuration());
+                    assert!(off < 1e-7, "{}, case {case}: {off:e} off, {state:?}", S::NAME);
+                    let again = stepper.state(*state.configuration(), state.momentum());
+                    assert!(again.is_ok(), "{}, case {case}: {again:?}", S::NAME);
+                    made += 1;
+                }
+                Err(Error::OffOrbit { defect, tolerance }) => {
+                    assert!(defect > tolerance && defect.is_finite(), "{defect} and {tolerance}");
+                    refused += 1;
+                }
+                Err(_) => {}
+            }
+        }
+    }
+    println!("{}: {made} states, {refused} steps refused as off their group", S::NAME);
+    assert!(made > 3000, "{}: {made} states", S::NAME);
+    [made, refused]
+}
+
+/// |FᵀηF − η| relative to |F|².
+fn off_form<const N: usize>(eta: &SMatrix<f64, N, N>, f: &SMatrix<f64, N, N>) -> f64 {
+    let defect = f.transpose() * eta * f - eta;
+    defect.amax() / f.amax().max(1.0).powi(2)
+}
+
+/// On groups that are not compact, rounding grows with the elements that a run passes through, and chart formulas cancel
+/// in steps that are far too long. No step is `Ok` off its group.
+#[test]
+fn no_step_leaves_its_group_in_silence() {
+    let minkowski = Matrix4::from_diagonal(&Vector4::new(1.0, -1.0, -1.0, -1.0));
+    let frame = |random: &mut Random| LorentzFrame {
+        inertia: 1.2,
+        field: Vector4::new(random.number(), 0.2, 0.3, hostile(random)),
+        spin: random.vector(),
+    };
+    let [_, refused] = stay_on_their_group::<_, 4, 6>(frame, |f| off_form(&minkowski, f));
+    assert!(refused > 0, "no frame was far off");
+    let symplectic = Matrix4::from_fn(|i, j| if j == i + 2 { 1.0 } else if i == j + 2 { -1.0 } else { 0.0 });
+    stay_on_their_group::<_, 4, 10>(|_| LinearOptics, |f| off_form(&symplectic, f));
+    let signs = Matrix3::from_diagonal(&Vector3::new(1.0, 1.0, -1.0));
+    stay_on_their_group::<_, 3, 3>(|_| Boosts, |f| off_form(&signs, f));
+    let shear = |random: &mut Random| Shear { stiffness: hostile(random) };
+    stay_on_their_group::<_, 2, 3>(shear, |f| (f.determinant() - 1.0).abs() / f.amax().max(1.0).powi(2));
+}
+
+/// A matrix of another determinant is no element of SL(n), however large its entries are.
+#[test]
+fn volumes_are_checked() {
+    let stepper = Shear { stiffness: 1.0 }.into_stepper(H).expect("a shear");
+    let start = |scale: f64, size: f64| {
+        stepper.state(Matrix2::new(size, 0.0, 0.0, scale / size), Vector3::zeros())
+    };
+    for size in [1.0, 1e-3, 1e4, 1e7] {
+        assert!(start(1.0, size).is_ok(), "{size}");
+    }
+    for scale in [2.0, 0.5, -1.0, 0.0, 1.001] {
+        assert!(matches!(start(scale, 1.0), Err(Error::OffOrbit { .. })), "{scale}");
+    }
+    assert!(matches!(stepper.state(Matrix2::identity() * 1e7, Vector3::zeros()), Err(Error::OffOrbit { .. })));
+    let fluid = FluidEllipsoid { mass: 0.8 }.into_stepper(H).expect("a fluid");
+    let stretched = fluid.state(Matrix3::identity() * 1.1, SVector::zeros());
+    assert!(matches!(stretched, Err(Error::OffOrbit { .. })), "{stretched:?}");
 }
