@@ -11,8 +11,6 @@ pub(crate) type Q<S> = <S as Clebsch>::Configuration;
 pub(crate) type F<S> = <S as Clebsch>::Element;
 pub(crate) type Mu<S> = <S as Clebsch>::Momentum;
 pub(crate) type U<S> = <S as Clebsch>::Input;
-/// The constants of S, which no step changes.
-pub(crate) type C<S> = <S as Clebsch>::Constants;
 /// The coordinates that a solve finds.
 type X<S, M> = <S as Parts<M>>::Coordinates;
 

@@ -8,8 +8,8 @@
 
 mod formulas;
 
-use crate::parts::{C, F, Mu, Q, Solved, T};
-use crate::scheme::{self, At, Scheme};
+use crate::parts::{F, Mu, Q, T, U};
+use crate::scheme::{self, At, InStorage, Scheme};
 use crate::space::{larger, minus, plus};
 use crate::{Clebsch, Error, Scalar, Space};
 use core::array::from_fn;
@@ -21,6 +21,10 @@ pub type Point<P, const N: usize> = <<P as Power<N>>::Site as Clebsch>::Configur
 pub type Motion<P, const N: usize> = <<P as Power<N>>::Site as Clebsch>::Element;
 /// The momentum of a site.
 pub type SiteMomentum<P, const N: usize> = <<P as Power<N>>::Site as Clebsch>::Momentum;
+/// The input of the forces of a site.
+pub type SiteInput<P, const N: usize> = <<P as Power<N>>::Site as Clebsch>::Input;
+/// A site after a step.
+type MovedSite<P, const N: usize> = (Point<P, N>, SiteMomentum<P, N>);
 /// The constants of a power with these sites.
 pub type Constants<P, const N: usize> = PowerConstants<T<P>, scheme::Constants<<P as Power<N>>::Site>>;
 /// How a site is stepped.
@@ -86,11 +90,11 @@ pub trait Power<const N: usize>:
         Momentum = [SiteMomentum<Self, N>; N],
         MomentumMatrix = [MomentumMatrix<Self, N>; N],
         Constants = Constants<Self, N>,
-        Input = (),
+        Scheme: InStorage<Self, N>,
     >
 {
     /// One site, a system of its own.
-    type Site: Clebsch<Scalar = Self::Scalar, Input = ()>;
+    type Site: Clebsch<Scalar = Self::Scalar>;
 
     /// Whether all sites have the same kinetic energy.
     const IS_UNIFORM: bool;
@@ -106,6 +110,12 @@ pub trait Power<const N: usize>:
     /// # Panics
     /// As arrays do, for an index that is not below N.
     fn site(&self, i: usize) -> Self::Site;
+
+    /// The input of a site: its own, or one that all sites share.
+    ///
+    /// # Panics
+    /// As arrays do, for an index that is not below N.
+    fn input_of_site(u: &Self::Input, i: usize) -> &SiteInput<Self, N>;
 
     /// The constants as those of a power.
     fn constants_of_sites(constants: &Self::Constants) -> &Constants<Self, N>;
@@ -195,7 +205,7 @@ pub trait Power<const N: usize>:
     #[inline(always)]
     fn at_site<R>(
         &self,
-        c: &C<Self>,
+        c: &Constants<Self, N>,
         i: usize,
         act: impl FnOnce(&Self::Site, &scheme::Constants<Self::Site>) -> Result<R, Error>,
     ) -> Result<R, Error> {
@@ -203,41 +213,53 @@ pub trait Power<const N: usize>:
         if Self::IS_UNIFORM { act(&site, &c.site) } else { act(&site, &site_constants(&site, c.h)?) }
     }
 
-    /// Moves one site with the momentum n.
+    /// Moves one site with the momentum n and the input u of its forces.
     #[inline(always)]
     fn moved(
         &self,
-        c: &C<Self>,
+        c: &Constants<Self, N>,
         t: T<Self>,
         i: usize,
-        q: &Point<Self, N>,
-        n: &SiteMomentum<Self, N>,
-    ) -> Solved<(Point<Self, N>, SiteMomentum<Self, N>)> {
+        (q, n): (&Point<Self, N>, &SiteMomentum<Self, N>),
+        u: &SiteInput<Self, N>,
+    ) -> Result<MovedSite<Self, N>, Error> {
         self.at_site(c, i, |site, c| {
             let at = At::new(site, c, t);
             let left = SiteScheme::<Self, N>::left(at, q, n);
             let held = SiteScheme::<Self, N>::held(q, n);
-            let (q, held, _) = SiteScheme::<Self, N>::step(at, (q, &held, &left), &())?;
+            let (q, held, _) = SiteScheme::<Self, N>::step(at, (q, &held, &left), u)?;
             Ok((q, SiteScheme::<Self, N>::momentum(&q, &held)))
         })
     }
 
-    /// Moves all sites with their momenta, and with `kick` added, in the storage of others. An error comes with the index of its site.
+    /// The same with `kick` added to the momentum. An input that is not given is 0.
+    #[inline(always)]
+    fn kicked_and_moved(
+        &self,
+        c: &Constants<Self, N>,
+        t: T<Self>,
+        i: usize,
+        (q, mu, kick): (&Point<Self, N>, &SiteMomentum<Self, N>, Option<&Mu<Self>>),
+        u: Option<&U<Self>>,
+    ) -> Result<MovedSite<Self, N>, (usize, Error)> {
+        let n = kick.map_or(*mu, |kick| plus(mu, &kick[i]));
+        let u = u.map_or_else(Space::origin, |u| *Self::input_of_site(u, i));
+        self.moved(c, t, i, (q, &n), &u).map_err(|error| (i, error))
+    }
+
+    /// Moves all sites with their momenta, and with `kick` added, in the storage of others. An input of forces that is not given is 0. An error comes with the index of its site.
     #[inline]
-    #[allow(clippy::too_many_arguments, reason = "two states, and what is between")]
     fn drift_into(
         &self,
-        c: &C<Self>,
+        c: &Constants<Self, N>,
         t: T<Self>,
-        q: &Q<Self>,
-        mu: &Mu<Self>,
+        (q, mu): (&Q<Self>, &Mu<Self>),
         kick: Option<&Mu<Self>>,
-        next: &mut Q<Self>,
-        moved: &mut Mu<Self>,
+        u: Option<&U<Self>>,
+        (next, moved): (&mut Q<Self>, &mut Mu<Self>),
     ) -> Result<(), (usize, Error)> {
         for i in 0..N {
-            let n = kick.map_or(mu[i], |kick| plus(&mu[i], &kick[i]));
-            (next[i], moved[i]) = self.moved(c, t, i, &q[i], &n).map_err(|error| (i, error))?;
+            (next[i], moved[i]) = self.kicked_and_moved(c, t, i, (&q[i], &mu[i], kick), u)?;
         }
         Ok(())
     }
@@ -247,15 +269,15 @@ pub trait Power<const N: usize>:
     #[inline]
     fn drift_in_place(
         &self,
-        c: &C<Self>,
+        c: &Constants<Self, N>,
         t: T<Self>,
         q: &mut Q<Self>,
         mu: &mut Mu<Self>,
         kick: Option<&Mu<Self>>,
-    ) -> Result<(), Error> {
+        u: Option<&U<Self>>,
+    ) -> Result<(), (usize, Error)> {
         for i in 0..N {
-            let n = kick.map_or(mu[i], |kick| plus(&mu[i], &kick[i]));
-            (q[i], mu[i]) = self.moved(c, t, i, &q[i], &n)?;
+            (q[i], mu[i]) = self.kicked_and_moved(c, t, i, (&q[i], &mu[i], kick), u)?;
         }
         Ok(())
     }
@@ -284,7 +306,7 @@ pub trait Power<const N: usize>:
     }
 
     /// The kinetic energy of all sites.
-    fn power_kinetic_energy(&self, c: &C<Self>, t: T<Self>, q: &Q<Self>, mu: &Mu<Self>) -> T<Self> {
+    fn power_kinetic_energy(&self, c: &Constants<Self, N>, t: T<Self>, q: &Q<Self>, mu: &Mu<Self>) -> T<Self> {
         let mut sum = T::<Self>::zero();
         for (i, (q, mu)) in q.iter().zip(mu).enumerate() {
             let energy =

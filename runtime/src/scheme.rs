@@ -69,6 +69,7 @@ use core::marker::PhantomData;
 use num_traits::Zero;
 
 pub use composed::{Sizes, Stages, compose};
+pub use sites::{InStorage, Stored};
 pub use split::{Kicks, split};
 
 /// The types by which a declaration names its scheme.

@@ -123,6 +123,8 @@ macro_rules! every_scene {
             a_relativistic_particle: relativistic_particle::RelativisticParticle { mass: 1.2, force: centre() }, centre(), 0.05;
             a_body_in_four_dimensions: rigid_body4::RigidBody4 { j_d: four() }, Matrix4::identity(), 0.1;
             a_body_in_five_dimensions: driven_body5::DrivenBody5 { j_d: many(), drag: 0.2 }, SMatrix::identity(), 0.1;
+            a_driven_chain: driven_chain::DrivenChain<3> { inertia: 1.2, stiffness: 0.7, friction: [0.1, 0.0, 0.2] },
+                [Vector2::new(0.6, -0.8), Vector2::x(), -Vector2::y()], 0.05;
             a_body_in_seven_dimensions: rigid_body7::RigidBody7 { j_d: many() }, SMatrix::identity(), 0.1;
             a_sided_pair: sided_pair::SidedPair { }, (turned(), unit()), 0.1;
             a_top_of_eighth_order: eighth_order_top::EighthOrderTop { moments: principal(), weight: 1.3, center: centre() }, turned(), 0.05;

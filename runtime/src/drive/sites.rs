@@ -4,7 +4,7 @@ use super::Drive;
 use crate::stepper::check_on_orbit;
 use crate::fields::getters;
 use crate::power::{Point, Power, SiteMomentum};
-use crate::scheme::{At, Scheme};
+use crate::scheme::{At, InStorage, Scheme, Stored};
 use crate::{Clebsch, Clock, Conserves, Error, Scalar, Space, Stepper, Time};
 use core::fmt::{self, Display, Formatter};
 use core::iter::once;
@@ -195,10 +195,9 @@ where
     fn kick(&mut self) -> Result<(), SiteError> {
         let SiteStorage { configuration: q, more_points: [_, gradient], more_momenta: [next, kick, _], .. } =
             &mut self.storage;
-        let weight = self.stepper.step_size() * Scalar::from_f64(if P::ORDER == 1 { 0.0 } else { -0.5 });
-        let (gradient, kick, next) =
-            (array_mut(gradient.as_mut())?, array_mut(kick.as_mut())?, array_mut(next.as_mut())?);
-        self.stepper.system().kick_into(self.time.now(), array(q.as_ref())?, weight, gradient, kick, next);
+        let (q, mu) = (array_mut(q.as_mut())?, array_mut(next.as_mut())?);
+        let (kick, gradient) = (array_mut(kick.as_mut())?, array_mut(gradient.as_mut())?);
+        P::Scheme::start(self.stepper.at(self.time.now()), Stored { q, mu, kick, gradient });
         Ok(())
     }
 
@@ -207,25 +206,35 @@ where
     /// # Errors
     /// Those of [`Stepper::step`], with the site. After an error the state is unchanged.
     pub fn step(&mut self) -> Result<(), SiteError> {
-        let At { system, constants, t, .. } = self.stepper.at(self.time.now());
-        let h = self.stepper.step_size();
-        let SiteStorage { configuration: q, momentum: mu, more_points, more_momenta } = &mut self.storage;
-        let ([next, gradient], [moved, kick, next_kick]) = (more_points, more_momenta);
-        let (q, mu) = (array(q.as_ref())?, array(mu.as_ref())?);
-        let (next, moved) = (array_mut(next.as_mut())?, array_mut(moved.as_mut())?);
-        let (gradient, next_kick) = (array_mut(gradient.as_mut())?, array_mut(next_kick.as_mut())?);
-        let first = P::ORDER == 1;
-        let start = if first { None } else { Some(array(kick.as_ref())?) };
-        let constants = P::Scheme::whole(constants);
-        let drifted = system.drift_into(constants, t, q, mu, start, next, moved);
-        drifted.map_err(|(site, error)| SiteError { site: Some(site), error })?;
-        let time = self.time.after_step(h);
+        self.stepped(None)
+    }
+
+    /// One step during which the input of the forces is `u`, as [`Stepper::step_with`] makes it.
+    ///
+    /// # Errors
+    /// Those of [`Stepper::step_with`], with the site. After an error the state is unchanged.
+    pub fn step_with(&mut self, u: &P::Input) -> Result<(), SiteError> {
+        if !u.all_finite() {
+            return Err(SiteError { site: None, error: Error::NotFinite { name: "the input" } });
+        }
+        self.stepped(Some(u))
+    }
+
+    /// One step; an input that is not given is 0.
+    fn stepped(&mut self, u: Option<&P::Input>) -> Result<(), SiteError> {
+        let time = self.time.after_step(self.stepper.step_size());
         if !time.now().is_finite() {
             return Err(SiteError { site: None, error: Error::NotFinite { name: "the time after the step" } });
         }
-        let weight = h * Scalar::from_f64(if first { -1.0 } else { -0.5 });
-        if !system.kick_into(t + h, next, weight, gradient, next_kick, moved).is_finite()
-            && let Some(error) = not_finite(next, moved, next_kick)
+        let SiteStorage { configuration, momentum, more_points, more_momenta } = &mut self.storage;
+        let ([next, gradient], [moved, kick, next_kick]) = (more_points, more_momenta);
+        let from = (array(configuration.as_ref())?, array(momentum.as_ref())?, array(kick.as_ref())?);
+        let (q, mu) = (array_mut(next.as_mut())?, array_mut(moved.as_mut())?);
+        let (kick, gradient) = (array_mut(next_kick.as_mut())?, array_mut(gradient.as_mut())?);
+        let sum = P::Scheme::step_from(self.stepper.at(self.time.now()), from, u, Stored { q, mu, kick, gradient });
+        let sum = sum.map_err(|(site, error)| SiteError { site: Some(site), error })?;
+        if !sum.is_finite()
+            && let Some(error) = not_finite(next.as_ref(), moved.as_ref(), next_kick.as_ref())
         {
             return Err(error);
         }

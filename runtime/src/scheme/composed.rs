@@ -10,11 +10,14 @@
 //! Orders 6 and 8 are those of Kahan and Li (1997), *Composition constants for raising the orders of unconventional
 //! schemes for ordinary differential equations*.
 
+use super::sites::{AtSite, InStorage, Stored};
 use super::{At, AtOf, Before, Pair, Parted, Scheme, Stepped};
-use crate::parts::{Mu, Q};
-use crate::{Clebsch, Error, Method, Scalar};
+use crate::parts::{Mu, Q, T, U};
+use crate::power::Power;
+use crate::{Clebsch, Error, Method, Scalar, Space};
 use core::marker::PhantomData;
 use nalgebra::SMatrix;
+use num_traits::Zero;
 
 /// γ_1, …, γ_K: the others are these backwards.
 pub trait Sizes<const K: usize> {
@@ -126,16 +129,40 @@ impl<S: Clebsch, M: Method<S>, I: Scheme<S, M>, Z: Sizes<K>, const K: usize> Sch
     }
 }
 
+impl<S: Power<N>, I: InStorage<S, N>, Z: Sizes<K>, const K: usize, const N: usize> InStorage<S, N>
+    for Composed<I, Z, K>
+{
+    fn start(at: AtOf<'_, S, Self>, state: Stored<'_, S>) {
+        I::start(At::new(at.system, at.constants.first(), at.t), state);
+    }
+
+    #[inline]
+    fn step_in_place<'a>(
+        at: AtOf<'_, S, Self>,
+        u: Option<&U<S>>,
+        state: Stored<'a, S>,
+    ) -> Result<(Stored<'a, S>, T<S>), AtSite> {
+        let step = |stage: &I::Constants, t, (state, _): (Stored<'a, S>, _)| {
+            I::step_in_place(At::new(at.system, stage, t), u, state)
+        };
+        let scaled = |(state, sum): (Stored<'a, S>, _), ratio| {
+            state.kick.iter_mut().for_each(|kick| *kick = kick.zip_map(kick, |kick, _| kick * ratio));
+            (state, sum)
+        };
+        compose(at.constants, at.t, (state, T::<S>::zero()), step, scaled)
+    }
+}
+
 /// The state after a composed step from the time `t`. `scaled` converts the data of a step for a step that is so many
 /// times as long.
 #[inline(always)]
-pub fn compose<T: Scalar, C: Clone, X, const K: usize>(
+pub fn compose<T: Scalar, C: Clone, X, E, const K: usize>(
     stages: &Stages<T, C, K>,
     t: T,
     start: X,
-    step: impl Fn(&C, T, X) -> Result<X, Error>,
+    step: impl Fn(&C, T, X) -> Result<X, E>,
     scaled: impl Fn(X, T) -> X,
-) -> Result<X, Error> {
+) -> Result<X, E> {
     let (mut state, mut t) = (start, t);
     let mut number = 0;
     while let Some((constants, size)) = stages.at(number) {

@@ -1,10 +1,10 @@
 //! Equal sites, moved one after the other between kicks of all of them.
 
-use super::{At, Before, Pair, Scheme, Stepped, is_due, look};
-use crate::parts::{F, Mu, Q};
+use super::{At, AtOf, Before, Pair, Scheme, Stepped, is_due, look};
+use crate::parts::{F, Mu, Q, T, U};
 use crate::power::{Power, SiteScheme};
 use crate::space::plus;
-use crate::{Clock, Declared, Error, Space, Time};
+use crate::{Clebsch, Clock, Declared, Error, Space, Time};
 use core::array::from_fn;
 use core::marker::PhantomData;
 
@@ -72,6 +72,79 @@ kicks! {
     "No kick." NoKick: 0.0, 0.0, (), |_| (), |()| None, |(), room| room;
 }
 
+/// The state of N sites in storage of others, with room for the gradient of the potential.
+pub struct Stored<'a, S: Clebsch> {
+    /// q
+    pub q: &'a mut Q<S>,
+    /// N
+    pub mu: &'a mut Mu<S>,
+    /// The kick that the end of one step and the start of the next share, where they share one.
+    pub kick: &'a mut Mu<S>,
+    /// Room for ∂V/∂q.
+    pub gradient: &'a mut Q<S>,
+}
+
+/// An error at the site with this index.
+pub type AtSite = (usize, Error);
+
+/// Steps of N sites in storage of others: nothing as large as a state is on the stack.
+pub trait InStorage<S: Power<N>, const N: usize>: Scheme<S> {
+    /// Makes the kick that the first step from q takes. The momenta of `state` are room.
+    fn start(at: AtOf<'_, S, Self>, state: Stored<'_, S>);
+
+    /// One step in place, with the input u of the forces, `None` where it is 0. Gives the sum of all numbers of the new state too: if it is finite, all of them are.
+    fn step_in_place<'a>(
+        at: AtOf<'_, S, Self>,
+        u: Option<&U<S>>,
+        state: Stored<'a, S>,
+    ) -> Result<(Stored<'a, S>, T<S>), AtSite>;
+
+    /// One step from q, N and a kick to the place of another state. After an error that state is unspecified.
+    #[inline]
+    fn step_from(
+        at: AtOf<'_, S, Self>,
+        (q, mu, kick): (&Q<S>, &Mu<S>, &Mu<S>),
+        u: Option<&U<S>>,
+        state: Stored<'_, S>,
+    ) -> Result<T<S>, AtSite> {
+        state.q.copy_from_slice(q);
+        state.mu.copy_from_slice(mu);
+        state.kick.copy_from_slice(kick);
+        Self::step_in_place(at, u, state).map(|(_, sum)| sum)
+    }
+}
+
+impl<S: Power<N>, K: SiteKicks<S, N>, const N: usize> InStorage<S, N> for SitesInTurn<K, N> {
+    fn start(At { system, constants, t, .. }: At<'_, S>, Stored { q, mu, kick, gradient }: Stored<'_, S>) {
+        system.kick_into(t, q, constants.part(K::START), gradient, kick, mu);
+    }
+
+    #[inline]
+    fn step_in_place<'a>(
+        At { system, constants, t, .. }: At<'_, S>,
+        u: Option<&U<S>>,
+        state: Stored<'a, S>,
+    ) -> Result<(Stored<'a, S>, T<S>), AtSite> {
+        let kick = (K::START != 0.0).then_some(&*state.kick);
+        system.drift_in_place(constants, t, state.q, state.mu, kick, u)?;
+        let Stored { q, mu, kick, gradient } = state;
+        let sum = system.kick_into(t + constants.h, q, constants.part(K::END), gradient, kick, mu);
+        Ok((Stored { q, mu, kick, gradient }, sum))
+    }
+
+    #[inline]
+    fn step_from(
+        At { system, constants, t, .. }: At<'_, S>,
+        (q, mu, kick): (&Q<S>, &Mu<S>, &Mu<S>),
+        u: Option<&U<S>>,
+        next: Stored<'_, S>,
+    ) -> Result<T<S>, AtSite> {
+        let kick = (K::START != 0.0).then_some(kick);
+        system.drift_into(constants, t, (q, mu), kick, u, (next.q, next.mu))?;
+        Ok(system.kick_into(t + constants.h, next.q, constants.part(K::END), next.gradient, next.kick, next.mu))
+    }
+}
+
 impl<S: Power<N>, K: SiteKicks<S, N>, const N: usize> Scheme<S> for SitesInTurn<K, N> {
     type Left = K::Left;
 
@@ -82,8 +155,14 @@ impl<S: Power<N>, K: SiteKicks<S, N>, const N: usize> Scheme<S> for SitesInTurn<
         K::left(|| at.system.power_kick(at.t, q, at.constants.part(K::START)))
     }
 
+    // kicks are linear in the step size
+    #[inline(always)]
+    fn scaled(left: K::Left, ratio: S::Scalar) -> K::Left {
+        left.zip_map(&left, |kick, _| kick * ratio)
+    }
+
     #[inline]
-    fn step(at: At<'_, S>, state: Before<'_, S, Self>, u: &()) -> Stepped<S, Self> {
+    fn step(at: At<'_, S>, state: Before<'_, S, Self>, u: &U<S>) -> Stepped<S, Self> {
         Self::steps(at, at.constants.h, 1, state, u)
     }
 
@@ -91,10 +170,11 @@ impl<S: Power<N>, K: SiteKicks<S, N>, const N: usize> Scheme<S> for SitesInTurn<
     fn step_into(
         At { system, constants, t, .. }: At<'_, S>,
         (q, mu, left): Before<'_, S, Self>,
-        (): &(),
+        u: &U<S>,
         (next, moved, next_left): (&mut Q<S>, &mut Mu<S>, &mut K::Left),
     ) -> Result<(), Error> {
-        system.drift_into(constants, t, q, mu, K::kick(left), next, moved).map_err(|(_, error)| error)?;
+        let drifted = system.drift_into(constants, t, (q, mu), K::kick(left), Some(u), (next, moved));
+        drifted.map_err(|(_, error)| error)?;
         if K::END != 0.0 {
             let mut gradient = [Space::origin(); N];
             let mut room = [Space::origin(); N];
@@ -110,14 +190,15 @@ impl<S: Power<N>, K: SiteKicks<S, N>, const N: usize> Scheme<S> for SitesInTurn<
         _: S::Scalar,
         steps: usize,
         (q, mu, left): Before<'_, S, Self>,
-        (): &(),
+        u: &U<S>,
     ) -> Stepped<S, Self> {
         let (mut q, mut mu, mut left) = (*q, *mu, *left);
         let mut gradient = [Space::origin(); N];
         let mut room = [Space::origin(); N];
         let mut clock = Clock::at(t);
         for number in 0..steps {
-            system.drift_in_place(constants, clock.now(), &mut q, &mut mu, K::kick(&left))?;
+            let drifted = system.drift_in_place(constants, clock.now(), &mut q, &mut mu, K::kick(&left), Some(u));
+            drifted.map_err(|(_, error)| error)?;
             clock = clock.after_step(constants.h);
             if K::END != 0.0 {
                 let kick = K::place(&mut left, &mut room);

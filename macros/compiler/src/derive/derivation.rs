@@ -81,7 +81,7 @@ fn sites(formulas: &MechanicsFormulas<'_>, lowered: &Lowered) -> String {
     let equal = if power.is_uniform {
         "all with the same kinetic energy, whose constants are made once"
     } else {
-        "whose kinetic energies differ, so that the constants of each are made in each step"
+        "whose fields differ, so that the constants of each are made in each step"
     };
     let added = if lowered.is_gathered {
         "the gradient of a site is gathered from the terms that read it"

@@ -138,6 +138,12 @@ impl MechanicsFormulas<'_> {
         self.model.order.stages().filter(|_| self.splitting.is_none() && !self.is_exact)
     }
 
+    /// The same of a step of all sites of a power. Free sites whose motion is exact need none.
+    pub fn stages_of_sites(&self) -> Option<usize> {
+        let power = self.model.power.as_ref()?;
+        power.order.stages().filter(|_| !self.is_exact || !self.links.is_empty())
+    }
+
     /// The factors whose chart coordinates x/w are given by x and w, so that F − I = 2 (w x^ + (x^)²)/(w² + |x|²) holds the only division.
     pub fn weighted(&self) -> Vec<usize> {
         let rotates = |k: &usize| self.model.factors[*k].group == Group::SpecialOrthogonal(3);

@@ -9,6 +9,7 @@ use quote::quote;
 use super::block::{self, Target, time_type, types_of_system};
 use super::function::Body;
 use super::functions::SITES;
+use super::scheme::composed;
 use super::scope::nested_type;
 use super::{Emitter, flag};
 use crate::model::{LeafSpace, Order, Parameter, Power};
@@ -58,6 +59,7 @@ impl<'g> Emitter<'_, 'g> {
             quote!(#name: self.#field #index,)
         });
         let marker = self.is_generic().then(|| quote!(scalar: ::core::marker::PhantomData,));
+        let of_site = if power.has_own_inputs { quote!(&u[i]) } else { quote!(u) };
         let terms = Terms::new(self, power);
         let is_bounded = self.model.configurations.iter().all(|leaf| match leaf.space {
             LeafSpace::Unit => true,
@@ -98,6 +100,11 @@ impl<'g> Emitter<'_, 'g> {
                     #site { #(#fields)* #marker }
                 }
                 #[inline]
+                fn input_of_site(u: &Self::Input, i: ::core::primitive::usize) -> &<Self::Site as runtime::Clebsch>::Input {
+                    let _ = i;
+                    #of_site
+                }
+                #[inline]
                 fn constants_of_sites(constants: &<Self as runtime::Clebsch>::Constants) -> &<Self as runtime::Clebsch>::Constants {
                     constants
                 }
@@ -109,21 +116,24 @@ impl<'g> Emitter<'_, 'g> {
 
     /// The implementation of the trait `Clebsch` for all sites together.
     fn whole_power(&self, power: &Power<'g>, target: &Target) -> TokenStream {
-        let (name, length, order) = (&target.name, &self.length, self.model.order.number());
+        let (name, length, order) = (&target.name, &self.length, power.order.number());
         let places = [quote!([Q; #length]), quote!([F; #length]), quote!([Mu; #length])];
-        let types = types_of_system(&places, &quote!(()), &time_type(self.formulas.is_timed()));
+        let input = &self.input;
+        let input = if power.has_own_inputs { quote!([#input; #length]) } else { input.clone() };
+        let types = types_of_system(&places, &input, &time_type(self.formulas.is_timed()));
         let (derivation, checks) = (self.program.derivation(), self.checks_of_terms(power));
         let (scheme, start, end) = match (power.terms.is_empty(), self.model.order) {
             (true, _) => (quote!(FreeSites), quote!(0.0), quote!(0.0)),
             (false, Order::Second) => (quote!(SitesOfSecondOrder), quote!(-0.5), quote!(-0.5)),
             (false, _) => (quote!(SitesOfFirstOrder), quote!(0.0), quote!(-1.0)),
         };
+        let scheme = composed(self.formulas.stages_of_sites(), quote!(runtime::#scheme<#length>));
         target.derived(
             Some(quote!(runtime::Clebsch)),
             quote! {
                 #types
                 type Constants = runtime::SiteConstants<Self, #length>;
-                type Scheme = runtime::#scheme<#length>;
+                type Scheme = #scheme;
 
                 const NAME: &'static ::core::primitive::str = #name;
                 const ORDER: ::core::primitive::u32 = #order;

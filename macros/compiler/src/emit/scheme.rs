@@ -13,16 +13,7 @@ use crate::derive::Id;
 impl Emitter<'_, '_> {
     /// The type of the scheme.
     pub(super) fn scheme(&self) -> TokenStream {
-        let single = self.scheme_of_single_steps();
-        let Some(stages) = self.formulas.stages() else { return single };
-        let order = match stages {
-            5 => quote!(OfOrderFour),
-            9 => quote!(OfOrderSix),
-            _ => quote!(OfOrderEight),
-        };
-        // the sizes of a composed step are the same forwards and backwards
-        let distinct = size(stages.div_ceil(2));
-        quote!(runtime::Composed<#single, runtime::#order, #distinct>)
+        composed(self.formulas.stages(), self.scheme_of_single_steps())
     }
 
     fn scheme_of_single_steps(&self) -> TokenStream {
@@ -136,4 +127,17 @@ impl Emitter<'_, '_> {
         let functions = self.written(SPLIT_KICKS, &self.scope_of_step(), &no_words);
         self.implementation("SplitKicks", &[], functions)
     }
+}
+
+/// The scheme of a step of so many single steps; where it is `None`, that of single steps.
+pub(super) fn composed(stages: Option<usize>, single: TokenStream) -> TokenStream {
+    let Some(stages) = stages else { return single };
+    let order = match stages {
+        5 => quote!(OfOrderFour),
+        9 => quote!(OfOrderSix),
+        _ => quote!(OfOrderEight),
+    };
+    // the sizes of a composed step are the same forwards and backwards
+    let distinct = size(stages.div_ceil(2));
+    quote!(runtime::Composed<#single, runtime::#order, #distinct>)
 }

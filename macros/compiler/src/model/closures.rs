@@ -34,22 +34,10 @@ impl<'g> Closures<'_, '_, 'g> {
     pub fn action(&mut self) -> Option<Vec<Expr<'g>>> {
         let Closure { key, body, .. } = &self.declaration.action;
         let value = self.context.value(&self.declaration.action, self.arguments.action_scope())?;
-        let value = self.of_site(body, value)?;
+        let value = sites::at_each(self.context.power.as_ref(), (value, body), "the action gives");
+        let value = self.context.diagnostics.take(value)?;
         let is = new_value_of(self.arguments.names.configuration);
         self.typed.space.as_ref()?.leaves_of((key, body), &value, &is, self.context.diagnostics)
-    }
-
-    /// The value of the action of a power for each site; any other value as it is.
-    fn of_site(&self, body: &Syntax, value: Value<'g>) -> Option<Value<'g>> {
-        let Some(power) = &self.context.power else { return Some(value) };
-        match value {
-            Value::Sequence(range, each) if range == (self.context.graph.integer(0), power.count) => Some(*each),
-            other => {
-                let is = other.describe();
-                refuse!(self.context.diagnostics, tail(body), "the action gives {is}, but it has to give a value for each site";
-                    help "write `(0..{}).map(|i| …)`", power.length)
-            }
-        }
     }
 
     /// The cost, or the Lagrangian with its velocity.
@@ -232,6 +220,7 @@ pub(super) fn scalar<'g>(
             Err(reason) => {
                 refuse!(context.diagnostics, tail, "the {key} of a power is a sum over its sites, and {reason}";
                 help "write `(0..{count}).map(|i| …).sum()` with a value of site `i` alone";
+                help "{}", sites::unrolled(&key, count);
                 note "the equation of a step is solved site by site; terms that tie sites to each other belong to the potential")
             }
         }

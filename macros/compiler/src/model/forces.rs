@@ -2,13 +2,15 @@
 
 use clebsch_symbolic::{Elements, Expr, Graph, IntoList, Role, Shape, indexed};
 
+use super::arguments::sites_of;
 use super::closures::{optional, written};
 use super::features::{self, Feature, Found};
+use super::sites;
 use super::slots::{FORCE, Slot};
 use super::space::Space;
 use super::spaces::{SpaceType, read_spaces};
 use super::typed::{ActedSystem, Velocity};
-use super::value::Value;
+use super::value::{Each, Value};
 use super::{Factor, Force, LeafSpace};
 use crate::diagnostic::{Diagnostics, refuse};
 use crate::parse::{Argument, Closure, Declaration, shortened, tail};
@@ -63,23 +65,50 @@ impl<'g> ActedSystem<'_, '_, 'g> {
         let unnamed = || indexed(self.factors.len(), |k| velocity.symbol(k, "velocity"));
         let velocities = velocities.unwrap_or_else(unnamed);
         let input = optional(matched.argument(Slot::Input), |argument| self.read_input(argument))?;
-        let introduced = [(Slot::Velocity, value), (Slot::Input, input.as_ref().map(Space::value))];
+        let is_power = self.context.power.is_some();
+        let has_own_inputs = self.context.power.as_ref().is_some_and(|power| power.has_own_inputs);
+        let value = value.map(|own| own.of_each(Each::Motion, is_power));
+        let of_input = input.as_ref().map(|input| input.value().of_each(Each::Input, has_own_inputs));
+        let introduced = [(Slot::Velocity, value), (Slot::Input, of_input)];
         let mut scope = self.arguments.scope(&matched, &introduced);
         scope.set_velocities(&velocities, self.factors);
         let value = self.context.value(closure, scope)?;
+        let value = self.of_site(closure, value)?;
         let value = if closure.key == "force" {
             self.components(closure, &value)?
         } else {
             let is = format!("a covector at `{}`, which has its shape", self.arguments.names.configuration.spell());
             self.space.leaves_of((&closure.key, &closure.body), &value, &is, diagnostics)?
         };
+        value.iter().try_for_each(|part| self.check_every_site(closure, *part))?;
         Some(ReadForce { value, velocities, input })
     }
 
+    /// The force on one site.
+    fn of_site(&self, closure: &Closure, value: Value<'g>) -> Option<Value<'g>> {
+        let value = sites::at_each(self.context.power.as_ref(), (value, &closure.body), "the force gives");
+        self.context.diagnostics.take(value)
+    }
+
+    /// The force on a site of a power is one formula for all sites.
+    fn check_every_site(&self, closure: &Closure, part: Expr<'g>) -> Option<()> {
+        let Some(power) = &self.context.power else { return Some(()) };
+        let Err(reason) = sites::of_every_site(part) else { return Some(()) };
+        refuse!(self.context.diagnostics, tail(&closure.body), "the force on a site is the same formula for every site, and {reason}";
+            help "read a field with one entry for each site, as in `self.strength[i]`";
+            help "{}", sites::unrolled("force", &power.length))
+    }
+
     /// The leaves of a typed argument: spaces of vectors.
-    pub fn read_input(&self, argument: &Argument) -> Option<Space<'g>> {
+    pub fn read_input(&mut self, argument: &Argument) -> Option<Space<'g>> {
         let diagnostics = self.context.diagnostics;
-        let product = read_spaces(argument.ty.as_ref()?, self.names)?;
+        let ty = argument.ty.as_ref()?;
+        let own = self.context.power.as_mut().and_then(|power| {
+            let (_, own) = sites_of(ty, self.names.generics).filter(|(length, _)| **length == power.length)?;
+            power.has_own_inputs = true;
+            Some(own)
+        });
+        let product = read_spaces(own.unwrap_or(ty), self.names)?;
         let is_other = |(leaf, _): &&(SpaceType, _)| leaf.space != LeafSpace::Vectors || leaf.is_quaternion;
         if let Some((_, ty)) = product.leaves.iter().find(is_other) {
             refuse!(diagnostics, *ty, "an input is made of vectors and matrices";

@@ -146,7 +146,14 @@ pub fn model<'g>(graph: &'g Graph, declaration: &Declaration) -> Result<Model<'g
     if dials.emit.momentum {
         system = momentum::alone(system, kinetic.energy(), force.as_ref())?;
     }
-    let power = power.map(|power| sites::power_of(&mut system, kinetic.energy(), power, formulas.terms));
+    let declared_order = dials.order.as_ref().map_or(Order::Second, |order| order.value);
+    // a composed step is one of all sites, made of steps of second order
+    let order = if power.is_some() && declared_order.stages().is_some() { Order::Second } else { declared_order };
+    let power = power.map(|power| {
+        let forces = force.iter().flat_map(|force| force.of_group.iter().chain(&force.on_configuration).flatten());
+        let read = [kinetic.energy()].into_iter().chain(forces.copied()).into_list();
+        sites::power_of(&mut system, &read, (power, declared_order), formulas.terms)
+    });
     let isotropy = dials.isotropy.as_ref().map_or(Isotropy::Fixed, |isotropy| isotropy.value);
     Ok(Model::Mechanics(Box::new(Mechanics {
         system: Rc::new(system),
@@ -158,7 +165,7 @@ pub fn model<'g>(graph: &'g Graph, declaration: &Declaration) -> Result<Model<'g
         symmetries: formulas.symmetries,
         isotropy: if dials.emit.momentum { Isotropy::Free } else { isotropy },
         signature: dials.signature.as_ref().map_or(Signature::Definite, |signature| signature.value),
-        order: dials.order.as_ref().map_or(Order::Second, |order| order.value),
+        order,
     })))
 }
 

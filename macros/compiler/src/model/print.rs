@@ -52,6 +52,9 @@ impl fmt::Display for Mechanics<'_> {
             force.on_configuration.iter().flatten().try_for_each(|part| writeln!(f, "  force on   {part}"))?;
         }
         self.system.print_inputs(f)?;
+        if self.power.as_ref().is_some_and(|power| power.has_own_inputs) {
+            writeln!(f, "  inputs     one for each site")?;
+        }
         for OfferedSymmetry { group, name, side, configurations, elements, .. } in &self.symmetries {
             let images = joined(configurations.iter().chain(elements));
             writeln!(f, "  symmetry {name}: {}, {side}: {images}", group.name(self.graph))?;
@@ -63,7 +66,7 @@ impl fmt::Display for Mechanics<'_> {
             writeln!(f, "  signature  {}", self.signature)?;
         }
         self.system.print_dials(f)?;
-        writeln!(f, "  order      {}", self.order)
+        writeln!(f, "  order      {}", self.declared_order())
     }
 }
 

@@ -2,14 +2,18 @@
 //! that of one site.
 
 use clebsch_symbolic::{Elements, Expr, Graph, IntoList, Property, Role, Shape};
+use std::fmt::Display;
+
 use proc_macro2::Ident;
+use syn::Expr as Syntax;
 
 use super::features::{self, Feature, Found};
 use super::power::{Range, SiteIndex, Term};
 use super::space::Space;
+use super::value::Value;
 use super::{Configuration, Item, Leaf, Order, Parameter, Part, Power, ScalarType, System};
-use crate::diagnostic::Diagnostics;
-use crate::parse::{Declaration, Potential};
+use crate::diagnostic::{Diagnostic, Diagnostics, error};
+use crate::parse::{Declaration, Potential, tail};
 
 /// The data of a power that closures need, and the data that they find.
 pub(super) struct Sites<'g> {
@@ -27,13 +31,16 @@ pub(super) struct Sites<'g> {
     pub entries: Vec<(usize, usize, Vec<Expr<'g>>)>,
     /// The number of the next leaf of a field.
     pub next_leaf: usize,
+    /// Whether each site has an input of its own.
+    pub has_own_inputs: bool,
 }
 
 impl<'g> Sites<'g> {
     pub fn new(graph: &'g Graph, length: &Ident, space: Space<'g>, pattern: String, next_leaf: usize) -> Sites<'g> {
         let count = graph.symbol(&length.to_string(), Shape::scalar(), Role::Sites, Property::General);
         let (ranges, places, entries) = (Vec::new(), Vec::new(), Vec::new());
-        Sites { length: length.clone(), count, space, pattern, ranges, places, entries, next_leaf }
+        let length = length.clone();
+        Sites { length, count, space, pattern, ranges, places, entries, next_leaf, has_own_inputs: false }
     }
 
     pub fn place(&mut self, place: SiteIndex<'g>) -> usize {
@@ -78,6 +85,43 @@ fn like<'g>(symbol: Expr<'g>, name: &str, role: Role) -> Expr<'g> {
     symbol.graph().symbol(name, symbol.shape(), role, property)
 }
 
+/// The value of a closure at each site, as that of one site; any other value as it is, where there are no sites.
+///
+/// # Errors
+/// A value that is not one for each site.
+pub(super) fn at_each<'g>(
+    sites: Option<&Sites<'g>>,
+    (value, body): (Value<'g>, &Syntax),
+    gives: &str,
+) -> Result<Value<'g>, Diagnostic> {
+    let Some(Sites { length, count, .. }) = sites else { return Ok(value) };
+    match value {
+        Value::Sequence(range, each) if range == (count.graph().integer(0), *count) => Ok(*each),
+        other => Err(error!(tail(body), "{gives} {}, but it has to give a value for each site", other.describe();
+            help "write `(0..{length}).map(|i| …)`")),
+    }
+}
+
+/// Whether a value of a site is the same formula at every site.
+///
+/// # Errors
+/// The symbol of an index, of N, or of another site.
+pub(super) fn of_every_site(value: Expr<'_>) -> Result<(), String> {
+    let of_sites = |symbol: &Expr<'_>| matches!(symbol.role(), Some(Role::Site(_) | Role::Sites | Role::At(..)));
+    value
+        .symbols()
+        .iter()
+        .find(|symbol| of_sites(symbol))
+        .map_or(Ok(()), |symbol| Err(format!("it depends on `{symbol}`")))
+}
+
+/// The cure of a formula that is not that of one site, with the word for its key.
+pub(super) fn unrolled(key: &str, length: impl Display) -> String {
+    format!(
+        "write a number in place of `{length}`: then all sites are unrolled, and the {key} may be any formula of them"
+    )
+}
+
 /// The terms of a kinetic energy, which may be of one site each alone.
 ///
 /// # Errors
@@ -92,11 +136,7 @@ pub(super) fn of_one_site<'g>(terms: &[Term<'g>], sites: Expr<'g>, graph: &'g Gr
             [(from, to)] => return Err(format!("its sum runs over {from}..{to}")),
             _ => return Err("it has sums inside each other".to_string()),
         }
-        let of_sites = |role: Role| matches!(role, Role::Site(_) | Role::Sites | Role::At(..));
-        let symbols = term.value.symbols();
-        if let Some(symbol) = symbols.iter().find(|symbol| symbol.as_symbol().is_some_and(|data| of_sites(data.role))) {
-            return Err(format!("it depends on `{symbol}`"));
-        }
+        of_every_site(term.value)?;
         sum = sum + term.value;
     }
     Ok(sum)
@@ -114,7 +154,6 @@ pub(super) fn check(declaration: &Declaration, diagnostics: &Diagnostics) {
         Feature::OpaquePotential => {
             declaration.potential.as_ref().and_then(Potential::opaque).map(|opaque| Found::at(opaque.place))
         }
-        Feature::Composition => order(|order| order.stages().is_some()),
         Feature::Sixteenth => order(|order| order == Order::Sixteenth),
         Feature::Method => declaration.methods.first().map(|method| Found::at(method.name.span())),
         Feature::Tangent => emitted(dials.emit.tangent),
@@ -129,16 +168,15 @@ pub(super) fn check(declaration: &Declaration, diagnostics: &Diagnostics) {
     diagnostics.extend(features::refusals_of((Feature::Power, Found::somewhere()), found));
 }
 
-/// The terms that tie sites to each other; the system becomes that of one site.
+/// The terms that tie sites to each other; the system becomes that of one site, whose kinetic energy and forces are `of_site`.
 pub(super) fn power_of<'g>(
     system: &mut System<'g>,
-    energy: Expr<'g>,
-    sites: Sites<'g>,
+    of_site: &[Expr<'g>],
+    (sites, order): (Sites<'g>, Order),
     terms: Vec<Term<'g>>,
 ) -> Power<'g> {
     let reads = |expr: Expr<'g>, field: &Parameter<'g>| field.leaves.iter().any(|leaf| expr.depends_on(leaf.symbol));
-    let by_site =
-        |field: &&Parameter<'g>| reads(energy, field) || system.action.iter().any(|image| reads(*image, field));
+    let by_site = |field: &&Parameter<'g>| of_site.iter().chain(&system.action).any(|image| reads(*image, field));
     let by_terms = |field: &&Parameter<'g>| !field.per_site && terms.iter().any(|term| reads(term.value, field));
     let mut parameters: Vec<Parameter<'g>> = system.parameters.iter().filter(by_terms).cloned().into_list();
     for (field, place, leaves) in &sites.entries {
@@ -151,14 +189,14 @@ pub(super) fn power_of<'g>(
         let leaves = field.leaves.iter().zip(leaves).map(leaf).into_list();
         parameters.push(Parameter { leaves, ..field.clone() });
     }
-    let mut of_site: Vec<Parameter<'g>> = system.parameters.iter().filter(by_site).cloned().into_list();
-    let copied = of_site.each(|parameter| parameter.field.clone());
-    for parameter in &mut of_site {
+    let mut copies: Vec<Parameter<'g>> = system.parameters.iter().filter(by_site).cloned().into_list();
+    let copied = copies.each(|parameter| parameter.field.clone());
+    for parameter in &mut copies {
         if let syn::Member::Unnamed(index) = &parameter.field {
             parameter.field = syn::Member::Named(quote::format_ident!("field_{}", index.index));
         }
     }
-    let is_uniform = of_site.iter().all(|parameter| !parameter.per_site);
+    let is_uniform = copies.iter().all(|parameter| !parameter.per_site);
     let site = Item {
         ident: quote::format_ident!("{}Site", system.item.ident),
         // the scalar alone
@@ -170,7 +208,7 @@ pub(super) fn power_of<'g>(
         krate: system.item.krate.clone(),
     };
     let item = std::mem::replace(&mut system.item, site);
-    let Sites { length, count, places, .. } = sites;
-    system.parameters = of_site;
-    Power { item, length, sites: count, places, terms, parameters, copied, is_uniform }
+    let Sites { length, count, places, has_own_inputs, .. } = sites;
+    system.parameters = copies;
+    Power { item, length, sites: count, places, terms, parameters, copied, is_uniform, has_own_inputs, order }
 }

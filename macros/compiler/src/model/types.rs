@@ -123,6 +123,11 @@ impl Mechanics<'_> {
         self.compensated().is_some()
     }
 
+    /// The order as declared: of a power that of all sites together.
+    pub fn declared_order(&self) -> Order {
+        self.power.as_ref().map_or(self.order, |power| power.order)
+    }
+
     /// Whether there are covectors to step: not under forces, which are in 𝔤*, and not without a configuration.
     pub fn has_covectors(&self) -> bool {
         self.force.is_none() && !self.configurations.is_empty()
@@ -407,6 +412,10 @@ pub struct Power<'g> {
     pub parameters: Vec<Parameter<'g>>,
     /// The user's fields that the site has copies of, in the order of the model's parameters.
     pub copied: Vec<syn::Member>,
-    /// Whether all sites have the same kinetic energy.
+    /// Whether no field that the site reads differs from site to site.
     pub is_uniform: bool,
+    /// Whether each site has an input of its own; else all share one.
+    pub has_own_inputs: bool,
+    /// The order of a step of all sites; a composed step is composed of those, and the model of the site has order 2.
+    pub order: Order,
 }

@@ -109,6 +109,8 @@ impl<'g> Value<'g> {
 pub(super) enum Each {
     /// The group element or the velocity.
     Motion,
+    /// The input of forces.
+    Input,
     /// The configuration.
     Configuration,
     /// A field, by its number among those that are read.

@@ -3,7 +3,9 @@
 
 #![allow(missing_docs)]
 
+mod chains;
 mod checks;
 mod declared;
+mod forced;
 mod inside;
 mod published;

@@ -75,7 +75,8 @@ proptest! {
             let (next, moved, _) = site.step(&own, t, &q[i], &mu[i], &(), &())?;
             prop_assert_eq!((next, moved), (drifted.0[i], drifted.1[i]));
             prop_assert_eq!(ring.at_site(&constants, i, |site, own| site.inverse_legendre(own, t, &q[i], &mu[i]))?, f[i]);
-            prop_assert_eq!(ring.moved(&constants, t, i, &q[i], &mu[i])?, (next, moved));
+            prop_assert_eq!(ring.moved(&constants, t, i, (&q[i], &mu[i]), &())?, (next, moved));
+            prop_assert_eq!(ring.kicked_and_moved(&constants, t, i, (&q[i], &mu[i], None), Some(&())), Ok((next, moved)));
             energy += site.kinetic_energy(&own, t, &q[i], &mu[i]);
             defect += site.isotropy_defect(&q[i], &p[i]).powi(2);
             largest = largest.max(site.orbit_defect(&off[i]));
@@ -137,9 +138,9 @@ proptest! {
         let (next, momenta, kick) = SitesOfSecondOrder::<N>::step(at, (&q, &mu, &start), &())?;
         let kicked: Spins = std::array::from_fn(|i| mu[i] + start[i]);
         let (mut image, mut moved) = ([Vector3::x(); N], [Vector3::x(); N]);
-        prop_assert!(ring.drift_into(&constants, t, &q, &mu, Some(&start), &mut image, &mut moved).is_ok());
+        prop_assert!(ring.drift_into(&constants, t, (&q, &mu), Some(&start), None, (&mut image, &mut moved)).is_ok());
         let (mut in_place, mut carried) = (q, mu);
-        ring.drift_in_place(&constants, t, &mut in_place, &mut carried, Some(&start))?;
+        prop_assert!(ring.drift_in_place(&constants, t, &mut in_place, &mut carried, Some(&start), None).is_ok());
         prop_assert_eq!((in_place, carried), (image, moved));
         prop_assert_eq!((image, moved, ()), FreeSites::<N>::step(at, (&q, &kicked, &()), &())?);
         prop_assert_eq!(next, image);

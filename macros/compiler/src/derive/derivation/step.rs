@@ -12,11 +12,12 @@ const COMPENSATED: &str = "Sums are compensated: the rounding errors of q and N 
 pub(super) fn scheme(formulas: &MechanicsFormulas<'_>, lowered: &Lowered) -> String {
     let model = &formulas.model;
     let mut text = format!("{}\n{}", order(formulas), stagger(formulas));
-    if let Some(stages) = formulas.stages() {
+    if let Some(stages) = formulas.stages().or_else(|| formulas.stages_of_sites()) {
+        let is_free = formulas.potential_energy.is_zero() && formulas.links.is_empty();
         text += &format!(
             "{stages} such steps of sizes γ_i h, the same forwards and backwards and some of them negative, make a step of order {}{}.\n",
-            model.order,
-            if formulas.potential_energy.is_zero() { "" } else { "; kicks between them are merged" }
+            model.declared_order(),
+            if is_free { "" } else { "; kicks between them are merged" }
         );
     }
     if let Some(collocation) = &formulas.collocation {

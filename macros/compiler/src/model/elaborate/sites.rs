@@ -4,6 +4,7 @@ use clebsch_symbolic::{Expr, IntoElements, IntoList, Property, Role, Shape};
 use syn::{BinOp, Expr as Syntax, ExprBinary, ExprIndex, ExprMethodCall, ExprRange, RangeLimits};
 
 use super::super::power::{Linear, Range, SiteIndex, Term, index_name, is_inside};
+use super::super::sites::unrolled;
 use super::super::value::{Each, Value};
 use super::Elaborator;
 use super::operators::division_by_zero;
@@ -148,9 +149,12 @@ impl<'g> Elaborator<'_, '_, 'g> {
                 let leaves = power.entry(field, number, parameter).into_iter().map(Value::Matrix);
                 Some(Value::nested(&parameter.structure, &leaves.into_list()))
             }
-            _ => refuse!(self, index, "the {} of a site depends on that site alone", self.key;
-                help "write `(0..{name}).map(|i| …)` with the index `i` alone";
-                note "the equation of a step is solved site by site; terms that tie sites to each other belong to the potential"),
+            _ => {
+                let (key, text) = (self.key, spell(&Syntax::Index(index.clone())));
+                refuse!(self, index, "the {key} of a site depends on that site alone, and `{text}` is of another";
+                    help "{}", unrolled(key, &name);
+                    note "the equation of a step is solved site by site; in the potential, terms may tie sites to each other")
+            }
         }
     }
 }

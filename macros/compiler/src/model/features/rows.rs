@@ -15,7 +15,7 @@ const WITHOUT_MATRICES: &[Feature] =
 
 /// The refused features, the others, the message, the reason, and the replacement.
 #[rustfmt::skip]
-pub(super) const ROWS: [Row; 47] = [
+pub(super) const ROWS: [Row; 52] = [
     // inputs move the configuration
     row(&[Dynamics], &[Controls],
         "there are `controls` and `dynamics`, but one thing moves a configuration", "",
@@ -89,15 +89,35 @@ pub(super) const ROWS: [Row; 47] = [
         "{beside} steps the momentum alone, and this depends on `{name}`", "",
         "leave out the word `momentum`"),
     // powers
-    row(&[OpaquePotential, Force, ForceOn, Endpoint, Symmetry, Controls, Dynamics, Effort], &[Power],
-        "{refused} of a power is not supported yet",
-        LATER,
+    row(&[OpaquePotential], &[Power],
+        "a power has no opaque potential",
+        "its potential is a sum of terms that are differentiated once for all sites, and the two methods give the sum of all at once",
         ALL_SITES),
-    row(&[Composition, Sixteenth], &[Power], "`order = {name}` of a power is not supported yet", LATER, ALL_SITES),
-    row(&[Summation, Tangent, Boundary, Momentum, Method], &[Power],
-        "{refused} of a power is not supported yet",
-        LATER,
+    row(&[Symmetry], &[Power],
+        "a power has no offered symmetry",
+        "an offered motion moves all sites together, and formulas are those of one site",
+        "leave out `symmetry`: motions that move all sites alike are found without it"),
+    row(&[Controls, Dynamics, Effort, Endpoint], &[Power],
+        "a power has no {refused}",
+        "inputs are chosen by Newton's method on whole paths, whose equations tie all sites to each other",
         ALL_SITES),
+    row(&[Sixteenth], &[Power],
+        "`order = {name}` of a power is not supported yet",
+        "its stages are those of all sites at once: the equations of a stage tie sites to each other",
+        "write `order = 8`"),
+    row(&[Summation], &[Power],
+        "a power has no compensated sums yet",
+        "the storage of its sites has no room for their rounding errors",
+        "leave out `summation`, or write a number in place of the const generic"),
+    row(&[Tangent, Boundary], &[Power],
+        "a power has no {refused}",
+        "the derivative of a step is a matrix over all sites, and its size is no number that is known here",
+        ALL_SITES),
+    row(&[Momentum], &[Power],
+        "a power has no {refused}",
+        "sites without configurations do not act on each other",
+        "declare one site, and step an array of its states"),
+    row(&[Method], &[Power], "a power has no other methods yet", LATER, ALL_SITES),
     // groups
     row(&[Symmetry], &[LargeGroup],
         "a symmetry is offered, but `{name}` has more than 64 dimensions",
