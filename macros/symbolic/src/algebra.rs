@@ -4,7 +4,7 @@ use std::rc::Rc;
 
 use crate::memory::Map;
 use crate::node::{ExprNode, Operation, Term};
-use crate::{Elements, Expr, Graph, Group, IntoList, Rational, Shape, indexed, integer};
+use crate::{Elements, Expr, Graph, Group, IntoElements, IntoList, Rational, Shape, indexed, integer};
 
 /// The entries (row, column, value) of a matrix that are not zero.
 pub type Sparse = Vec<(usize, usize, Rational)>;
@@ -59,6 +59,30 @@ pub(crate) fn dense(shape: Shape, filled: impl IntoIterator<Item = (usize, usize
     let mut entries = vec![Rational::zero(); shape.len()];
     filled.into_iter().for_each(|(i, j, value)| entries[i * shape.columns + j] += value);
     entries
+}
+
+/// The inverse of the Gram matrix of a basis.
+pub(crate) enum InverseGram {
+    /// A multiple of the identity.
+    Uniform(Rational),
+    /// Any other, row by row.
+    Rows(Vec<Vec<Rational>>),
+}
+
+impl InverseGram {
+    fn of(basis: &Basis) -> InverseGram {
+        if let Some(square) = basis.uniform_gram() {
+            return InverseGram::Uniform(square.recip());
+        }
+        let gram = basis.gram();
+        let count = gram.len();
+        let unit = |i: usize, j: usize| if i == j { Rational::one() } else { Rational::zero() };
+        let both = |(i, row): (usize, Vec<Rational>)| row.into_iter().chain((0..count).map(|j| unit(i, j))).into_list();
+        let mut rows: Vec<Vec<Rational>> = gram.into_iter().enumerate().map(both).into_list();
+        // the elements of a basis are independent, so the first half becomes the identity
+        crate::reduce(&mut rows);
+        InverseGram::Rows(rows.into_each(|row| row.into_iter().skip(count).into_list()))
+    }
 }
 
 impl Basis {
@@ -215,6 +239,26 @@ impl Graph {
     pub fn raise<'g>(&'g self, algebra: Algebra, mu: Expr<'g>) -> Expr<'g> {
         let basis = self.basis(algebra);
         basis.uniform_gram().map_or_else(|| self.gram_matrix(&basis).inverse() * mu, |square| mu.times(&square.recip()))
+    }
+
+    /// The same of numbers.
+    pub(crate) fn raised_numbers(&self, algebra: Algebra, components: &[Rational]) -> Vec<Rational> {
+        match &*self.inverse_gram(algebra) {
+            InverseGram::Uniform(factor) => components.each(|component| component * factor),
+            InverseGram::Rows(rows) => rows.each(|row| {
+                let terms = components.iter().zip(row).filter(|(component, _)| !component.is_zero());
+                terms.map(|(component, factor)| component * factor).sum()
+            }),
+        }
+    }
+
+    fn inverse_gram(&self, algebra: Algebra) -> Rc<InverseGram> {
+        let known = self.inverse_grams.borrow().get(&algebra).cloned();
+        known.unwrap_or_else(|| {
+            let inverse = Rc::new(InverseGram::of(&self.basis(algebra)));
+            self.inverse_grams.borrow_mut().insert(algebra, inverse.clone());
+            inverse
+        })
     }
 
     fn gram_matrix(&self, basis: &Basis) -> Expr<'_> {

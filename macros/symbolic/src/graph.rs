@@ -3,7 +3,7 @@
 use std::cell::{OnceCell, RefCell};
 use std::rc::Rc;
 
-use crate::algebra::{Basis, dense};
+use crate::algebra::{Algebra, Basis, InverseGram, dense};
 use crate::group::{Block, Definition};
 use crate::identity::Evaluated;
 use crate::memory::{Images, Maps};
@@ -20,6 +20,10 @@ pub struct Graph {
     pub(crate) transposed: Images,
     pub(crate) expanded: Images,
     pub(crate) maps: Maps,
+    /// The matrices of ad of the bases of groups.
+    pub(crate) adjoints: RefCell<Table<Group, Algebra>>,
+    /// The inverses of the Gram matrices of bases.
+    pub(crate) inverse_grams: RefCell<Table<Algebra, Rc<InverseGram>>>,
     pub(crate) evaluated: Evaluated,
     another: OnceCell<Box<Graph>>,
 }

@@ -1,10 +1,10 @@
 //! The state of a power in storage of the user's choice.
 
 use super::Drive;
-use crate::stepper::check_on_orbit;
 use crate::fields::getters;
 use crate::power::{Point, Power, SiteMomentum};
 use crate::scheme::{At, InStorage, Scheme, Stored};
+use crate::stepper::check_on_orbit;
 use crate::{Clebsch, Clock, Conserves, Error, Scalar, Space, Stepper, Time};
 use core::fmt::{self, Display, Formatter};
 use core::iter::once;
@@ -240,7 +240,8 @@ where
         }
         if P::MAY_LEAVE_ORBIT {
             for (i, q) in next.iter().enumerate() {
-                check_on_orbit(q, system.site(i).orbit_defect(q)).map_err(|error| SiteError { site: Some(i), error })?;
+                check_on_orbit(q, system.site(i).orbit_defect(q))
+                    .map_err(|error| SiteError { site: Some(i), error })?;
             }
         }
         let SiteStorage { configuration, momentum, more_points: [next, _], more_momenta: [moved, kick, next_kick] } =

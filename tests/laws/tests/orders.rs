@@ -104,6 +104,38 @@ fn spherical_pendulums() {
     assert_order(&PaperPendulum { gravity: 9.81 }, (q, n * 2.0), error(exact, 2.0));
 }
 
+/// Covariance matrices with the affine-invariant metric, in which ξP is symmetric for a momentum of a motion.
+#[derive(Clebsch, Clone, Debug)]
+#[clebsch(
+    action     = |F: GL<3>, P: Matrix3| F * P * F.transpose(),
+    lagrangian = |P, xi| (xi.matrix() * P * xi.matrix().transpose() * P.inverse()).trace(),
+    scalar     = f64,
+)]
+struct Covariance;
+
+/// The geodesic with P(0) = P and P'(0) = V is P^½ exp(t P^-½ V P^-½) P^½.
+#[test]
+fn geodesics_of_covariances() {
+    let mut random = Random::new(43);
+    let start: Matrix3<f64> = random.inertia();
+    let slope: Matrix3<f64> = random.matrix();
+    let slope = slope + slope.transpose();
+    let of = |matrix: Matrix3<f64>, function: fn(f64) -> f64| {
+        let eigen = matrix.symmetric_eigen();
+        eigen.eigenvectors * Matrix3::from_diagonal(&eigen.eigenvalues.map(function)) * eigen.eigenvectors.transpose()
+    };
+    let (root, inverse) = (of(start, f64::sqrt), of(start, |x| 1.0 / x.sqrt()));
+    let end = root * of(inverse * slope * inverse, f64::exp) * root;
+    // P' = ξP + Pξᵀ with a constant ξ, and μ = 2 P⁻¹ξP entry by entry
+    let xi = slope * inverse * inverse / 2.0;
+    let momentum = |p: &Matrix3<f64>| {
+        let matrix = of(*p, |x| 1.0 / x) * xi * p * 2.0;
+        SVector::<f64, 9>::from_column_slice(matrix.transpose().as_slice())
+    };
+    let error = |p: &Matrix3<f64>, mu: &SVector<f64, 9>| distance(p, &end).max(distance(mu, &momentum(&end)));
+    assert_order(&Covariance, (start, momentum(&start)), error);
+}
+
 /// `Neumann` by the papers' step.
 #[derive(Clebsch, Clone, Debug)]
 #[clebsch(

@@ -183,9 +183,8 @@ impl<S: Scene> Trial for Of<S> {
                     _ => stepper.cotangent_state(S::configuration(), q)?,
                 };
                 let next = stepper.step_symmetric(&start)?;
-                return Ok(
-                    next.covector().all_finite() && (entry != "step_symmetric" || self.is_on_space(next.configuration()))
-                );
+                return Ok(next.covector().all_finite()
+                    && (entry != "step_symmetric" || self.is_on_space(next.configuration())));
             }
             "staggered_state" => return Ok(self.is_sound(&stepper.staggered_state(q, mu)?)),
             "state" => {

@@ -217,7 +217,7 @@ impl<'g> Emitter<'_, 'g> {
     fn isotropy(&self, kernel: &Kernel, [of_projection, of_motions]: [&str; 2]) -> TokenStream {
         let scope = self.scope_of_system();
         let [of_projection, of_motions] = both([of_projection, of_motions], |name| format_ident!("{name}"));
-        if self.keeps_matrices {
+        if self.keeps_matrices && self.formulas.projection.is_some() {
             let projection = scope.body(kernel);
             return quote!(runtime::#of_projection(mu, |mu| { #projection }));
         }

@@ -6,7 +6,7 @@ use super::{too_large, written_out_too_large};
 use crate::derive::{MechanicsFormulas, Solution};
 use crate::diagnostic::Diagnostics;
 use crate::model::features::{self, Feature, Found};
-use crate::model::{CodeForm, Isotropy, Steered, System};
+use crate::model::{CodeForm, Steered, System};
 
 /// The most multiplications of a linearisation that is unrolled, by estimate.
 ///
@@ -41,6 +41,8 @@ pub struct Form {
     pub is_body_or_point: bool,
     /// The feature of the system that has no matrix code.
     pub missing: Option<&'static str>,
+    /// Whether it is matrix code because unrolled code is too long.
+    pub has_fallen_back: bool,
 }
 
 impl Form {
@@ -48,10 +50,20 @@ impl Form {
     pub fn keeps_matrices(&self) -> bool {
         self.code == CodeForm::Matrices
     }
+
+    /// Whether matrix code may take the place of unrolled code.
+    pub(super) fn may_fall_back(&self) -> bool {
+        self.code == CodeForm::Unrolled && !self.is_asked && self.missing.is_none()
+    }
+
+    /// Matrix code in place of unrolled code that is too long.
+    pub(super) fn in_matrices(&self) -> Form {
+        Form { code: CodeForm::Matrices, has_fallen_back: true, ..self.clone() }
+    }
 }
 
 /// The form of a system. A declaration may ask for one; otherwise it is matrix code if unrolled code would exceed the
-/// budget.
+/// budget by estimate.
 ///
 /// # Errors
 /// A system too large for the only form that it has, or a form that is asked for and not there.
@@ -83,7 +95,7 @@ pub(super) fn choose(formulas: &MechanicsFormulas<'_>) -> Result<Form, Diagnosti
         return Err(too_large(&formulas.model, size).into());
     }
     let missing = missing.map(Feature::words);
-    Ok(Form { code, estimate, is_asked: asked.is_some(), is_body_or_point, missing })
+    Ok(Form { code, estimate, is_asked: asked.is_some(), is_body_or_point, missing, has_fallen_back: false })
 }
 
 /// Steps of inputs are unrolled.
@@ -128,7 +140,6 @@ fn largest_system(formulas: &MechanicsFormulas<'_>) -> usize {
 pub(super) fn without_matrices(formulas: &MechanicsFormulas<'_>) -> Option<Feature> {
     let model = &formulas.model;
     let is_quaternion = has_quaternions(model);
-    let is_held = !formulas.is_free && model.isotropy == Isotropy::Fixed;
     let has = |feature: &Feature| match feature {
         Feature::Inputs => model.control.is_some(),
         Feature::Power => model.power.is_some(),
@@ -136,7 +147,6 @@ pub(super) fn without_matrices(formulas: &MechanicsFormulas<'_>) -> Option<Featu
         Feature::ExactDrifts => formulas.splitting.is_some() || formulas.turns_whole(),
         Feature::FreeRotation => !formulas.weighted().is_empty(),
         Feature::Collocation => formulas.collocation.is_some(),
-        Feature::HeldConfiguration => is_held && formulas.projection.is_none(),
         Feature::GeneralLagrangian => formulas.energy.general.is_some(),
         _ => false,
     };

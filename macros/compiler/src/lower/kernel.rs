@@ -37,9 +37,11 @@ pub fn kernel(scalars: &mut Scalars, outputs: &[Grid], hoisting: Hoisting<'_>) -
         let entry = builder.convert(*entry);
         builder.outputs.push(entry);
     }
-    builder.share_pairs();
-    if !builder.scalars.keeps_sums {
-        builder.shorten();
+    if !builder.is_beyond_limits() {
+        builder.share_pairs();
+        if !builder.scalars.keeps_sums {
+            builder.shorten();
+        }
     }
     let (locals, entries) = builder.code();
     let mut entries = entries.into_iter();

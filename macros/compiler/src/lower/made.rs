@@ -103,6 +103,12 @@ pub(super) fn plain(scalars: &mut Scalars, expressions: &[Expr<'_>]) -> Kernel {
     separate(scalars, expressions, Hoisting::Nothing)
 }
 
+/// One matrix, unrolled in matrix code too.
+pub(super) fn entry_by_entry(scalars: &mut Scalars, matrix: Expr<'_>) -> Kernel {
+    let output = (*scalars.grid(matrix)).clone();
+    kernel(scalars, &[output], Hoisting::Nothing)
+}
+
 /// Several expressions, one output each.
 pub(super) fn separate(scalars: &mut Scalars, expressions: &[Expr<'_>], hoisting: Hoisting<'_>) -> Kernel {
     let forms: Vec<MatrixForm<'_>> = expressions.each(|&expr| MatrixForm::Whole(expr));

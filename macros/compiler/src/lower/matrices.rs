@@ -9,8 +9,8 @@ mod hoisting;
 mod words;
 
 use clebsch_symbolic::{
-    Algebra, Elements, Expr, Fraction, Function, Graph, Group, IntoElements, IntoList, Operation, Rational, Role,
-    Shape, Symbol, Table, View, WordTerm, indexed, integer, work,
+    Algebra, Elements, Expr, Fraction, Function, Graph, Group, Interner, IntoElements, IntoList, Operation, Rational,
+    Role, Shape, Symbol, Table, View, WordTerm, indexed, integer, work,
 };
 
 use super::grid::by_components;
@@ -66,7 +66,8 @@ fn column(entries: Vec<Code>) -> (Shape, Vec<Code>) {
 /// The state of lowering one kernel.
 #[derive(Default)]
 struct Matrices {
-    locals: Vec<Code>,
+    /// Shared terms, each of them once.
+    locals: Interner<Code>,
     known: Table<usize, Code>,
     /// Whether matrices that are made of blocks are written entry by entry.
     joins_blocks: bool,
@@ -75,7 +76,7 @@ struct Matrices {
 impl Matrices {
     fn kernel(mut self, outputs: impl FnOnce(&mut Matrices) -> Vec<(Shape, Vec<Code>)>) -> Kernel {
         let outputs = outputs(&mut self);
-        signs::moved(Kernel { locals: self.locals, outputs }, true)
+        signs::moved(Kernel { locals: self.locals.into_values(), outputs }, true)
     }
 
     fn each(&mut self, expressions: &[Expr<'_>]) -> Vec<(Shape, Vec<Code>)> {
@@ -95,7 +96,7 @@ impl Matrices {
 
     /// The code as a shared term, unless it is simply read; the same code is one term.
     fn shared(&mut self, code: Code) -> Code {
-        work::spend(2 + self.locals.len() / 16);
+        work::spend(3);
         let is_read = match &code {
             Code::Read(_) | Code::Number(_) | Code::Pi | Code::Local(_) => true,
             Code::Whole(whole) => matches!(whole.operation, MatrixOperation::Argument(_)),
@@ -104,11 +105,7 @@ impl Matrices {
         if is_read {
             return code;
         }
-        let index = self.locals.iter().position(|known| *known == code).unwrap_or_else(|| {
-            self.locals.push(code);
-            self.locals.len() - 1
-        });
-        Code::Local(index)
+        Code::Local(self.locals.intern(code).0)
     }
 
     fn operation(&mut self, operation: MatrixOperation, operands: Vec<Code>, shape: Shape) -> Code {

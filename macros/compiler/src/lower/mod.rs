@@ -23,7 +23,7 @@ mod stepping;
 mod sums;
 mod variation;
 
-use clebsch_symbolic::{Elements, Expr, IntoElements, IntoList};
+use clebsch_symbolic::{Elements, Expr, IntoList, work};
 
 use crate::derive::{self, Formulas, Id, MechanicsFormulas, SteeredFormulas, Stencil};
 use crate::diagnostic::{Diagnostic, Diagnostics};
@@ -32,7 +32,7 @@ use crate::model::{Isotropy, System};
 
 use entries::{Grid, Scalar};
 use kernel::{Hoisted, Hoisting};
-use made::{Maker, entries, plain, stack};
+use made::{Maker, entries, entry_by_entry, plain, stack};
 use scalar::{Rate, ScalarNode, Scalars};
 
 pub use code::{Code, Kernel, MatrixOperation, Whole, is_in_brackets};
@@ -47,6 +47,9 @@ const LARGEST_PROGRAM: usize = 60_000;
 
 /// More operations than this in one function are refused: optimising compilers take minutes for them, or give up.
 const LARGEST_KERNEL: usize = 20_000;
+
+/// The most work of unrolled code that matrix code can replace: about a second where the compiler is not optimised.
+const UNROLLED_WORK: u64 = 3_000_000;
 
 /// Lowers formulas to kernels.
 ///
@@ -67,34 +70,63 @@ fn steered(formulas: SteeredFormulas<'_>) -> Result<SteeredProgram<'_>, Diagnost
     formulas.choice().iter().for_each(|choice| maker.choice(choice));
     maker.price_of_end();
     maker.membership();
+    maker
+        .check_length()
+        .map_err(|TooLong(size)| written_out_too_large(&formulas.model, Some(Feature::Inputs), size))?;
     let table = KernelTable { kernels: maker.table, constant_names: Vec::new() };
-    let program = SteeredProgram { formulas, table };
-    check_size(program.kernels(), &program.formulas.model, Some(Feature::Inputs))?;
-    Ok(program)
+    Ok(SteeredProgram { formulas, table })
 }
 
 fn mechanics(formulas: MechanicsFormulas<'_>) -> Result<MechanicsProgram<'_>, Diagnostics> {
-    let form = form::choose(&formulas)?;
-    let mut maker = Maker::new(&formulas, formulas.table());
-    maker.of_steps = of_steps(&formulas);
+    let mut form = form::choose(&formulas)?;
+    let mut kernels = kernels(&formulas, &form);
+    if kernels.is_err() && form.may_fall_back() {
+        form = form.in_matrices();
+        kernels = self::kernels(&formulas, &form);
+    }
+    let kernels = kernels
+        .map_err(|TooLong(size)| written_out_too_large(&formulas.model, form::without_matrices(&formulas), size));
+    let Kernels { table, steps, gathered } = kernels?;
+    Ok(MechanicsProgram { formulas, form, table, steps, gathered, methods: Vec::new() })
+}
+
+/// The kernels of a mechanical system, with what is known of its steps.
+struct Kernels<'g> {
+    table: KernelTable,
+    steps: Vec<Step>,
+    gathered: Option<Stencil<'g>>,
+}
+
+/// Unrolled code that is beyond a limit: the words for its size.
+struct TooLong(String);
+
+/// The kernels of a mechanical system in one form. Where there is another form, unrolled code has a limit of work too.
+fn kernels<'g>(formulas: &MechanicsFormulas<'g>, form: &Form) -> Result<Kernels<'g>, TooLong> {
+    let made = || made(formulas, form);
+    if form.may_fall_back() {
+        let too_much = |work::Exhausted| Err(TooLong(format!("more than {UNROLLED_WORK} terms when it is unrolled")));
+        return work::within(UNROLLED_WORK, made).unwrap_or_else(too_much);
+    }
+    made()
+}
+
+fn made<'g>(formulas: &MechanicsFormulas<'g>, form: &Form) -> Result<Kernels<'g>, TooLong> {
+    let mut maker = Maker::new(formulas, formulas.table());
+    maker.of_steps = of_steps(formulas);
     maker.scalars.keeps_matrices = form.keeps_matrices();
-    let steps = maker.steps(&formulas);
+    let steps = maker.steps(formulas)?;
     maker.known_rows([Id::SplittingKick, Id::SplittingGradient]);
-    maker.collocation(&formulas);
+    maker.collocation(formulas);
     maker.rows([Id::Lift]);
-    maker.variations(&formulas);
+    maker.variations(formulas)?;
     formulas.choice().iter().for_each(|choice| maker.choice(choice));
     maker.price_of_end();
     let constant_names = names::constants(&maker.scalars, &maker.hoisted);
-    let gathered = maker.system(&formulas);
+    let gathered = maker.system(formulas);
     maker.membership();
-    maker.isotropy(&formulas);
-    let table = KernelTable { kernels: maker.table, constant_names };
-    let program = MechanicsProgram { formulas, form, table, steps, gathered, methods: Vec::new() };
-    if !program.form.keeps_matrices() {
-        check_size(program.kernels(), &program.formulas.model, form::without_matrices(&program.formulas))?;
-    }
-    Ok(program)
+    maker.isotropy(formulas);
+    maker.check_length()?;
+    Ok(Kernels { table: KernelTable { kernels: maker.table, constant_names }, steps, gathered })
 }
 
 /// Steps of order 16 carry covectors along, those of sites map them, and the momentum after a step of a coupled cost is made anew.
@@ -103,23 +135,6 @@ fn of_steps(formulas: &MechanicsFormulas<'_>) -> Vec<Id> {
     let map = formulas.model.power.as_ref().map(|_| Id::MomentumMap);
     let coupled = (0..formulas.substeps.len()).filter(|&index| formulas.substeps[index].coupling.is_some());
     lift.into_iter().chain(map).chain(coupled.map(Id::MomentumAfter)).into_list()
-}
-
-/// Unrolled code has a limit, in total and in one function.
-fn check_size(
-    kernels: Vec<(String, &Kernel)>,
-    model: &System<'_>,
-    missing: Option<Feature>,
-) -> Result<(), Diagnostics> {
-    let lengths: Vec<usize> = kernels.into_each(|(_, kernel)| kernel.length());
-    let (whole, kernel) = (lengths.iter().sum(), lengths.iter().copied().max().unwrap_or(0));
-    for (operations, most, of) in [(whole, LARGEST_PROGRAM, ""), (kernel, LARGEST_KERNEL, " in one function")] {
-        if operations > most {
-            let size = format!("{operations} scalar operations{of} when it is unrolled, {most} is the most");
-            return Err(written_out_too_large(model, missing, size));
-        }
-    }
-    Ok(())
 }
 
 /// The error for a system whose unrolled code would be too large, with the feature that has no matrix code.
@@ -141,6 +156,22 @@ fn too_large(model: &System<'_>, size: String) -> Diagnostic {
 }
 
 impl<'g> Maker<'_, 'g> {
+    /// Unrolled code has a limit, in total and in one function. It is checked while kernels are made: no work is done on
+    /// further ones once it is too long.
+    fn check_length(&self) -> Result<(), TooLong> {
+        if self.scalars.keeps_matrices {
+            return Ok(());
+        }
+        let lengths: Vec<usize> = self.table.each(|(_, kernel)| kernel.length());
+        let (whole, longest) = (lengths.iter().sum::<usize>(), lengths.iter().copied().max().unwrap_or(0));
+        for (operations, most, of) in [(whole, LARGEST_PROGRAM, ""), (longest, LARGEST_KERNEL, " in one function")] {
+            if operations > most {
+                return Err(TooLong(format!("more than {most} scalar operations{of} when it is unrolled")));
+            }
+        }
+        Ok(())
+    }
+
     /// The kernels of a system that is stepped, apart from its steps, and how the gradient of a site is gathered.
     fn system(&mut self, formulas: &MechanicsFormulas<'g>) -> Option<Stencil<'g>> {
         self.add(Id::Constants, |scalars, hoisted| hoisted.kernel(scalars, Hoisting::Nothing));
@@ -225,15 +256,15 @@ impl<'g> Maker<'_, 'g> {
         }
     }
 
-    /// The matrix of ξ ↦ ξ_Q(q) where motions that fix q are not free; in matrix code the projection to the momenta of
-    /// motions.
+    /// The matrix of ξ ↦ ξ_Q(q) where motions that fix q are not free. In matrix code it is the projection to the momenta
+    /// of motions, where that is a formula.
     fn isotropy(&mut self, formulas: &MechanicsFormulas<'g>) {
         if formulas.is_free || formulas.model.isotropy != Isotropy::Fixed {
             return;
         }
         self.add(Id::Isotropy, |scalars, _| match &formulas.projection {
             Some(projection) if scalars.keeps_matrices => stack(scalars, projection, Hoisting::Nothing),
-            _ => plain(scalars, &[formulas.generator_matrix()]),
+            _ => entry_by_entry(scalars, formulas.generator_matrix()),
         });
     }
 }

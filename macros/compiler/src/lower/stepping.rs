@@ -2,10 +2,10 @@
 
 use std::collections::BTreeSet;
 
-use clebsch_symbolic::{Elements, IntoList, Role, indexed};
+use clebsch_symbolic::{Elements, IntoList, Role};
 
 use super::made::{Maker, of_matrices, plain, separate};
-use super::{Code, Hoisted, Hoisting, Kernel, MechanicsProgram, Step, matrices};
+use super::{Code, Hoisted, Hoisting, Kernel, MechanicsProgram, Step, TooLong, matrices};
 use crate::derive::{Id, MechanicsFormulas, MomentumEquation, Solution, Structure, SystemFormulas};
 use crate::model::Solver;
 
@@ -39,19 +39,27 @@ pub struct Solve {
 
 impl<'g> Maker<'_, 'g> {
     /// The kernels of all substeps, and of the moves that they have in common.
-    pub(super) fn steps(&mut self, formulas: &MechanicsFormulas<'g>) -> Vec<Step> {
-        let steps = indexed(formulas.substeps.len(), |index| self.step(formulas, index));
+    ///
+    /// # Errors
+    /// Unrolled code that is too long.
+    pub(super) fn steps(&mut self, formulas: &MechanicsFormulas<'g>) -> Result<Vec<Step>, TooLong> {
+        let steps: Vec<Step> =
+            (0..formulas.substeps.len()).map(|index| self.step(formulas, index)).collect::<Result<_, _>>()?;
         // the inverse Legendre transform alone is kicked and solved, and never stepped
         self.table.retain(|(id, _)| {
             let is_solved = id.equation().is_some() || matches!(id, Id::StartKick(_));
             is_solved || id.substep().is_none_or(|index| index < formulas.stepped)
         });
-        steps
+        Ok(steps)
     }
 
-    fn step(&mut self, formulas: &MechanicsFormulas<'g>, index: usize) -> Step {
+    fn step(&mut self, formulas: &MechanicsFormulas<'g>, index: usize) -> Result<Step, TooLong> {
         let substep = &formulas.substeps[index];
-        let solves = indexed(substep.equations.len(), |number| self.solve(formulas, index, number));
+        let mut solves = Vec::with_capacity(substep.equations.len());
+        for number in 0..substep.equations.len() {
+            solves.push(self.solve(formulas, index, number));
+            self.check_length()?;
+        }
         self.known_rows(
             [Id::StartForce, Id::MovingForce, Id::EndForce, Id::StartKick, Id::EndKick].map(|id| id(index)),
         );
@@ -65,7 +73,7 @@ impl<'g> Maker<'_, 'g> {
         if index == 0 {
             self.displacement(formulas);
         }
-        Step { end_is_start: substep.start == substep.end && !formulas.is_timed(), solves }
+        Ok(Step { end_is_start: substep.start == substep.end && !formulas.is_timed(), solves })
     }
 
     /// q⁺ by the chart coordinates, where that costs less than by the increments.

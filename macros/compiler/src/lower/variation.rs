@@ -2,13 +2,17 @@
 //! with price and bounds.
 
 use super::made::{Maker, of_matrices, stack};
-use super::{Hoisting, matrices};
+use super::{Hoisting, TooLong, matrices};
 use crate::derive::{Choice, Id, MechanicsFormulas, StepOfChoice};
 
 impl<'g> Maker<'_, 'g> {
-    pub(super) fn variations(&mut self, formulas: &MechanicsFormulas<'g>) {
+    /// The kernels of motions, and of the derivatives of edges.
+    ///
+    /// # Errors
+    /// Unrolled code that is too long.
+    pub(super) fn variations(&mut self, formulas: &MechanicsFormulas<'g>) -> Result<(), TooLong> {
         if !formulas.model.has_variations() {
-            return;
+            return Ok(());
         }
         self.rows([Id::Retraction, Id::Composition, Id::Generator]);
         self.orbit_metric();
@@ -16,8 +20,10 @@ impl<'g> Maker<'_, 'g> {
         for (index, variation) in edges.enumerate() {
             for (id, matrices) in formulas.edge_kernels(index, variation, self.scalars.keeps_matrices) {
                 self.add(id, |scalars, hoisted| of_matrices(scalars, &matrices, Hoisting::Constants(hoisted)));
+                self.check_length()?;
             }
         }
+        Ok(())
     }
 
     /// J(q, (E_j)_Q(q)), column by column; in matrix code J(q, ξ_Q(q)).

@@ -4,7 +4,9 @@ use super::motion::{blocks, left_matrix, motion};
 use super::{Block, Group};
 use crate::memory::Map;
 use crate::node::{Analytic, ExprNode, Operation};
-use crate::{Elements, Expr, Function, Graph, IntoElements, IntoList, Shape, both, identity, indexed, rational};
+use crate::{
+    Algebra, Elements, Expr, Function, Graph, IntoElements, IntoList, Shape, both, identity, indexed, rational,
+};
 
 /// Coordinates of a group near the identity: F as a function of x, with F = I at x = 0.
 #[derive(Copy, Clone, PartialEq, Eq, Hash, PartialOrd, Ord, Debug)]
@@ -333,7 +335,19 @@ impl Group {
 
     /// The matrix of ad_ξ in the basis of the algebra.
     pub fn ad<'g>(self, xi: Expr<'g>) -> Expr<'g> {
-        let (graph, m) = (xi.graph(), self.dimension());
+        let graph = xi.graph();
+        let known = graph.adjoints.borrow().get(&self).copied();
+        let algebra = known.unwrap_or_else(|| {
+            let is_of_matrices = !matches!(self, Group::Translation(_) | Group::UnitQuaternions);
+            if is_of_matrices { self.adjoint_algebra(graph) } else { self.adjoint_algebra_by_products(graph) }
+        });
+        graph.adjoints.borrow_mut().insert(self, algebra);
+        xi.wedge(algebra)
+    }
+
+    /// The algebra of the matrices of ad_{E_i}, for elements that are no matrices.
+    fn adjoint_algebra_by_products<'g>(self, graph: &'g Graph) -> Algebra {
+        let m = self.dimension();
         let basis = graph.matrices(self);
         let bracket = |a: Expr<'g>, b: Expr<'g>| match self {
             Group::Translation(_) => graph.zero(self.element_shape()),
@@ -346,7 +360,7 @@ impl Group {
             let entries = Shape::square(m).positions().filter_map(|at| Some((at.0, at.1, number(at)?)));
             entries.filter(|(_, _, value)| !value.is_zero()).into_list()
         };
-        xi.wedge(graph.algebra(Shape::square(m), indexed(m, structure)))
+        graph.algebra(Shape::square(m), indexed(m, structure))
     }
 
     /// dexp_ξ = φ(ad_ξ), the right trivialisation of the derivative of exp: (d exp ξ) exp(−ξ) = dexp_ξ dξ.

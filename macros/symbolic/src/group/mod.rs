@@ -9,6 +9,7 @@ mod chart;
 mod declared;
 mod motion;
 pub(crate) mod sample;
+mod structure;
 
 use std::rc::Rc;
 

@@ -6,7 +6,7 @@ mod large;
 
 use checks::{agree, agree_forced, agree_varied};
 use clebsch::Clebsch;
-use nalgebra::{Matrix3, Matrix4, SMatrix, SVector, Vector3, Vector4};
+use nalgebra::{Matrix2, Matrix3, Matrix4, SMatrix, SVector, Vector3, Vector4};
 
 /// A declaration in both forms, and a test that they agree on motions that start at `$rest`.
 macro_rules! both {
@@ -69,6 +69,21 @@ both!(
     struct Body {
         #[clebsch(symmetric)]
         pub j_d: Matrix4<f64>,
+    }
+);
+
+// a rotation leaves the identity unchanged, and no formula projects a momentum
+both!(
+    covariances_2,
+    Matrix2::identity(),
+    Covariance { weight: 0.7 },
+    #[clebsch(
+        action     = |F: GL<2>, P: Matrix2| F * P * F.transpose(),
+        lagrangian = |P, xi| (xi.matrix() * P * xi.matrix().transpose() * P.inverse()).trace(),
+        potential  = |P| self.weight * P.trace(),
+    )]
+    struct Covariance {
+        pub weight: f64,
     }
 );
 

@@ -252,7 +252,15 @@ fn no_step_leaves_its_group_in_silence() {
     };
     let [_, refused] = stay_on_their_group::<_, 4, 6>(frame, |f| off_form(&minkowski, f));
     assert!(refused > 0, "no frame was far off");
-    let symplectic = Matrix4::from_fn(|i, j| if j == i + 2 { 1.0 } else if i == j + 2 { -1.0 } else { 0.0 });
+    let symplectic = Matrix4::from_fn(|i, j| {
+        if j == i + 2 {
+            1.0
+        } else if i == j + 2 {
+            -1.0
+        } else {
+            0.0
+        }
+    });
     stay_on_their_group::<_, 4, 10>(|_| LinearOptics, |f| off_form(&symplectic, f));
     let signs = Matrix3::from_diagonal(&Vector3::new(1.0, 1.0, -1.0));
     stay_on_their_group::<_, 3, 3>(|_| Boosts, |f| off_form(&signs, f));
@@ -264,9 +272,7 @@ fn no_step_leaves_its_group_in_silence() {
 #[test]
 fn volumes_are_checked() {
     let stepper = Shear { stiffness: 1.0 }.into_stepper(H).expect("a shear");
-    let start = |scale: f64, size: f64| {
-        stepper.state(Matrix2::new(size, 0.0, 0.0, scale / size), Vector3::zeros())
-    };
+    let start = |scale: f64, size: f64| stepper.state(Matrix2::new(size, 0.0, 0.0, scale / size), Vector3::zeros());
     for size in [1.0, 1e-3, 1e4, 1e7] {
         assert!(start(1.0, size).is_ok(), "{size}");
     }

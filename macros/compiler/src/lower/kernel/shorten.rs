@@ -4,7 +4,7 @@ use clebsch_symbolic::{Elements, IntoList, Rational, Table, integer};
 
 use super::{Builder, Id, Operation};
 use crate::lower::scalar::is_unit;
-use crate::lower::{balance, factors, sums};
+use crate::lower::{LARGEST_KERNEL, balance, factors, sums};
 
 /// The additions and multiplications that a processor begins in a cycle, about.
 const SIDE_BY_SIDE: usize = 3;
@@ -20,7 +20,16 @@ pub(super) fn delay_of_term(delays: &[u32], (coefficient, term): &(Rational, Id)
     delays[*term] + if is_unit(coefficient) { 0 } else { balance::STEP }
 }
 
+/// A kernel that is so many times longer than the longest is refused without a search for fewer operations: one in four is
+/// the least that was left of any.
+const BEYOND: usize = 8;
+
 impl Builder<'_, '_> {
+    /// Whether unrolled code is refused for this kernel, however much shorter it can be made.
+    pub(super) fn is_beyond_limits(&self) -> bool {
+        self.operations.len() > LARGEST_KERNEL && self.count_operations() > BEYOND * LARGEST_KERNEL
+    }
+
     /// Looks for fewer operations: by common factors and by sums within sums, and where numbers can be separated, with them and without.
     pub(super) fn shorten(&mut self) {
         let separated = self.separate_numbers();

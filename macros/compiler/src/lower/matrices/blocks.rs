@@ -9,7 +9,7 @@ impl Matrices {
     /// The operation that a matrix is the result of.
     pub(super) fn operation_of<'a>(&'a self, code: &'a Code) -> Option<&'a Whole> {
         match code {
-            Code::Local(index) => self.operation_of(&self.locals[*index]),
+            Code::Local(index) => self.operation_of(self.locals.value(*index)),
             Code::Whole(whole) => Some(whole),
             _ => None,
         }

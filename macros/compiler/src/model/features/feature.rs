@@ -85,7 +85,6 @@ features! {
     RotationsOfFourSpace "`SO<4>` with a potential or another factor",
     FreeMotionOfFourSpace "`discretization = exact` on `SO<4>`",
     UnmovedFactor "a factor that moves nothing",
-    HeldConfiguration "a configuration with isotropy",
     // the action
     BentAction "an action that is not affine in the configuration",
     UnliftedMomentum "an action for which no covector of a momentum is known",

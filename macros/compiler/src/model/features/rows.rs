@@ -11,7 +11,7 @@ const ORDER_8: &str = "write `order = 8`";
 const ORDER_2: &str = "write `order = 2`";
 const UNROLLED: &str = "leave out `code`, or write `code = unrolled`";
 const WITHOUT_MATRICES: &[Feature] =
-    &[Inputs, Power, Quaternions, ExactDrifts, FreeRotation, Collocation, HeldConfiguration, GeneralLagrangian];
+    &[Inputs, Power, Quaternions, ExactDrifts, FreeRotation, Collocation, GeneralLagrangian];
 
 /// The refused features, the others, the message, the reason, and the replacement.
 #[rustfmt::skip]
