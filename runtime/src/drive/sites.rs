@@ -239,8 +239,8 @@ where
             return Err(error);
         }
         if P::MAY_LEAVE_ORBIT {
-            for (i, q) in next.iter().enumerate() {
-                check_on_orbit(q, system.site(i).orbit_defect(q))
+            for (i, q) in next.as_ref().iter().enumerate() {
+                check_on_orbit(q, self.stepper.system().site(i).orbit_defect(q))
                     .map_err(|error| SiteError { site: Some(i), error })?;
             }
         }

@@ -5,7 +5,7 @@
 #[macro_export]
 macro_rules! __formulas_of_sites {
     ($scalar:ty, $sites:tt, $start:expr, $end:expr) => {
-        const MAY_LEAVE_ORBIT: bool =
+        const MAY_LEAVE_ORBIT: ::core::primitive::bool =
             <<Self as $crate::__private::Power<$sites>>::Site as $crate::__private::Clebsch>::MAY_LEAVE_ORBIT;
         fn act(&self, f: &Self::Element, q: &Self::Configuration) -> Self::Configuration {
             $crate::__private::Power::each(self, |site, i| $crate::__private::Clebsch::act(site, &f[i], &q[i]))

@@ -164,7 +164,7 @@ fn composed<const K: usize>(sizes: &[f64; K], omega: f64, h: f64, start: (f64, f
     let step = |h: &f64, _, (q, p, length): (f64, f64, f64)| {
         assert!((length - h).abs() < 1e-15 * h.abs(), "{length} is not {h}");
         let (q, p) = leapfrog(omega, *h, (q, p));
-        Ok((q, p, length))
+        Ok::<_, Error>((q, p, length))
     };
     let first = h * sizes[0];
     let scaled = |(q, p, length): (f64, f64, f64), ratio| (q, p, length * ratio);
@@ -305,7 +305,7 @@ proptest! {
         let times = std::cell::RefCell::new(vec![]);
         let step = |h: &f64, t: f64, state| {
             times.borrow_mut().push(t);
-            Ok(leapfrog(omega, *h, state))
+            Ok::<_, Error>(leapfrog(omega, *h, state))
         };
         let whole = private::compose(&all, t, (1.0, 0.5), step, |state, _| state)?;
         let mut state = (1.0, 0.5);
