@@ -73,8 +73,8 @@ pub trait Clebsch: Sized {
     const ORDER: u32;
     /// Whether a step is the free motion itself, without an error in h: its longest step is then known without trying. `false` as provided.
     const IS_FREE_MOTION: bool = false;
-    /// Whether rounding may move a configuration off its orbit in one step, as it may on groups that are not compact: then every step checks
-    /// [`orbit_defect`](Self::orbit_defect). `false` as provided.
+    /// Whether rounding may move a configuration off its orbit in one step, as it may on groups that are not compact.
+    /// Then every step checks [`orbit_defect`](Self::orbit_defect). `false` as provided.
     const MAY_LEAVE_ORBIT: bool = false;
     /// The derivation in words and formulas, with operation counts. With `emit = [latex]` there is a constant `DERIVATION_LATEX` too, for a paper.
     const DERIVATION: &'static str;

@@ -90,7 +90,7 @@ fn mechanics(formulas: MechanicsFormulas<'_>) -> Result<MechanicsProgram<'_>, Di
     Ok(MechanicsProgram { formulas, form, table, steps, gathered, methods: Vec::new() })
 }
 
-/// The kernels of a mechanical system, with what is known of its steps.
+/// The kernels of a mechanical system, and its steps.
 struct Kernels<'g> {
     table: KernelTable,
     steps: Vec<Step>,

@@ -9,8 +9,8 @@ use crate::{Algebra, Elements, Graph, IntoList, Rational, Shape, indexed, work};
 /// A matrix, by its entries that may differ from zero.
 type Entries = BTreeMap<(usize, usize), Rational>;
 
-/// The entries of all elements of a basis, by their rows, by their columns and by both: each with the number of its
-/// element, and with the other index where one is given.
+/// The entries of all elements of a basis, by their rows, by their columns and by both. Each has the number of its element.
+/// Those by rows have their column, and those by columns have their row.
 struct Places {
     by_row: Vec<Vec<(usize, usize, Rational)>>,
     by_column: Vec<Vec<(usize, usize, Rational)>>,

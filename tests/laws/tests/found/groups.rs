@@ -240,8 +240,8 @@ fn off_form<const N: usize>(eta: &SMatrix<f64, N, N>, f: &SMatrix<f64, N, N>) ->
     defect.amax() / f.amax().max(1.0).powi(2)
 }
 
-/// On groups that are not compact, rounding grows with the elements that a run passes through, and chart formulas cancel
-/// in steps that are far too long. No step is `Ok` off its group.
+/// On groups that are not compact, rounding grows with the elements that a run passes through. In steps that are far too
+/// long, formulas of charts cancel. No step is `Ok` off its group.
 #[test]
 fn no_step_leaves_its_group_in_silence() {
     let minkowski = Matrix4::from_diagonal(&Vector4::new(1.0, -1.0, -1.0, -1.0));

@@ -20,8 +20,8 @@ pub(super) fn delay_of_term(delays: &[u32], (coefficient, term): &(Rational, Id)
     delays[*term] + if is_unit(coefficient) { 0 } else { balance::STEP }
 }
 
-/// A kernel that is so many times longer than the longest is refused without a search for fewer operations: one in four is
-/// the least that was left of any.
+/// A kernel that is so many times longer than the longest is refused without a search for fewer operations. The search never
+/// left less than a quarter.
 const BEYOND: usize = 8;
 
 impl Builder<'_, '_> {

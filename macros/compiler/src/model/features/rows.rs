@@ -99,7 +99,7 @@ pub(super) const ROWS: [Row; 52] = [
         "leave out `symmetry`: motions that move all sites alike are found without it"),
     row(&[Controls, Dynamics, Effort, Endpoint], &[Power],
         "a power has no {refused}",
-        "inputs are chosen by Newton's method on whole paths, whose equations tie all sites to each other",
+        "inputs are chosen by Newton's method on paths, whose equations tie all sites to each other",
         ALL_SITES),
     row(&[Sixteenth], &[Power],
         "`order = {name}` of a power is not supported yet",
