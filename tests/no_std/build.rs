@@ -9,11 +9,12 @@ use std::path::{Path, PathBuf};
 use std::{env, fs};
 
 /// Parameters of the structs that have some, and the suffixes of their names.
-const INSTANCES: [(&str, &[(&str, &str)]); 7] = [
+const INSTANCES: [(&str, &[(&str, &str)]); 8] = [
     ("AnnotatedBody", &[("", "<'static, (), 4>")]),
     ("GenericBody", &[("", "<f64>"), (".lanes", "<clebsch::F64x4>")]),
     ("Rock", &[("", "<f64>"), (".lanes", "<clebsch::F64x8>")]),
     ("SpinChain", &[("", "<8>")]),
+    ("DrivenChain", &[("", "<8>")]),
     ("FirstOrderChain", &[("", "<8>")]),
     ("Molecules", &[("", "<8>")]),
     ("FirstOrderMolecules", &[("", "<8>")]),

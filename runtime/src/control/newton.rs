@@ -70,7 +70,8 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: usize
                     now.settings.multipliers += change;
                     let found = self.finish(&now);
                     let is_lenient = T::EPSILON.sqrt() * now.largest > summary.magnitude;
-                    if is_lenient && (matches!(found, Err(Error::NotStationary { .. })) || !now.has_forgotten) {
+                    let is_barred = self.bounds > T::zero() && !now.has_forgotten;
+                    if is_lenient && (is_barred || matches!(found, Err(Error::NotStationary { .. }))) {
                         // a price that the guess had made so large that corrections, and the last barrier, seemed to be round-off
                         now.forget_prices();
                         self.begin(now.settings.barrier);

@@ -2,7 +2,7 @@
 //!
 //! Both sides are sums of a few dozen products of numbers of size one to ten (h = 0.1 divides them), so they agree to 1e-13.
 
-use clebsch::Clebsch;
+use clebsch::{Clebsch, Error};
 use clebsch_tests::fixtures::first_order_top::FirstOrderTop;
 use clebsch_tests::fixtures::heavy_top::HeavyTop;
 use clebsch_tests::fixtures::midpoint_top::MidpointTop;
@@ -226,10 +226,17 @@ fn inverse_legendre_inverts_legendre() {
 
         let pendulums = TwoPendulums { mass: [1.0, 2.0], gravity: 3.0, coupling: random.vector() };
         let stepper = pendulums.stepper(H).expect("regular pendulums");
-        let (q, f) = ((random.unit(), random.unit()), (random.rotation::<3>(0.5), random.rotation::<3>(0.5)));
+        let q: (Vector3<f64>, Vector3<f64>) = (random.unit(), random.unit());
+        let (a, b) = (q.0.cross(&random.vector::<3>()), q.1.cross(&random.vector::<3>()));
+        let mu = stack(&a, &b);
+        let f = stepper.inverse_legendre(&q, &mu).expect("a solvable step");
+        assert_near(&stepper.legendre(&q, &f), &mu, NEAR, "SO(3) × SO(3), left");
         let found = stepper.inverse_legendre(&q, &stepper.legendre(&q, &f)).expect("a solvable step");
         assert_near(&found.0, &f.0, NEAR, "SO(3) × SO(3), left");
         assert_near(&found.1, &f.1, NEAR, "SO(3) × SO(3), left");
+        // a part that turns q about itself belongs to no motion of q
+        let outside = stepper.inverse_legendre(&q, &(mu + stack(&(q.0 * 0.3), &Vector3::zeros())));
+        assert!(matches!(outside, Err(Error::OutsideMomentumSpace { .. })), "{outside:?}");
     }
 }
 

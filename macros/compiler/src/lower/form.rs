@@ -41,8 +41,6 @@ pub struct Form {
     pub is_body_or_point: bool,
     /// The feature of the system that has no matrix code.
     pub missing: Option<&'static str>,
-    /// Whether it is matrix code because unrolled code is too long.
-    pub has_fallen_back: bool,
 }
 
 impl Form {
@@ -50,20 +48,10 @@ impl Form {
     pub fn keeps_matrices(&self) -> bool {
         self.code == CodeForm::Matrices
     }
-
-    /// Whether matrix code may take the place of unrolled code.
-    pub(super) fn may_fall_back(&self) -> bool {
-        self.code == CodeForm::Unrolled && !self.is_asked && self.missing.is_none()
-    }
-
-    /// Matrix code in place of unrolled code that is too long.
-    pub(super) fn in_matrices(&self) -> Form {
-        Form { code: CodeForm::Matrices, has_fallen_back: true, ..self.clone() }
-    }
 }
 
 /// The form of a system. A declaration may ask for one; otherwise it is matrix code if unrolled code would exceed the
-/// budget by estimate.
+/// budget.
 ///
 /// # Errors
 /// A system too large for the only form that it has, or a form that is asked for and not there.
@@ -95,7 +83,7 @@ pub(super) fn choose(formulas: &MechanicsFormulas<'_>) -> Result<Form, Diagnosti
         return Err(too_large(&formulas.model, size).into());
     }
     let missing = missing.map(Feature::words);
-    Ok(Form { code, estimate, is_asked: asked.is_some(), is_body_or_point, missing, has_fallen_back: false })
+    Ok(Form { code, estimate, is_asked: asked.is_some(), is_body_or_point, missing })
 }
 
 /// Steps of inputs are unrolled.

@@ -23,7 +23,7 @@ mod stepping;
 mod sums;
 mod variation;
 
-use clebsch_symbolic::{Elements, Expr, IntoList, work};
+use clebsch_symbolic::{Elements, Expr, IntoList};
 
 use crate::derive::{self, Formulas, Id, MechanicsFormulas, SteeredFormulas, Stencil};
 use crate::diagnostic::{Diagnostic, Diagnostics};
@@ -47,9 +47,6 @@ const LARGEST_PROGRAM: usize = 60_000;
 
 /// More operations than this in one function are refused: optimising compilers take minutes for them, or give up.
 const LARGEST_KERNEL: usize = 20_000;
-
-/// The most work of unrolled code that matrix code can replace: about a second where the compiler is not optimised.
-const UNROLLED_WORK: u64 = 3_000_000;
 
 /// Lowers formulas to kernels.
 ///
@@ -78,12 +75,8 @@ fn steered(formulas: SteeredFormulas<'_>) -> Result<SteeredProgram<'_>, Diagnost
 }
 
 fn mechanics(formulas: MechanicsFormulas<'_>) -> Result<MechanicsProgram<'_>, Diagnostics> {
-    let mut form = form::choose(&formulas)?;
-    let mut kernels = kernels(&formulas, &form);
-    if kernels.is_err() && form.may_fall_back() {
-        form = form.in_matrices();
-        kernels = self::kernels(&formulas, &form);
-    }
+    let form = form::choose(&formulas)?;
+    let kernels = kernels(&formulas, &form);
     let kernels = kernels
         .map_err(|TooLong(size)| written_out_too_large(&formulas.model, form::without_matrices(&formulas), size));
     let Kernels { table, steps, gathered } = kernels?;
@@ -100,17 +93,8 @@ struct Kernels<'g> {
 /// Unrolled code that is beyond a limit: the words for its size.
 struct TooLong(String);
 
-/// The kernels of a mechanical system in one form. Where there is another form, unrolled code has a limit of work too.
+/// The kernels of a mechanical system in one form.
 fn kernels<'g>(formulas: &MechanicsFormulas<'g>, form: &Form) -> Result<Kernels<'g>, TooLong> {
-    let made = || made(formulas, form);
-    if form.may_fall_back() {
-        let too_much = |work::Exhausted| Err(TooLong(format!("more than {UNROLLED_WORK} terms when it is unrolled")));
-        return work::within(UNROLLED_WORK, made).unwrap_or_else(too_much);
-    }
-    made()
-}
-
-fn made<'g>(formulas: &MechanicsFormulas<'g>, form: &Form) -> Result<Kernels<'g>, TooLong> {
     let mut maker = Maker::new(formulas, formulas.table());
     maker.of_steps = of_steps(formulas);
     maker.scalars.keeps_matrices = form.keeps_matrices();

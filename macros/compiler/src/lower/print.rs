@@ -205,14 +205,13 @@ fn costs(kernels: &[(String, &Kernel)]) -> String {
 impl Form {
     /// How code is written, and why.
     fn sentence(&self) -> String {
-        let Form { code, estimate, is_asked, is_body_or_point, missing, has_fallen_back } = *self;
+        let Form { code, estimate, is_asked, is_body_or_point, missing } = *self;
         let written = match code {
             CodeForm::Unrolled => "Code is unrolled, entry by entry",
             CodeForm::Matrices => "Code is matrix code, in loops",
         };
         let why = match (is_asked, code) {
             (true, _) => "as the declaration asks".to_string(),
-            _ if has_fallen_back => "and unrolled code would be too long".to_string(),
             (false, CodeForm::Unrolled) if estimate > LARGEST_UNROLLED => match missing {
                 Some(why) => format!("and {why} has no matrix code"),
                 None => "of few unknowns".to_string(),

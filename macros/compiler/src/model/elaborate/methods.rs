@@ -84,7 +84,7 @@ impl<'g> Elaborator<'_, '_, 'g> {
     }
 
     fn unknown_method(&mut self, call: &ExprMethodCall, name: &str, receiver: Option<Value<'g>>) -> Option<Value<'g>> {
-        let (method, has_error) = (&call.method, receiver.is_none());
+        let (method, has_error, elements) = (&call.method, receiver.is_none(), receiver.clone());
         if ["scalar", "imag", "conjugate"].contains(&name) {
             // a receiver with an error of its own may have been a quaternion
             let found = receiver?.describe();
@@ -98,6 +98,11 @@ impl<'g> Elaborator<'_, '_, 'g> {
             return self.refuse(error.maybe_help(self.opaque()));
         }
         let error = error!(method, "unknown method `{name}` in the {}", self.key);
+        if let Some(Value::Array(parts)) = &elements
+            && name == "len"
+        {
+            return self.refuse(error.help(format!("write `{}`", parts.len())));
+        }
         if NEEDLESS.contains(&name) {
             let error = error.help(format!("write `{receiver}` alone"));
             return self.refuse(error.note("every value is copied, and arrays are mapped as they are"));

@@ -14,6 +14,9 @@ use crate::parse::{listed, spell_tokens};
 /// Digits of a literal, and the size of its decimal exponent: f64 ends at 1e308.
 const DIGITS: usize = 400;
 
+/// Usual names of the time and of the step, with those in closures.
+const RESERVED: [(&[&str], &str); 2] = [(&["time", "now"], "t"), (&["dt", "step", "timestep", "time_step"], "h")];
+
 impl<'g> Elaborator<'_, '_, 'g> {
     /// A name, or the path of a constant.
     pub(super) fn path(&mut self, path: &ExprPath) -> Option<Value<'g>> {
@@ -77,7 +80,14 @@ impl<'g> Elaborator<'_, '_, 'g> {
     fn unknown_name(&mut self, ident: &Ident, name: &str) -> Option<Value<'g>> {
         let error = error!(ident.span(), "cannot find `{name}` in the {}", self.key);
         let names = || self.scope.names.iter().map(|(name, _)| name.as_str());
-        let missing = self.scope.missing.iter().find(|(known, _)| known == name).map(|(_, help)| help.clone());
+        let advice =
+            |name: &str| self.scope.missing.iter().find(|(known, _)| known == name).map(|(_, help)| help.clone());
+        let reserved = RESERVED.iter().find(|(others, _)| others.contains(&name)).map(|&(_, reserved)| reserved);
+        let of_reserved = reserved.map(|reserved| match advice(reserved) {
+            Some(help) => format!("the name is `{reserved}`; {help}"),
+            None => format!("write `{reserved}`"),
+        });
+        let missing = advice(name).or(of_reserved);
         self.refuse(match missing.or_else(|| self.similar(name, names())) {
             Some(help) => error.help(help),
             None if name.chars().all(char::is_uppercase) => error
@@ -94,7 +104,8 @@ impl<'g> Elaborator<'_, '_, 'g> {
         let scalar = spell_scalar(&self.context.fields.scalar);
         let advice =
             format!("if it is a parameter, write `self.{name}`, with a field `{name}: {scalar}` of the struct");
-        Some(advice).filter(|_| self.key != "group")
+        let is_of_group = ["equation of ", "basis of "].iter().any(|key| self.key.starts_with(key));
+        (!is_of_group).then_some(advice)
     }
 
     fn similar<'s>(&self, name: &str, names: impl Iterator<Item = &'s str>) -> Option<String> {
