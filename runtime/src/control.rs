@@ -11,7 +11,6 @@ mod end;
 mod iterate;
 mod newton;
 mod optimum;
-mod pins;
 mod quadratic;
 mod search;
 mod sweep;
@@ -117,16 +116,12 @@ impl<S: Controlled<D, U, C, Scalar: Real>, const D: usize, const U: usize, const
         Stage::rest(x)
     }
 
-    /// One step at the start time: f(t₀, h, x, u). x is checked as the start of a plan is.
+    /// One step at the start time: f(t₀, h, x, u).
     ///
     /// # Errors
-    /// Those of a step, [`Error::NotFinite`], and [`Error::OffOrbit`] or [`Error::OutsideMomentumSpace`] for x.
+    /// Those of a step.
     pub fn follow(&self, x: &S::Place, u: &SVector<S::Scalar, U>) -> Result<S::Place, Error> {
-        self.system.check_place(x)?;
-        check_finite("the input", u)?;
-        let next = self.system.follow(&self.constants, self.time, x, u)?;
-        check_finite("the place after the step", &next)?;
-        Ok(next)
+        self.system.follow(&self.constants, self.time, x, u)
     }
 
     /// The input u_k + K δ for a place `x` near x_k.

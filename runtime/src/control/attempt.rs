@@ -49,9 +49,7 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: usize
     #[cold]
     fn vary(&mut self, variation: u32) -> Result<(), Error> {
         if variation > 0 {
-            self.lead()?;
-            // Bounds do not matter here: the stages have no slacks yet.
-            self.bounds = T::zero();
+            self.follow()?;
             let end = self.problem.end(&self.last);
             let summary = self.eliminate(&end, &Iterate::new(SVector::zeros(), None, end.distance).settings)?;
             self.stir(&summary, end.lack.max_abs(), variation);

@@ -109,10 +109,6 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: usize
             stage.slack = -self.problem.system.bounds(self.problem.time_after(index), &stage.place, &stage.input);
             stage.excess = SVector::from_element(zero);
             for i in 0..C {
-                if stage.is_pinned(i) {
-                    // an equation, without a barrier
-                    stage.slack[i] = zero.recip();
-                }
                 match stage.slack[i] {
                     slack if slack.is_finite() => bounds += 1,
                     slack if is_none(slack) => stage.multipliers[i] = zero,
@@ -261,7 +257,7 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: usize
             let bounds = self.problem.system.bounds_expanded(t, x, u, &stage.multipliers);
             let place = x.max_abs();
             // Written so that NaN is a violation.
-            !(0..C).filter(|&i| !stage.is_pinned(i)).all(|i| {
+            !(0..C).all(|i| {
                 let by_place = (0..D).fold(zero, |sum, j| sum + bounds.by_place[(i, j)].abs() * place);
                 let terms = (0..U).fold(by_place, |sum, j| sum + (bounds.by_input[(i, j)] * u[j]).abs());
                 bounds.values[i] <= larger(zero, round_off * terms)

@@ -42,8 +42,6 @@ pub(super) struct Iterate<T, const D: usize> {
     calm: u32,
     /// The largest price.
     pub largest: T,
-    /// Whether the largest price was forgotten once, as that of a dear guess is.
-    pub has_forgotten: bool,
     /// The smallest distance to the target.
     pub nearest: T,
     /// Steps in a row that were next to nothing.
@@ -95,7 +93,6 @@ impl<T: Real, const D: usize> Iterate<T, D> {
             stagnations: 0,
             calm: 0,
             largest: zero,
-            has_forgotten: false,
             nearest: distance,
             stalls: 0,
             is_cornered: false,
@@ -171,7 +168,6 @@ impl<T: Real, const D: usize> Iterate<T, D> {
     #[cold]
     pub fn forget_prices(&mut self) {
         self.largest = T::zero();
-        self.has_forgotten = true;
         self.begin_again();
     }
 

@@ -70,9 +70,8 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: usize
                     now.settings.multipliers += change;
                     let found = self.finish(&now);
                     let is_lenient = T::EPSILON.sqrt() * now.largest > summary.magnitude;
-                    let is_barred = self.bounds > T::zero() && !now.has_forgotten;
-                    if is_lenient && (is_barred || matches!(found, Err(Error::NotStationary { .. }))) {
-                        // a price that the guess had made so large that corrections, and the last barrier, seemed to be round-off
+                    if is_lenient && matches!(found, Err(Error::NotStationary { .. })) {
+                        // a price that the guess had made so large that corrections seemed to be round-off
                         now.forget_prices();
                         self.begin(now.settings.barrier);
                         continue;
@@ -122,7 +121,7 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: usize
 
     /// The plan that the inputs make, with the multipliers that the stages hold.
     fn start(&mut self, is_priced: bool) -> Result<Iterate<T, D>, Error> {
-        self.lead()?;
+        self.follow()?;
         let end = self.end();
         let costate = self.stages.last().map(|stage| stage.next_costate);
         let multipliers = costate

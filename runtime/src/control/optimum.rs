@@ -3,7 +3,6 @@
 use crate::fields::{copied, debug, getters};
 use crate::{Controlled, Real, Space};
 use nalgebra::{SMatrix, SVector};
-use num_traits::Zero;
 
 /// One step of a plan. Made by [`Control::stage`](crate::Control::stage), filled by [`Control::solve`](crate::Control::solve).
 ///
@@ -35,8 +34,6 @@ pub struct Stage<S: Controlled<D, U, C, Scalar: Real>, const D: usize, const U: 
     pub(super) slack: SVector<S::Scalar, C>,
     /// By how much the bounds are still relaxed, 0 once a full step was made.
     pub(super) excess: SVector<S::Scalar, C>,
-    /// The second bound of each pair that fixes the input, at the place of the first.
-    pub(super) partners: [Option<usize>; C],
     /// k and G: the change of the input is k + G δν + K δ.
     pub(super) shift: SVector<S::Scalar, U>,
     pub(super) by_multiplier: SMatrix<S::Scalar, U, D>,
@@ -60,7 +57,6 @@ impl<S: Controlled<D, U, C, Scalar: Real>, const D: usize, const U: usize, const
             multipliers: Space::origin(),
             slack: Space::origin(),
             excess: Space::origin(),
-            partners: [None; C],
             shift: Space::origin(),
             by_multiplier: Space::origin(),
             next_place: *x,
@@ -100,8 +96,7 @@ impl<S: Controlled<D, U, C, Scalar: Real>, const D: usize, const U: usize, const
     /// The bounds that limit the inputs: their multiplier is larger than the distance to them.
     #[inline]
     pub fn active(&self) -> [bool; C] {
-        let distance = |i: usize| if self.is_pinned(i) { S::Scalar::zero() } else { self.slack[i] };
-        core::array::from_fn(|i| self.multipliers[i] > distance(i))
+        core::array::from_fn(|i| self.multipliers[i] > self.slack[i])
     }
 }
 

@@ -185,7 +185,7 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: usize
                     if is_none(s) {
                         stage.next_slack[i] = s;
                         // Written so that NaN is refused.
-                        if bounds[i] <= zero || stage.is_pinned(i) && bounds[i].is_finite() {
+                        if bounds[i] <= zero {
                             continue;
                         }
                         return Err(Error::NotFinite { name: S::BOUNDS[i] });

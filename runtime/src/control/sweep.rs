@@ -179,14 +179,6 @@ impl<'a, T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: u
                 summary.violation += violated;
                 bounded = Some((natural, slopes));
             }
-            let pins = stage.pins(system, t);
-            if let Some(pins) = &pins {
-                let slope = step.price_by_input + step.by_input.tr_mul(&value.costate);
-                pins.take_out(&mut step);
-                if settings.is_last {
-                    pins.multipliers(&slope, &mut stage.multipliers);
-                }
-            }
             let (policy, mut before) = Policy::of(&step, bounded, &value, settings.curvature);
             summary.count(index, step.price, &policy);
             if settings.is_last {

@@ -34,6 +34,16 @@ pub struct Springs<const N: usize> {
     pub stiffness: f64,
 }
 
+/// Bodies of unit mass, each with a push of its own.
+#[derive(Clebsch, Clone, Debug)]
+#[clebsch(
+    action     = |a: [Translation<3>; N], x: [Vector3; N]| (0..N).map(|i| x[i] + a[i]),
+    lagrangian = |v| (0..N).map(|i| v[i].norm_squared()).sum() / 2,
+    force      = |v, push: [Vector3; N]| (0..N).map(|i| push[i]),
+    scalar     = f64,
+)]
+pub struct Pushed<const N: usize>;
+
 type Spins = [Vector3<f64>; N];
 
 fn rings() -> BoxedStrategy<Ring<N>> {
@@ -200,6 +210,23 @@ proptest! {
         prop_assert_eq!(vectors.stepper().step_size(), H);
         let storage = vectors.into_storage();
         prop_assert_eq!((&storage.configuration[..], &storage.momentum[..]), (single.configuration(), single.momentum()));
+    }
+
+    /// Constant pushes give x + t v + t² u/2 and v + t u at the nodes.
+    #[test]
+    fn inputs_are_those_of_sites(x in prop::array::uniform5(vector::<3>(1.0)), v in prop::array::uniform5(vector::<3>(1.0)), u in prop::array::uniform5(vector::<3>(1.0)), steps in 1_u32..5) {
+        let mut sites = Pushed::<N>.into_stepper(H)?.sites(SiteStorage::of(x.to_vec(), v.to_vec()))?;
+        for _ in 0..steps {
+            sites.step_with(&u)?;
+        }
+        let t = f64::from(steps) * H;
+        for i in 0..N {
+            prop_assert_eq!(<Pushed<N> as Power<N>>::input_of_site(&u, i), &u[i]);
+            prop_assert!((sites.momentum()[i] - v[i] - t * u[i]).amax() < 1e-14);
+            prop_assert!((sites.configuration()[i] - x[i] - t * v[i] - t * t / 2.0 * u[i]).amax() < 1e-14);
+        }
+        prop_assert!(sites.step_with(&[Vector3::repeat(f64::NAN); N]).is_err());
+        prop_assert_eq!(sites.steps(), u64::from(steps));
     }
 
     /// A conserved quantity is a sum over sites.

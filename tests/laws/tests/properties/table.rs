@@ -126,11 +126,12 @@ pub const PROPERTIES: &[(&str, &[Property])] = &[
         ("maps_are_followed",         &["Controlled::follow", "Controlled::expand"]),
     ]),
     ("tests/laws/tests/properties/powers.rs", &[
-        ("sites_are_systems_alone",    &["Power::site", "Power::each", "Power::matrices_of", "Power::components_of", "Power::moved", "Power::at_site", "Power::power_kinetic_energy", "Power::power_isotropy_defect", "Power::power_orbit_defect"]),
+        ("sites_are_systems_alone",    &["Power::site", "Power::each", "Power::matrices_of", "Power::components_of", "Power::moved", "Power::kicked_and_moved", "Power::at_site", "Power::power_kinetic_energy", "Power::power_isotropy_defect", "Power::power_orbit_defect"]),
         ("what_terms_have_is_added_up", &["Power::add_gradient"]),
         ("kicks_are_gradients",        &["Power::potential_of_sites", "Power::gradient_at", "Power::kick_of_site", "Power::slope", "Power::power_kick", "Power::kick_into", "Power::power_stagger"]),
         ("steps_are_kicks_and_moves",  &["Power::power_constants", "Power::constants_of_sites", "PowerConstants::part", "Power::drift_into", "Power::drift_in_place", "Power::power_legendre", "Power::power_legendre_next"]),
         ("storage_does_not_matter",    &["SiteStorage::of", "Stepper::sites", "Sites::step", "Sites::advance", "Sites::configuration", "Sites::momentum", "Sites::energy", "Sites::steps", "Sites::time", "Sites::stepper", "Sites::into_storage"]),
+        ("inputs_are_those_of_sites",  &["Power::input_of_site", "Sites::step_with"]),
         ("conserved_momenta_are_sums", &["Sites::conserved"]),
         ("indices_go_round",           &["wrapped"]),
     ]),
