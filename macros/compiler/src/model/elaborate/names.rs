@@ -87,7 +87,8 @@ impl<'g> Elaborator<'_, '_, 'g> {
             Some(help) => format!("the name is `{reserved}`; {help}"),
             None => format!("write `{reserved}`"),
         });
-        let missing = advice(name).or(of_reserved);
+        let is_field = self.context.fields.names().into_list().contains(&name);
+        let missing = advice(name).or(of_reserved.filter(|_| !is_field));
         self.refuse(match missing.or_else(|| self.similar(name, names())) {
             Some(help) => error.help(help),
             None if name.chars().all(char::is_uppercase) => error
