@@ -162,11 +162,14 @@ pub trait Power<const N: usize>:
     /// J(q, weight ∂V).
     #[inline]
     fn power_kick(&self, t: T<Self>, q: &Q<Self>, weight: T<Self>) -> Mu<Self> {
-        if Self::GATHERS {
-            return from_fn(|i| self.kick_of_site(i, &q[i], &self.gradient_at(t, q, i), weight));
+        let gradient = if Self::GATHERS { [Space::origin(); N] } else { self.slope(t, q) };
+        let mut kick = [Space::origin(); N];
+        // not by `from_fn`: a closure that is not inlined does not know that its index is below N
+        for i in 0..N {
+            let slope = if Self::GATHERS { self.gradient_at(t, q, i) } else { gradient[i] };
+            kick[i] = self.kick_of_site(i, &q[i], &slope, weight);
         }
-        let gradient = self.slope(t, q);
-        from_fn(|i| self.kick_of_site(i, &q[i], &gradient[i], weight))
+        kick
     }
 
     /// J(q, weight ∂V) of one site.
