@@ -104,9 +104,12 @@ impl<'g> DiscreteLagrangian<'g> {
         let exchanged = leaves.flat_map(|(q, image)| [(q, image), (image, q)]);
         let by_ends: Vec<_> = reversed.iter().copied().chain(exchanged).into_list();
         reversed.extend(moved(model));
+        let kinetic = -self.kinetic.substitute(&reversed);
+        // in a cost of q and F alone, F⁻¹ cancels in F⁻¹ Φ_F(q), and does not with a symbol for q⁺
+        let is_plain = self.by_ends == self.kinetic;
         DiscreteLagrangian {
-            kinetic: -self.kinetic.substitute(&reversed),
-            by_ends: -self.by_ends.substitute(&by_ends),
+            kinetic,
+            by_ends: if is_plain { kinetic } else { -self.by_ends.substitute(&by_ends) },
             start: -self.end.substitute(&[(h, -h)]),
             end: -self.start.substitute(&[(h, -h)]),
             couples: self.couples,
