@@ -198,7 +198,9 @@ fn constant_in_space(formulas: &MechanicsFormulas<'_>) -> String {
     let ([factor], [leaf]) = (model.factors.as_slice(), model.configurations.as_slice()) else { return String::new() };
     let Factor { name, group, symbol, .. } = factor;
     let is_rigid = matches!(group, Group::SpecialOrthogonal(3..) | Group::UnitQuaternions | Group::SpecialEuclidean(_));
-    let turns_frames = is_rigid && model.action[0] == group.compose(*symbol, leaf.symbol);
+    // points are no frames: no product of F and q has to exist
+    let is_frame = leaf.symbol.shape() == symbol.shape();
+    let turns_frames = is_rigid && is_frame && model.action[0] == group.compose(*symbol, leaf.symbol);
     if !turns_frames || formulas.uniform_inertia.is_some() || formulas.inertia_moves() {
         return String::new();
     }
