@@ -290,6 +290,48 @@ pub struct Anchored {
     pub mass: f64,
 }
 
+/// A particle that motions of space move, in uniform gravity.
+#[derive(Clebsch, Clone, Debug)]
+#[clebsch(
+    action    = |F: SE<3>, x: Vector3| F.rotation() * x + F.translation(),
+    cost      = |h, x, F| self.mass * (F.rotation() * x + F.translation() - x).norm_squared() / (2 * h),
+    potential = |x| -self.mass * self.gravity.dot(&x),
+)]
+pub struct Thrown {
+    pub mass: f64,
+    pub gravity: Vector3<f64>,
+}
+
+/// A vector that unit quaternions turn.
+#[derive(Clebsch, Clone, Debug)]
+#[clebsch(
+    action    = |Q: SU<2>, x: Vector3| Q * x,
+    cost      = |h, Q| self.inertia * (Q - I).norm_squared() / h,
+    potential = |x| self.weight * x.z,
+)]
+pub struct Turned {
+    pub inertia: f64,
+    pub weight: f64,
+}
+
+/// Points are no frames: no product of the group element and the configuration exists. Its steps are those of a parabola.
+#[test]
+fn points_of_space_are_no_frames() {
+    let random = &mut Random::new(63);
+    let (x, v, mass, gravity) = (random.vector::<3>(), random.vector::<3>(), 1.3, random.vector::<3>());
+    let stepper = Thrown { mass, gravity }.into_stepper(H).expect("a particle");
+    let start = stepper.state(x, stepper.momentum_map(&x, &(mass * v))).expect("a state");
+    for (k, state) in stepper.trajectory(start).take(50).enumerate() {
+        let t = k as f64 * H;
+        let expected = x + t * v + t * t / 2.0 * gravity;
+        assert_near(state.expect("a step").configuration(), &expected, NEAR, "the place");
+    }
+    let stepper = Turned { inertia: 0.8, weight: 0.4 }.into_stepper(H).expect("a vector");
+    let start = stepper.state(x, x.cross(&v)).expect("a state");
+    let last = stepper.trajectory(start).take(50).last().expect("steps").expect("a step");
+    assert!((last.configuration().norm() - x.norm()).abs() < NEAR, "{last:?}");
+}
+
 #[test]
 fn the_inertia_of_a_left_action_does_not_turn() {
     let sentence = "The inertia is constant in space and does not turn with R.";

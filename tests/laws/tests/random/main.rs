@@ -125,6 +125,13 @@ fn what_is_linear_integrates_as_the_oracle_does() {
     integrates(some.into_iter());
 }
 
+/// Costs that couple and are composed with their adjoint. Once F⁻¹ did not cancel in F⁻¹ Φ_F(q), and they did not end.
+#[test]
+fn adjoints_of_coupled_costs_stay_short() {
+    const SEEDS: [u64; 3] = [920_257, 920_286, 920_321];
+    integrates(SEEDS.into_iter());
+}
+
 #[test]
 fn what_is_refused_says_why() {
     let mut failures = Vec::new();
