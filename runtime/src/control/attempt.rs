@@ -16,8 +16,16 @@ use nalgebra::SVector;
 
 /// Variations of the inputs from which the target is approached.
 const VARIATIONS: u32 = 3;
-/// Doublings of the amplitudes of a variation that are tried.
-const SIZES: usize = 6;
+
+/// The amplitudes of a pattern that are tried: the smallest, in those that close the gap where nothing bends, and how often it is doubled.
+pub struct Amplitudes(f64, usize);
+
+impl Amplitudes {
+    /// Those that lead out of symmetry, where the first derivative vanishes.
+    pub const NEAR: Amplitudes = Amplitudes(0.25, 6);
+    /// Those that lead away from the plan that misled a search.
+    const FAR: Amplitudes = Amplitudes(16.0, 3);
+}
 
 impl<T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: usize, const C: usize> Plan<'_, S, D, U, C> {
     /// The critical plan near the guess that the stages hold; without their multipliers where those mislead, and from further away where
@@ -51,22 +59,30 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: usize
         if variation > 0 {
             self.follow()?;
             let end = self.problem.end(&self.last);
+            // multipliers and slacks are forgotten: the reach of inputs is that without bounds
+            self.bounds = T::zero();
             let summary = self.eliminate(&end, &Iterate::new(SVector::zeros(), None, end.distance).settings)?;
-            self.stir(&summary, end.lack.max_abs(), variation);
+            self.stir(&summary, end.lack.max_abs(), variation, &Amplitudes::FAR);
         }
         Ok(())
     }
 
     /// The way out of symmetry: adds the pattern of inputs, of several sizes and turning either way, that ends nearest to the target.
     #[cold]
-    pub fn stir(&mut self, summary: &PlanSummary<T, D, U>, far: T, attempt: u32) {
+    pub fn stir(
+        &mut self,
+        summary: &PlanSummary<T, D, U>,
+        far: T,
+        attempt: u32,
+        &Amplitudes(smallest, sizes): &Amplitudes,
+    ) {
         let steps = self.stages.len();
-        let part = far * T::from_ratio(1, 4);
+        let part = far * T::from_f64(smallest);
         let turns = T::from_f64(f64::from(attempt));
         let mut best: Option<(SVector<T, U>, T, T)> = None;
         for turns in [turns, -turns] {
             let mut amplitudes = summary.reach.map(|reach| if reach > T::zero() { part / reach } else { T::zero() });
-            for _ in 0..SIZES {
+            for _ in 0..sizes {
                 if let Some(distance) = self.distance(&amplitudes, turns)
                     && best.is_none_or(|(.., least)| distance < least)
                 {

@@ -1,5 +1,6 @@
 //! Newton's method on a plan, and the fallback if it does not contract.
 
+use super::attempt::Amplitudes;
 use super::end::PlanEnd;
 use super::iterate::{Iterate, ROUNDS, Verdict};
 use super::search::Descent;
@@ -97,7 +98,7 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: usize
                 }
                 Verdict::Stir => {
                     stirs += 1;
-                    self.stir(&summary, end.lack.max_abs(), stirs);
+                    self.stir(&summary, end.lack.max_abs(), stirs, &Amplitudes::NEAR);
                     now = self.start(false)?;
                     continue;
                 }

@@ -117,7 +117,7 @@ fn a_large_bound_switches_no_other_off() {
             let plan = solved::<_, 3, 2, 3, 30>(unicycle(top_turn), 1.0 / 30.0, (&start, goal), Vector2::zeros());
             found += usize::from(plan.unwrap_or_else(|what| panic!("{top_turn:e}, {goal}: {what}")).is_some());
         }
-        assert!(found >= 27, "{top_turn:e}: {found} of 30");
+        assert!(found >= 29, "{top_turn:e}: {found} of 30");
     }
 }
 

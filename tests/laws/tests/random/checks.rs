@@ -1,5 +1,6 @@
 //! The laws of every problem that compiles.
 
+use std::cmp::Ordering;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
 use clebsch_compiler::derive::{self, Solution, Structure};
@@ -17,6 +18,7 @@ use clebsch_tests::oracle::precise::step::{State, composed_trajectory, step, tra
 use clebsch_tests::oracle::random::Random;
 use proc_macro2::TokenStream;
 
+use crate::powers::{Power, Sites, kicked};
 use crate::problem::{Declared, Discretization, Kind, Kinetic};
 use crate::stepping::{Seen, Stepper};
 
@@ -181,6 +183,58 @@ fn collocated(problem: &Declared, seed: u64) -> Result<bool, String> {
             "slopes are {off:.1e} from those of the oracle, and the covector's momentum {missed:.1e} from N"
         )),
     }
+}
+
+/// How the gradient of a power is computed.
+#[derive(Copy, Clone, Debug, PartialEq, Eq)]
+pub enum Gradient {
+    /// Site by site.
+    Gathered,
+    /// Term by term.
+    Added,
+    /// The site is refused, as it needs matrix code, which powers do not have.
+    TooLarge,
+}
+
+/// Compiles a power, steps its sites, and compares them with the problem of the oracle.
+///
+/// # Errors
+/// The difference, in words.
+pub fn check_power(power: &Power, seed: u64) -> Result<Gradient, String> {
+    let text = power.text();
+    let run = || -> Result<Gradient, String> {
+        let tokens: TokenStream = text.parse().map_err(|error| format!("no tokens: {error}"))?;
+        let graph = Graph::new();
+        let program = match mechanics(&graph, tokens) {
+            Ok(program) => program,
+            Err(errors) if errors.to_string().contains("a power has no matrix code") => return Ok(Gradient::TooLarge),
+            Err(errors) => return Err(format!("refused:\n{errors}")),
+        };
+        let unrolled = power.unrolled();
+        let start = start(&unrolled, &mut Random::new(seed ^ 0x5eed));
+        let (h, first) = (DoubleDouble::of(H), start.lift::<DoubleDouble>());
+        let oracle = match program.formulas.stepped == 2 {
+            true => kicked(&unrolled, h, &first, 2),
+            false => trajectory(&unrolled, h, &first, 2),
+        };
+        let oracle = oracle.map_err(|lost| format!("the oracle has no step: {lost:?}"))?;
+        let (mut sites, mut state) = (Sites::new(power, &program, H), seen(&unrolled, &start));
+        let potential = unrolled.potential(0.0, &start.q);
+        let found = sites.potential(0.0, &state);
+        if (found - potential).abs().partial_cmp(&(1e-12 * potential.abs().max(1.0))) != Some(Ordering::Less) {
+            return Err(format!("the potential is {found}, that of the oracle {potential}"));
+        }
+        for (k, exact) in oracle.iter().enumerate().skip(1) {
+            state = sites.step((k - 1) as f64 * H, &state)?;
+            let distance = distance(&unrolled, exact, &state);
+            if distance.is_nan() || distance > 1e-12 {
+                return Err(format!("step {k} of sites is {distance:.1e} from the oracle"));
+            }
+        }
+        moves(&oracle)?;
+        Ok(if program.gathered.is_some() { Gradient::Gathered } else { Gradient::Added })
+    };
+    run().map_err(|error| format!("seed {seed}: {error}\n{text}"))
 }
 
 /// A short step without the potential, its increments next to those of the oracle.

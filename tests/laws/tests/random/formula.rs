@@ -62,6 +62,26 @@ impl Formula {
         which(self) || parts.iter().any(|part| part.mentions(which))
     }
 
+    /// The same formula of other leaves, factors and fields. Points have new numbers, elements and velocities that of the first point.
+    /// Fields are counted from an offset.
+    pub fn moved(&self, points: &[usize], fields: usize) -> Formula {
+        let of = |formula: &Formula| Box::new(formula.moved(points, fields));
+        let both = |pair: &[Formula; 2]| Box::new([0, 1].map(|k| pair[k].moved(points, fields)));
+        match self {
+            Formula::Point(k) => Formula::Point(points[*k]),
+            Formula::Element(_) => Formula::Element(points[0]),
+            Formula::Velocity(_) => Formula::Velocity(points[0]),
+            Formula::Field(k) => Formula::Field(k + fields),
+            Formula::Operator(operator, pair) => Formula::Operator(*operator, both(pair)),
+            Formula::Method(name, a) => Formula::Method(name, of(a)),
+            Formula::Pair(name, pair) => Formula::Pair(name, both(pair)),
+            Formula::Power(a, n) => Formula::Power(of(a), *n),
+            Formula::Entry(a, i, j) => Formula::Entry(of(a), *i, *j),
+            Formula::Coordinate(a, i) => Formula::Coordinate(of(a), *i),
+            Formula::Number(_) | Formula::Step | Formula::Time | Formula::Identity(_) => self.clone(),
+        }
+    }
+
     /// The text, every operation in parentheses.
     pub fn text(&self, names: &Names) -> String {
         let text = |formula: &Formula| formula.text(names);

@@ -130,7 +130,7 @@ impl Generator<'_> {
         self.made.factors.push(Acting { group: group.clone(), side });
         let start = self.element(&group, 0.5);
         let start = if leaf.start.shape() == start.shape() { start } else { leaf.start.clone() };
-        let image = renumbered(&leaf.image);
+        let image = leaf.image.moved(&[1], 0);
         self.made.leaves.push(Leaf { start, image, ..leaf });
         self.made.array = true;
     }
@@ -161,9 +161,7 @@ impl Generator<'_> {
 
     /// exp of something of this size.
     fn element(&mut self, group: &NamedGroup, size: f64) -> Matrix<f64> {
-        let components: Vec<f64> = group.group.basis.iter().map(|_| size * self.random.number()).collect();
-        let element = group.group.combination(&components).exponential();
-        if group.kind == Kind::Vector { element.translation() } else { element }
+        element(self.random, group, size)
     }
 
     /// Factor k and its leaf k.
@@ -479,15 +477,9 @@ fn is_affine(group: &NamedGroup) -> bool {
     ["SE", "Sim", "Aff"].iter().any(|name| group.name.starts_with(name))
 }
 
-/// The same formula for factor and leaf 1 in place of 0.
-fn renumbered(formula: &Formula) -> Formula {
-    match formula {
-        Formula::Point(_) => Formula::Point(1),
-        Formula::Element(_) => Formula::Element(1),
-        Formula::Operator(sign, pair) => {
-            Formula::Operator(*sign, Box::new([renumbered(&pair[0]), renumbered(&pair[1])]))
-        }
-        Formula::Method(name, a) => Formula::Method(name, Box::new(renumbered(a))),
-        other => other.clone(),
-    }
+/// exp of something of this size.
+pub fn element(random: &mut Random, group: &NamedGroup, size: f64) -> Matrix<f64> {
+    let components: Vec<f64> = group.group.basis.iter().map(|_| size * random.number()).collect();
+    let element = group.group.combination(&components).exponential();
+    if group.kind == Kind::Vector { element.translation() } else { element }
 }

@@ -17,6 +17,7 @@ mod groups;
 mod kernels;
 #[path = "../../../../macros/compiler/tests/fuzz/mutation.rs"]
 mod mutation;
+mod powers;
 mod problem;
 mod shrinking;
 mod stepping;
@@ -25,9 +26,10 @@ mod verdict;
 
 use std::ops::Range;
 
-use checks::{Found, check};
+use checks::{Found, Gradient, check, check_power};
 use generator::problem;
 use mutation::{Choices, mutated};
+use powers::Power;
 use verdict::verdict;
 
 /// The count with the feature `heavy`, and half of it without.
@@ -130,6 +132,24 @@ fn what_is_linear_integrates_as_the_oracle_does() {
 fn adjoints_of_coupled_costs_stay_short() {
     const SEEDS: [u64; 3] = [920_257, 920_286, 920_321];
     integrates(SEEDS.into_iter());
+}
+
+/// Systems with a const generic: random sites, which rings, chains and pairs of random terms tie to each other.
+#[test]
+fn powers_integrate_as_the_oracle_does() {
+    let (mut found, mut failures) = (Vec::new(), Vec::new());
+    for seed in seeds(60) {
+        match check_power(&Power::random(seed), seed) {
+            Ok(how) => found.push(how),
+            Err(failure) => failures.push(failure),
+        }
+    }
+    report(&failures);
+    let count = |wanted| found.iter().filter(|how| **how == wanted).count();
+    let [gathered, added, large] = [Gradient::Gathered, Gradient::Added, Gradient::TooLarge].map(count);
+    println!("{} powers: {gathered} gathered, {added} added, {large} too large", found.len());
+    assert!(found.len() < 30 || gathered > 2 && added > 2, "{gathered} gathered, {added} added");
+    assert!(30 * large <= found.len(), "{large} of {} are too large", found.len());
 }
 
 #[test]

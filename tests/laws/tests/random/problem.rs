@@ -110,24 +110,8 @@ impl Declared {
             typed("q", &names.points, &types)
         ));
         let closure = |key: &str, formula: &Formula| {
-            let mentions = |which: &dyn Fn(&Formula) -> bool| formula.mentions(which);
-            let mut arguments = Vec::new();
-            if mentions(&|part| matches!(part, Formula::Time)) {
-                arguments.push("t".to_string());
-            }
-            if mentions(&|part| matches!(part, Formula::Step)) {
-                arguments.push("h".into());
-            }
-            if mentions(&|part| matches!(part, Formula::Point(_))) {
-                arguments.push(bare("q", &names.points));
-            }
-            if mentions(&|part| matches!(part, Formula::Element(_))) {
-                arguments.push(bare("F", &names.elements));
-            }
-            if key == "lagrangian" {
-                arguments.push(bare("v", &names.velocities));
-            }
-            format!("{key} = |{}| {}", arguments.join(", "), formula.text(&names))
+            let letters = [bare("q", &names.points), bare("F", &names.elements), bare("v", &names.velocities)];
+            format!("{key} = |{}| {}", head(key, formula, letters), formula.text(&names))
         };
         match &self.kinetic {
             Kinetic::Cost(cost) => keys.push(closure("cost", cost)),
@@ -146,7 +130,8 @@ impl Declared {
         }
         keys.extend(self.dials.iter().map(|dial| dial.to_string()));
         let scalar = if self.mentions_field() { "" } else { "    scalar = f64,\n" };
-        let fields: String = self.fields.iter().zip(&names.fields).map(|(field, name)| field.text(name)).collect();
+        let fields: String =
+            self.fields.iter().zip(&names.fields).map(|(field, name)| field.text(name, None)).collect();
         format!("#[clebsch(\n    {},\n{scalar})]\npub struct Problem {{\n{fields}}}\n", keys.join(",\n    "))
     }
 
@@ -154,7 +139,7 @@ impl Declared {
         !self.fields.is_empty()
     }
 
-    fn names(&self) -> Names {
+    pub fn names(&self) -> Names {
         let numbered = |letters: &str, letter: &str, count: usize| -> Vec<String> {
             let name = |k: usize| if self.array { format!("{letter}[{k}]") } else { letters[k..=k].to_string() };
             (0..count).map(name).collect()
@@ -184,14 +169,30 @@ impl Declared {
     }
 }
 
+/// The arguments of the closure of a key: those of its formula, and the velocity of each Lagrangian.
+pub fn head(key: &str, formula: &Formula, [q, f, v]: [String; 3]) -> String {
+    let mentions = |which: &dyn Fn(&Formula) -> bool| formula.mentions(which);
+    let arguments = [
+        ("t".to_string(), mentions(&|part| matches!(part, Formula::Time))),
+        ("h".to_string(), mentions(&|part| matches!(part, Formula::Step))),
+        (q, mentions(&|part| matches!(part, Formula::Point(_)))),
+        (f, mentions(&|part| matches!(part, Formula::Element(_)))),
+        (v, key == "lagrangian"),
+    ];
+    let taken: Vec<String> = arguments.into_iter().filter_map(|(name, is_taken)| is_taken.then_some(name)).collect();
+    taken.join(", ")
+}
+
 impl Field {
-    fn text(&self, name: &str) -> String {
+    /// The line of the struct; with a length that of an array.
+    pub fn text(&self, name: &str, length: Option<&str>) -> String {
         let type_name = match self.value.shape() {
             (1, 1) => "f64".into(),
             (n, 1) => format!("SVector<f64, {n}>"),
             (n, m) => format!("SMatrix<f64, {n}, {m}>"),
         };
-        format!("    {}pub {name}: {type_name},\n", self.attribute)
+        let type_name = length.map_or(type_name.clone(), |length| format!("[{type_name}; {length}]"));
+        format!("{}    pub {name}: {type_name},\n", self.attribute)
     }
 }
 

@@ -162,7 +162,7 @@ impl<'a, 'g> Stepper<'a, 'g> {
     }
 
     /// J(q, p), which leaves q and p in their places.
-    fn momentum_map(&mut self, q: &[Vec<f64>], p: &[Vec<f64>]) -> Vec<f64> {
+    pub fn momentum_map(&mut self, q: &[Vec<f64>], p: &[Vec<f64>]) -> Vec<f64> {
         let formulas = &self.program.formulas;
         for (leaf, entries) in formulas.model.configurations.iter().zip(q) {
             self.values.set(leaf.symbol, entries);
