@@ -12,9 +12,9 @@ use syn::{Expr, Type};
 use crate::diagnostic::{Diagnostic, Diagnostics, Location, error};
 use crate::parse::{ChartChoice, Closure, Declaration, Discretization, Kinetic, Order, Potential};
 
-/// The work of one expansion, for each of its methods: about ten seconds and less than half a gigabyte where the compiler is not optimised. Examples, fixtures and
-/// the systems of the tests take less than a tenth of it.
-pub const WORK: u64 = 20_000_000;
+/// The work of one expansion, for each of its methods: about a second where the compiler is not optimised. Fixtures of the tests
+/// take less than a tenth of it, and the largest scenes a third.
+pub const WORK: u64 = 8_000_000;
 
 /// The stages behind the first one.
 #[derive(Copy, Clone, PartialEq, Eq)]
@@ -64,8 +64,8 @@ fn too_large(declaration: &Declaration, stage: CompilerStage) -> Diagnostic {
         .note("formulas are expanded at compile time, and products of sums get a term for each pair of terms")
 }
 
-/// The closure that makes the declaration large, and its replacement. It is the first optional closure without which a
-/// quarter of the budget is enough.
+/// The closure that makes the declaration large, and its replacement. It is the first optional closure without which an
+/// eighth of the budget is enough.
 fn culprit(declaration: &Declaration) -> Option<(Location, String, &'static str)> {
     type Without = fn(&mut Declaration);
     let potential = declaration.potential.as_ref().and_then(Potential::closure);
@@ -81,7 +81,7 @@ fn culprit(declaration: &Declaration) -> Option<(Location, String, &'static str)
         without(&mut rest);
         rest.methods.clear();
         let stages = || crate::program(&Graph::new(), &rest, &Cell::new(CompilerStage::Model)).is_ok();
-        work::within(WORK / 4, stages) == Ok(true)
+        work::within(WORK / 8, stages) == Ok(true)
     };
     rows.into_iter().find_map(|(closure, without, what, instead)| {
         let closure = closure.filter(|_| is_small(without))?;

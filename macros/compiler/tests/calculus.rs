@@ -3,7 +3,9 @@
 use std::path::{Path, PathBuf};
 
 /// The methods of expressions that do calculus.
-const CALCULUS: [&str; 7] = ["substitute", "gradient", "jacobian", "differential", "derivative", "expand", "blockwise"];
+#[rustfmt::skip]
+const CALCULUS: [&str; 8] =
+    ["substitute", "gradient", "jacobian", "differential", "derivative", "expand", "expand_within", "blockwise"];
 
 /// Whether a line calls one of them.
 fn does_calculus(line: &str) -> bool {

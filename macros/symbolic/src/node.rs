@@ -166,7 +166,7 @@ impl ExprNode {
         let size_of = |term: &Term| 1 + term.coefficient.digits() + (term.scalars.len() + term.word.len()) / 4;
         2 + match self {
             ExprNode::Sum(terms) => terms.iter().map(size_of).sum(),
-            ExprNode::Literal(entries) => entries.iter().map(|entry| 1 + entry.digits()).sum(),
+            ExprNode::Literal(entries) => entries.iter().map(|entry| 1 + entry.digits()).sum::<usize>() / 4,
             ExprNode::Stack(parts) | ExprNode::Word(parts) | ExprNode::Trace(parts) | ExprNode::Opaque(_, _, parts) => {
                 parts.len()
             }

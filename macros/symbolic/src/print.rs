@@ -1,9 +1,12 @@
 //! Printing: Unicode for doc comments and terminals, LaTeX for papers.
 
+mod parts;
+
+use std::cell::Cell;
 use std::fmt;
 
 use crate::node::{Analytic, Exponent, ExprNode, Function, Id, Operation, Term};
-use crate::{Elements, Expr, Graph, IntoList, Rational, Shape, both, work};
+use crate::{Elements, Expr, Graph, IntoList, Rational, Shape, Table, both, work};
 
 /// A notation of formulas.
 #[derive(Copy, Clone, PartialEq, Eq, Debug)]
@@ -38,18 +41,40 @@ impl fmt::Display for Expr<'_> {
 impl Expr<'_> {
     /// The formula in a notation.
     pub fn written(self, notation: Notation) -> String {
-        Printer { graph: self.graph, notation }.print(self.id, Binding::Sum)
+        Printer::new(self.graph, notation, usize::MAX).print(self.id, Binding::Sum)
+    }
+
+    /// The formula in a notation; `None` where it has more characters than these.
+    pub fn written_within(self, notation: Notation, most: usize) -> Option<String> {
+        let printer = Printer::new(self.graph, notation, most);
+        let text = printer.print(self.id, Binding::Sum);
+        (printer.left.get() > 0 && text.chars().count() <= most).then_some(text)
     }
 }
 
 struct Printer<'g> {
     graph: &'g Graph,
     notation: Notation,
+    /// How many nodes may be printed yet. Each of them takes a character at least.
+    left: Cell<usize>,
+    /// The names of the parts that are written elsewhere.
+    names: Table<Id, String>,
 }
 
-impl Printer<'_> {
+impl<'g> Printer<'g> {
+    fn new(graph: &'g Graph, notation: Notation, most: usize) -> Printer<'g> {
+        Printer { graph, notation, left: Cell::new(most), names: Table::default() }
+    }
+
     /// The text of a node, in parentheses if it binds less tightly than its place asks.
     fn print(&self, id: Id, place: Binding) -> String {
+        if let Some(name) = self.names.get(&id) {
+            return name.clone();
+        }
+        self.left.set(self.left.get().saturating_sub(1));
+        if self.left.get() == 0 {
+            return String::new();
+        }
         let (text, binding) = self.node(id);
         // an expression in several places is printed in each
         work::spend(1 + text.len() / 64);

@@ -180,6 +180,11 @@ impl<'g> Expr<'g> {
         self.mapped(images, |part| part.expand_node(images))
     }
 
+    /// As [`expand`](Self::expand), where that takes so much work at most; as it is otherwise.
+    pub fn expand_within(self, units: u64) -> Expr<'g> {
+        work::within(units, || self.expand()).unwrap_or(self)
+    }
+
     /// As [`expand`](Self::expand), and inside roots and functions too: for limits, where cancellation is the goal.
     pub fn expand_all(self) -> Expr<'g> {
         let images = Images::default();

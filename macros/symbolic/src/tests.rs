@@ -155,7 +155,7 @@ mod table {
 }
 
 mod work {
-    use crate::work::{Exhausted, spend, spent, within};
+    use crate::work::{Exhausted, apart, spend, spent, within};
 
     #[test]
     fn what_stays_within_its_limit_is_done() {
@@ -174,11 +174,75 @@ mod work {
     }
 
     #[test]
+    fn work_apart_has_its_own_limit() {
+        let before = spent();
+        assert_eq!(within(10, || apart(100, || spend(100))), Ok(Ok(())));
+        assert_eq!(within(10, || apart(100, || spend(101))), Ok(Err(Exhausted)));
+        assert_eq!(apart(5, || (within(10, || spend(6)), apart(10, || spend(6)))), Ok((Err(Exhausted), Ok(()))));
+        assert_eq!(spent(), before);
+    }
+
+    #[test]
     fn a_panic_stays_one() {
         let caught = std::panic::catch_unwind(|| within(10, || std::panic::resume_unwind(Box::new("ours"))));
         assert_eq!(caught.unwrap_err().downcast_ref::<&str>(), Some(&"ours"));
         // and the limit is gone
         spend(1000);
+    }
+}
+
+mod print {
+    use crate::{Expr, Function, Graph, Notation, Property, Role, Shape};
+
+    fn symbol<'g>(graph: &'g Graph, name: &str) -> Expr<'g> {
+        graph.symbol(name, Shape::scalar(), Role::Parameter(0), Property::General)
+    }
+
+    #[test]
+    fn a_text_has_at_most_so_many_characters() {
+        let graph = Graph::new();
+        let sum = symbol(&graph, "a") + symbol(&graph, "b");
+        let square = sum.sqrt() * sum.sqrt().function(Function::Sin);
+        let text = square.to_string();
+        let length = text.chars().count();
+        assert_eq!(square.written_within(Notation::Unicode, length), Some(text));
+        assert_eq!(square.written_within(Notation::Unicode, length - 1), None);
+    }
+
+    /// Each part has its name in the parts behind it and in the formulas, and short ones have none.
+    #[test]
+    fn parts_that_occur_again_have_names() {
+        let graph = Graph::new();
+        let (a, b) = (symbol(&graph, "amplitude"), symbol(&graph, "b"));
+        let sine = (a + b).function(Function::Sin);
+        let root = (sine * sine.function(Function::Cos) + b.function(Function::Sin)).sqrt();
+        let formulas = [root * root.function(Function::Exp), b.function(Function::Sin) * sine];
+        let (texts, parts) = graph.written_in_parts(&formulas, Notation::Unicode, 1000).expect("a short text");
+        assert_eq!(parts, ["P₁ = sin(amplitude + b)", "P₂ = P₁·cos(P₁) + sin(b)"]);
+        assert_eq!(texts, ["√(P₂)·exp(√(P₂))", "P₁·sin(b)"]);
+        assert_eq!(graph.written_in_parts(&formulas, Notation::Unicode, 40), None);
+    }
+
+    /// A text that doubles with each level has two parts for each.
+    #[test]
+    fn a_text_that_doubles_is_as_long_as_its_parts() {
+        let graph = Graph::new();
+        let mut nested = symbol(&graph, "q");
+        for _ in 0..60 {
+            nested = nested.function(Function::Sin) * (nested + symbol(&graph, "b")).function(Function::Cos);
+        }
+        assert_eq!(nested.written_within(Notation::Unicode, 10_000), None);
+        let (texts, parts) = graph.written_in_parts(&[nested], Notation::Latex, 10_000).expect("a short text");
+        assert!(texts[0].contains("P_{118}") && parts.len() == 118, "{texts:?} {parts:?}");
+    }
+
+    #[test]
+    fn a_long_expression_is_not_expanded() {
+        let graph = Graph::new();
+        let (a, b) = (symbol(&graph, "a"), symbol(&graph, "b"));
+        let product = (a + b) * (a - b);
+        assert_eq!(product.expand_within(1000), product.expand());
+        assert_eq!((product + a).expand_within(0), product + a);
     }
 }
 

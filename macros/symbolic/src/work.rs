@@ -5,6 +5,7 @@
 //! work of one term of a sum: some hundred bytes, or some hundred instructions. The count belongs to the thread, for
 //! terms and numbers know no graph that they could ask.
 
+use std::any::Any;
 use std::cell::Cell;
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
 
@@ -52,5 +53,21 @@ pub fn within<T>(units: u64, work: impl FnOnce() -> T) -> Result<T, Exhausted> {
     ACCOUNT.set(Account { spent, limit: spent.saturating_add(units).min(outer) });
     let result = catch_unwind(AssertUnwindSafe(work));
     ACCOUNT.set(Account { limit: outer, ..ACCOUNT.get() });
+    ended(result)
+}
+
+/// Does work of this many units at most, which is not counted with the work around it: for texts, which may be shorter.
+///
+/// # Errors
+/// Where it takes more.
+pub fn apart<T>(units: u64, work: impl FnOnce() -> T) -> Result<T, Exhausted> {
+    let around = ACCOUNT.replace(Account { spent: 0, limit: units });
+    let result = catch_unwind(AssertUnwindSafe(work));
+    ACCOUNT.set(around);
+    ended(result)
+}
+
+/// The end of some work; a panic goes on.
+fn ended<T>(result: Result<T, Box<dyn Any + Send>>) -> Result<T, Exhausted> {
     result.map_err(|payload| if payload.is::<Exhausted>() { Exhausted } else { resume_unwind(payload) })
 }

@@ -14,7 +14,8 @@ use crate::model::{Discretization, Factor, Motion, System};
 pub struct Lowered {
     /// How the code is written, and why: a sentence.
     pub form: String,
-    /// The coefficients of ξᵢξⱼ, i ≤ j, in the kinetic energy, without those that are zero; `None` for matrix code.
+    /// The coefficients of ξᵢξⱼ, i ≤ j, in the kinetic energy, without those that are zero.
+    /// `None` for matrix code and where they are too long to print.
     pub energy: Option<Vec<(usize, usize, String)>>,
     /// Whether the gradient of a site of a power is gathered from the terms that read it.
     pub is_gathered: bool,

@@ -140,7 +140,7 @@ impl<'g> MomentumEquation<'g> {
             components,
             factors,
             residual,
-            directional: if kept { slope } else { slope.expand() },
+            directional: if kept { slope } else { slope.expand_within(DISTRIBUTED) },
             form,
             solution: Solution::Newton,
             formula: None,
@@ -174,6 +174,9 @@ impl<'g> MomentumEquation<'g> {
         self.components.each(column)
     }
 }
+
+/// The work to distribute the products of a formula. A longer one stays as it is.
+pub(super) const DISTRIBUTED: u64 = 30_000;
 
 /// Whether a matrix is zero off its diagonal for all values of its symbols.
 pub(super) fn is_diagonal(matrix: Expr<'_>) -> bool {

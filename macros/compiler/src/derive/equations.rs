@@ -1,10 +1,10 @@
 //! The implicit equation in the chart: both trivialisations of ∂_F ℓd, denominators cleared, coupled blocks together.
 
-use clebsch_symbolic::{Chart, Elements, Expr, IntoList, Shape, identity, indexed};
+use clebsch_symbolic::{Chart, Elements, Expr, IntoList, Shape, identity, indexed, work};
 
 use super::clearing;
 use super::closed_form::{closed_form, is_solved_by_predictor};
-use super::equation::{Form, Momentum, MomentumEquation, Solution, Sources, is_diagonal, is_kept};
+use super::equation::{DISTRIBUTED, Form, Momentum, MomentumEquation, Solution, Sources, is_diagonal, is_kept};
 use super::letters::Letters;
 use super::{ChartBlock, exact, structure};
 
@@ -82,7 +82,8 @@ fn explicit<'g>(sources: &Sources<'_, 'g>, residuals: &[Residual<'g>], i: usize)
     {
         return None;
     }
-    let slope = rows.differential(&[(block.coordinates, block.direction)]).expand();
+    let slope = rows.differential(&[(block.coordinates, block.direction)]);
+    let slope = constant(slope, block).then(|| slope.expand())?;
     let inertia = sources.inertia.block(block.offset, block.offset, Shape::square(block.dimension()));
     let linear = !slope.depends_on(block.coordinates) && !slope.depends_on(symbols.momenta[block.factor]);
     if !linear || sources.is_moving(slope) || !is_diagonal(inertia) {
@@ -92,6 +93,15 @@ fn explicit<'g>(sources: &Sources<'_, 'g>, residuals: &[Residual<'g>], i: usize)
     let entry = |a: usize| step * momentum.entry(a, 0) / inertia.entry(a, a).expand();
     Some(graph.stack(block.coordinates.shape(), indexed(block.dimension(), entry)))
 }
+
+/// Whether a slope may be the same everywhere. A long one is not expanded to find out: it is compared with itself elsewhere.
+fn constant<'g>(slope: Expr<'g>, block: ChartBlock<'g>) -> bool {
+    let is_short = work::within(SHORT, || slope.expand()).is_ok();
+    is_short || identity::equal(&[slope], &[slope.substitute(&[(block.coordinates, block.direction)])])
+}
+
+/// The work to expand a slope that is short.
+const SHORT: u64 = 50_000;
 
 /// ρ_k(x): the components of T* ∂_F K − J(q, ∂_q K), less their value at F = I, less μ.
 ///
@@ -132,8 +142,9 @@ fn residual<'g>(
         // freed of dexp⁻¹ by dexp, which is regular near the identity
         let (gradient, slope) = (gradient.substitute(elements), slope.substitute(elements));
         let freed = slope.transpose() * plain;
-        let expanded = || gradient.expand() + freed.expand();
-        return (if letters.increments.is_empty() { expanded() } else { gradient + freed }, true);
+        let expanded = || work::within(DISTRIBUTED, || gradient.expand() + freed.expand()).ok();
+        let expanded = letters.increments.is_empty().then(expanded).flatten();
+        return (expanded.unwrap_or(gradient + freed), true);
     }
     if coupling.is_some() || !letters.increments.is_empty() {
         return (plain, false);

@@ -3,9 +3,15 @@
 use std::cell::OnceCell;
 use std::fmt;
 
-use clebsch_symbolic::{Elements, Expr, IntoList, Notation, Shape};
+use clebsch_symbolic::{Elements, Expr, IntoList, Notation, Shape, work};
 
 use super::{Entry, Id, Reference, latex};
+
+/// A text of more characters has names for its parts.
+const LONGEST: usize = 16_384;
+
+/// The work to expand a formula for its text, at most.
+const EXPANSION: u64 = 100_000;
 
 /// A derived formula, `symbol = value`.
 #[derive(Clone)]
@@ -29,7 +35,7 @@ pub struct Formula<'g> {
     pub(super) wording: Wording<'g>,
     /// Which of its expressions are said in the momentum μ of the free motion to F, with μ and F.
     pub(super) free: Vec<(usize, Expr<'g>, Expr<'g>)>,
-    pub(super) text: OnceCell<Vec<String>>,
+    pub(super) text: OnceCell<RightSide>,
 }
 
 /// How the right side of a formula is written.
@@ -77,8 +83,8 @@ impl<'g> Formula<'g> {
         Formula { wording: Wording::Words(unicode, latex), ..self }
     }
 
-    /// The right side, one text for each factor or leaf.
-    fn text(&self) -> &[String] {
+    /// The right side.
+    fn text(&self) -> &RightSide {
         self.text.get_or_init(|| self.right_side(Notation::Unicode))
     }
 
@@ -94,9 +100,11 @@ impl<'g> Formula<'g> {
 
     /// `symbol = expression`, tuples in parentheses.
     pub fn equation(&self) -> String {
-        match self.text() {
-            [only] => format!("{} = {only}", self.symbol),
-            several => format!("{} = ({})", self.symbol, several.join(", ")),
+        let text = self.text();
+        let parts = text.parts(", ");
+        match text.sides.as_slice() {
+            [only] => format!("{} = {only}{parts}", self.symbol),
+            several => format!("{} = ({}){parts}", self.symbol, several.join(", ")),
         }
     }
 
@@ -106,31 +114,31 @@ impl<'g> Formula<'g> {
             Id::Conserved(_) => format!("\\text{{{}}}", self.symbol),
             _ => latex::left_side(&self.symbol),
         };
-        match self.right_side(Notation::Latex).as_slice() {
-            [only] => format!("{symbol} &= {only}"),
-            several => format!("{symbol} &= \\left({}\\right)", several.join(", ")),
+        let text = self.right_side(Notation::Latex);
+        let parts = text.parts(",\\quad ");
+        match text.sides.as_slice() {
+            [only] => format!("{symbol} &= {only}{parts}"),
+            several => format!("{symbol} &= \\left({}\\right){parts}", several.join(", ")),
         }
     }
 
-    fn right_side(&self, notation: Notation) -> Vec<String> {
-        let write = |value: Expr<'g>| without_embeddings(value).written(notation);
-        let values = self.expressions().iter().copied();
-        let mut written: Vec<String> = match &self.wording {
-            Wording::AsIs => values.map(write).into_list(),
-            Wording::Shorter => values.map(|value| write(shorter(value))).into_list(),
-            Wording::Words(unicode, latex) => vec![notation.either(unicode, latex).clone()],
-            Wording::AndKick(place, kicks) => {
-                let with_kick = |(value, kick): (Expr<'g>, &Expr<'g>)| {
-                    let (value, kick) = (write(value), shorter(*kick).written(notation));
-                    let latex = format!("{value} + \\left[{kick}\\right]_{{{}}}", place.replace('⁺', "^+"));
-                    notation.either(format!("{value} + [{kick}] at {place}"), latex)
-                };
-                values.zip(kicks).map(with_kick).into_list()
+    /// The text of the right side. It never uses up the budget of the expansion: a long one is written shorter.
+    fn right_side(&self, notation: Notation) -> RightSide {
+        let words = |unicode: &String, latex: &String| notation.either(unicode, latex).clone();
+        let written = work::apart(u64::MAX, || match &self.wording {
+            Wording::AsIs => within_length(&self.expressions().each(|value| without_embeddings(*value)), notation),
+            Wording::Shorter => {
+                within_length(&self.expressions().each(|value| without_embeddings(shorter(*value))), notation)
             }
-        };
+            Wording::Words(unicode, latex) => RightSide { sides: vec![words(unicode, latex)], parts: Vec::new() },
+            Wording::AndKick(place, kicks) => self.with_kicks(notation, place, kicks),
+        });
+        // by construction: it has no limit
+        let mut written = written.expect("a text");
         for (k, mu, f) in &self.free {
             let (mu, f) = (mu.written(notation), f.written(notation));
-            written[*k] += &notation.either(
+            let Some(side) = written.sides.get_mut(*k) else { continue };
+            *side += &notation.either(
                 format!(", {mu} the momentum of the free motion from I to {f} in h, by less than half a turn"),
                 format!(
                     ",\\quad {mu} \\text{{ the momentum of the free motion from }} I \\text{{ to }} {f} \\text{{ in }} h, \\text{{ by less than half a turn}}"
@@ -138,6 +146,35 @@ impl<'g> Formula<'g> {
             );
         }
         written
+    }
+
+    fn with_kicks(&self, notation: Notation, place: &str, kicks: &[Expr<'g>]) -> RightSide {
+        let values = self.expressions().iter().map(|value| without_embeddings(*value));
+        let all: Vec<_> = values.chain(kicks.iter().map(|kick| shorter(*kick))).into_list();
+        let RightSide { mut sides, parts } = within_length(&all, notation);
+        let latex_place = place.replace('⁺', "^+");
+        let kicks = sides.split_off(sides.len() / 2);
+        let with_kick = |(value, kick): (String, String)| {
+            let latex = format!("{value} + \\left[{kick}\\right]_{{{latex_place}}}");
+            notation.either(format!("{value} + [{kick}] at {place}"), latex)
+        };
+        RightSide { sides: sides.into_iter().zip(kicks).map(with_kick).into_list(), parts }
+    }
+}
+
+/// The text of a right side.
+#[derive(Clone)]
+pub(super) struct RightSide {
+    /// One text for each factor or leaf.
+    sides: Vec<String>,
+    /// The parts of long ones, as `P₁ = …`.
+    parts: Vec<String>,
+}
+
+impl RightSide {
+    /// The parts behind the formula.
+    fn parts(&self, separator: &str) -> String {
+        self.parts.iter().map(|part| format!("{separator}{part}")).collect()
     }
 }
 
@@ -158,7 +195,7 @@ impl<'g> FormulaTable<'g> {
 
     /// The formulas that prints and `DERIVATION` show: those that are listed, unless they say that something vanishes.
     pub fn listing(&self) -> impl Iterator<Item = &Formula<'g>> {
-        self.0.iter().filter(|row| row.is_listed && row.text().iter().any(|text| text != "0"))
+        self.0.iter().filter(|row| row.is_listed && row.text().sides.iter().any(|text| text != "0"))
     }
 
     /// The formula with an id, or none where a system does not have it.
@@ -208,17 +245,41 @@ impl fmt::Display for Formula<'_> {
 
 /// The expression with matrices of blocks multiplied block by block, where it has such and that is shorter.
 fn without_embeddings(expression: Expr<'_>) -> Expr<'_> {
-    let text = expression.to_string();
-    if !text.contains("embed(") {
+    let text = expression.written_within(Notation::Unicode, LONGEST);
+    if text.as_ref().is_some_and(|text| !text.contains("embed(")) {
         return expression;
     }
-    let blockwise = expression.expand().blockwise().expand();
-    if blockwise.to_string().chars().count() < text.chars().count() { blockwise } else { expression }
+    let blockwise = work::apart(EXPANSION, || expression.expand().blockwise().expand()).ok();
+    let is_shorter = |blockwise: &Expr<'_>| length(*blockwise) < text.map_or(usize::MAX, |text| text.chars().count());
+    blockwise.filter(is_shorter).unwrap_or(expression)
 }
 
 /// An expression as it is or expanded, whichever is shorter.
 fn shorter(expression: Expr<'_>) -> Expr<'_> {
-    let length = |expression: &Expr<'_>| expression.to_string().chars().count();
-    let expanded = expression.expand();
-    if length(&expression) < length(&expanded) { expression } else { expanded }
+    let expanded = work::apart(EXPANSION, || expression.expand()).ok();
+    expanded.filter(|expanded| length(*expanded) <= length(expression).min(LONGEST)).unwrap_or(expression)
+}
+
+/// The characters of a formula, where they are not too many.
+fn length(expression: Expr<'_>) -> usize {
+    let text = expression.written_within(Notation::Unicode, LONGEST);
+    text.map_or(usize::MAX, |text| text.chars().count())
+}
+
+/// The texts of expressions: in full, or with names for their parts, or the words that they are too long.
+fn within_length(expressions: &[Expr<'_>], notation: Notation) -> RightSide {
+    let in_full = expressions.iter().map(|expression| expression.written_within(notation, LONGEST));
+    if let Some(sides) = in_full.collect::<Option<Vec<String>>>()
+        && sides.iter().map(|side| side.chars().count()).sum::<usize>() <= LONGEST
+    {
+        return RightSide { sides, parts: Vec::new() };
+    }
+    let in_parts = expressions.first().and_then(|any| any.graph().written_in_parts(expressions, notation, LONGEST));
+    match in_parts {
+        Some((sides, parts)) => RightSide { sides, parts },
+        None => {
+            let words = notation.either("… (too long to print)", "\\dots \\text{ (too long to print)}");
+            RightSide { sides: vec![words.to_string(); expressions.len()], parts: Vec::new() }
+        }
+    }
 }

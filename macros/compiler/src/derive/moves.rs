@@ -3,6 +3,7 @@
 
 use clebsch_symbolic::{Chart, Elements, Expr, Group, IntoElements, IntoList, Property, Role, Shape, identity};
 
+use super::equation::DISTRIBUTED;
 use super::summation::with_arrival;
 use super::{MechanicsFormulas, Substep, SystemFormulas, cayley};
 use crate::model::{Factor, Isotropy};
@@ -64,10 +65,10 @@ pub(super) fn from_increment<'g>(group: Group, increment: Expr<'g>) -> Expr<'g> 
 }
 
 /// An expression with I + D put in for F. Products are distributed, so that terms cancel. Products around an inverse
-/// are not, since that only makes them many times longer: there F occurs as F − I and F + I.
+/// are not, since that only makes them many times longer: there F occurs as F − I and F + I. Nor are those of long formulas.
 pub(super) fn inserted<'g>(expression: Expr<'g>, elements: &[(Expr<'g>, Expr<'g>)]) -> Expr<'g> {
     let inserted = expression.substitute(elements);
-    if inserted.has_inverse() { inserted } else { inserted.expand() }
+    if inserted.has_inverse() { inserted } else { inserted.expand_within(DISTRIBUTED) }
 }
 
 impl<'g> MechanicsFormulas<'g> {

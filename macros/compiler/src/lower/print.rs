@@ -43,9 +43,9 @@ impl KernelTable {
         Ok(())
     }
 
-    /// i, j and the coefficient of ξ_i ξ_j in the kinetic energy, without those that are zero.
+    /// i, j and the coefficient of ξ_i ξ_j in the kinetic energy, without those that are zero; `None` of long ones.
     fn energy_coefficients(&self) -> Option<Vec<(usize, usize, String)>> {
-        let kernel = self.find(Id::EnergyCoefficients)?;
+        let kernel = self.find(Id::EnergyCoefficients).filter(|kernel| length_inlined(kernel) <= LONGEST_ENERGY)?;
         let (shape, entries) = &kernel.outputs[0];
         let upper = shape.positions().zip(entries).filter(|((i, j), _)| i <= j);
         let coefficients = upper.map(|((i, j), entry)| (i, j, inlined(kernel, entry)));
@@ -135,6 +135,24 @@ fn sum<'a>(terms: impl Iterator<Item = (&'a Rational, String)>) -> String {
 
 fn bracketed(text: String, is_bracketed: bool) -> String {
     if is_bracketed { format!("({text})") } else { text }
+}
+
+/// The codes of an energy that is printed, at most.
+const LONGEST_ENERGY: usize = 4096;
+
+/// The codes of the outputs of a kernel with its shared terms put in.
+fn length_inlined(kernel: &Kernel) -> usize {
+    let mut lengths: Vec<usize> = Vec::new();
+    let length = |code: &Code, lengths: &[usize]| {
+        let mut length = 0_usize;
+        code.visit(&mut |part| match part {
+            Code::Local(index) => length = length.saturating_add(lengths[*index]),
+            _ => length = length.saturating_add(1),
+        });
+        length
+    };
+    kernel.locals.iter().for_each(|code| lengths.push(length(code, &lengths)));
+    kernel.entries().fold(0, |sum, entry| length(entry, &lengths).saturating_add(sum))
 }
 
 /// A code with the shared terms of its kernel put in.
