@@ -249,9 +249,12 @@ pub(crate) fn divided<T: Scalar, const M: usize, const K: usize>(
     eliminate(rows(a), &mut quotient).map(|_| matrix(quotient))
 }
 
-/// A B, each entry summed from the first term.
+/// A B, each entry summed from the first term; B may be a vector.
 #[inline]
-pub(crate) fn product<T: Scalar, const N: usize>(a: &SMatrix<T, N, N>, b: &SMatrix<T, N, N>) -> SMatrix<T, N, N> {
+pub(crate) fn product<T: Scalar, const N: usize, const M: usize>(
+    a: &SMatrix<T, N, N>,
+    b: &SMatrix<T, N, M>,
+) -> SMatrix<T, N, M> {
     let mut product = SMatrix::from_element(T::zero());
     for (column, factors) in product.data.0.iter_mut().zip(&b.data.0) {
         for (factor, terms) in factors.iter().zip(&a.data.0) {
@@ -261,9 +264,9 @@ pub(crate) fn product<T: Scalar, const N: usize>(a: &SMatrix<T, N, N>, b: &SMatr
     product
 }
 
-/// The largest Σ_j |A_ij| of a row i: a norm with |AB| ≤ |A||B|. NaN are passed over.
+/// The largest Σ_j |A_ij| of a row i: a norm with |AB| ≤ |A||B|, of vectors too. NaN are passed over.
 #[inline]
-pub(crate) fn norm<T: Scalar, const N: usize>(a: &SMatrix<T, N, N>) -> T {
+pub(crate) fn norm<T: Scalar, const N: usize, const M: usize>(a: &SMatrix<T, N, M>) -> T {
     let mut sums = [T::zero(); N];
     a.data.0.iter().for_each(|column| sums.iter_mut().zip(column).for_each(|(sum, x)| *sum += x.abs()));
     sums.into_iter().fold(T::zero(), larger)

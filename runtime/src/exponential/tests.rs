@@ -1,6 +1,6 @@
 //! Against values of 60 digits (mpmath), and the laws of the exponential.
 
-use super::{exponential, phi};
+use super::{exponential, phi, phi_times};
 use crate::stumpff::stumpff;
 use nalgebra::{Matrix2, Matrix3, SMatrix, Vector3};
 use proptest::prelude::*;
@@ -58,6 +58,24 @@ fn nilpotent_matrices_have_finite_series() {
     assert_eq!(exponential(&shear), Matrix3::new(1.0, 1e9, 1e18, 0.0, 1.0, 1e9, 0.0, 0.0, 1.0));
     assert_eq!(exponential(&Matrix3::<f64>::zeros()), Matrix3::identity());
     assert_eq!(phi(&Matrix3::<f64>::zeros()), Matrix3::identity());
+}
+
+/// Below |A| = 1 by a series of vectors, beyond by the matrix; 60 digits (mpmath).
+#[test]
+fn products_with_vectors_need_no_matrix() {
+    let v = Vector3::new(0.5, -1.0, 2.0);
+    for (a, exact) in [(generic(), EXACT[1]), (generic() * -16.0, EXACT[3])] {
+        let exact = Matrix3::from_row_slice(&exact) * v;
+        assert!((phi_times(&a, &v) - exact).amax() < 4e-15 * exact.amax());
+    }
+    let small = generic() * 0.25;
+    let exact = phi(&small) * v;
+    assert!((phi_times(&small, &v) - exact).amax() < 4e-16 * exact.amax(), "{}", phi_times(&small, &v) - exact);
+    assert_eq!(phi_times(&small, &Vector3::zeros()), Vector3::zeros());
+    for broken in [f64::NAN, f64::INFINITY] {
+        assert!(phi_times(&small, &Vector3::new(0.0, broken, 0.0)).x.is_nan());
+        assert!(phi_times(&(small * broken), &v).x.is_nan());
+    }
 }
 
 #[test]

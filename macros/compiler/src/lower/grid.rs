@@ -7,12 +7,15 @@ use std::collections::BTreeMap;
 use std::rc::Rc;
 
 use clebsch_symbolic::{
-    Algebra, Basis, Elements, Expr, Graph, IntoElements, IntoList, Operation, Property, Rational, Shape, Sparse,
-    Symbol, View, WordTerm, integer,
+    Algebra, Analytic, Basis, Elements, Expr, Graph, IntoElements, IntoList, Operation, Property, Rational, Shape,
+    Sparse, Symbol, View, WordTerm, integer,
 };
 
 use super::entries::{Grid, Scalar};
 use super::scalar::{Callee, Input, Rate, Scalars};
+
+/// The most rows of a matrix φ(A) that is made for the product with a vector.
+const LARGEST_MADE: usize = 3;
 
 impl<'g> Scalars {
     /// The scalars of an expression.
@@ -124,16 +127,39 @@ impl<'g> Scalars {
             return self.multiply(&column, &row);
         }
         let from_right = word.last().is_some_and(|letter| letter.shape().columns == 1) && word[0].shape().rows != 1;
-        let mut grids: Vec<Rc<Grid>> = word.each(|letter| self.grid(*letter));
-        if from_right {
-            grids.reverse();
-        }
-        let mut grids = grids.into_iter();
         // by construction: words are not empty
-        let first = grids.next().expect("a word has letters");
-        grids.fold((*first).clone(), |product, letter| {
-            if from_right { self.multiply(&letter, &product) } else { self.multiply(&product, &letter) }
-        })
+        let ends = if from_right { word.split_last() } else { word.split_first() };
+        let (first, others) = ends.expect("a word has letters");
+        let first = (*self.grid(*first)).clone();
+        if !from_right {
+            return others.iter().fold(first, |product, letter| {
+                let letter = self.grid(*letter);
+                self.multiply(&product, &letter)
+            });
+        }
+        others.iter().rev().fold(first, |vector, letter| self.times_vector(*letter, vector))
+    }
+
+    /// A letter times a column. Of φ(A), and of a block of it, the product alone is computed.
+    fn times_vector(&mut self, letter: Expr<'g>, vector: Grid) -> Grid {
+        let (function, (row, column)) = match letter.view() {
+            View::Of(Operation::Block(row, column), function) => (function, (row, column)),
+            _ => (letter, (0, 0)),
+        };
+        match function.view() {
+            View::Of(Operation::Analytic(Analytic::Phi), a) if a.shape().rows > LARGEST_MADE => {
+                let (a, zero) = (self.grid(a), self.zero());
+                let whole = Shape::new(a.shape.rows, 1);
+                let entry = |i: usize| i.checked_sub(column).and_then(|i| vector.entries.get(i)).copied();
+                let vector = Grid::from_fn(whole, |(i, _)| entry(i).unwrap_or(zero));
+                let product = self.call(Callee::PhiTimes, vec![a, Rc::new(vector)], 0, whole);
+                Grid::from_fn(Shape::new(letter.shape().rows, 1), |(i, _)| product.at(row + i, 0))
+            }
+            _ => {
+                let letter = self.grid(letter);
+                self.multiply(&letter, &vector)
+            }
+        }
     }
 
     fn multiply(&mut self, a: &Grid, b: &Grid) -> Grid {

@@ -166,6 +166,7 @@ impl fmt::Display for Callee {
             Callee::Analytic(Analytic::Exponential) => f.write_str("exponential"),
             Callee::Analytic(Analytic::Phi) => f.write_str("phi"),
             Callee::Analytic(Analytic::Logarithm) => f.write_str("logarithm"),
+            Callee::PhiTimes => f.write_str("phi_times"),
             Callee::Inverse => f.write_str("inverse"),
             Callee::Value(name) => f.write_str(name),
             Callee::Gradient(name) => write!(f, "gradient of {name}"),

@@ -59,6 +59,8 @@ impl Input {
 pub enum Callee {
     /// A power series of a matrix.
     Analytic(Analytic),
+    /// φ(A)v, without the matrix φ(A).
+    PhiTimes,
     /// The inverse of a matrix, with pivoting.
     Inverse,
     /// A method of the user's.

@@ -109,14 +109,16 @@ proptest! {
         prop_assert_eq!(private::check_definite_uniform(&kappa).err(), (kappa < 0.0).then_some(told));
     }
 
-    /// exp A and φ(A) by their series, for |A| ≤ 3; exp(A) exp(−A) = I; A φ(A) = exp A − I.
+    /// exp A and φ(A) by their series, for |A| ≤ 3; exp(A) exp(−A) = I; A φ(A) = exp A − I; φ(A)v of any length of A.
     #[test]
-    fn exponentials_are_their_series(a in matrix::<3, 3>(1.0)) {
+    fn exponentials_are_their_series(a in matrix::<3, 3>(1.0), v in vector::<3>(1.0), size in 0.0_f64..1.0) {
         let (found, phi) = (private::exponential(&a), private::phi(&a));
         // e³ is 20: digits of the largest entry
         let near = 40.0 * NEAR;
         assert_near(&found, &series(&a, 0), near, "exp");
         assert_near(&phi, &series(&a, 1), near, "φ");
+        assert_near(&private::phi_times(&a, &v), &(phi * v), near, "φ(A)v");
+        assert_near(&private::phi_times(&(a * size), &v), &(series(&(a * size), 1) * v), near, "φ(A)v for a small A");
         assert_near(&(found * private::exponential(&-a)), &Matrix3::identity(), 20.0 * near, "exp A exp −A");
         assert_near(&(a * phi), &(found - Matrix3::identity()), near, "Aφ(A)");
     }

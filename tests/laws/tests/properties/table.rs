@@ -76,7 +76,7 @@ pub const PROPERTIES: &[(&str, &[Property])] = &[
         ("symmetric_systems_are_solved_backward_stably", &["solve_symmetric"]),
         ("inverses_undo",                                &["invert", "inverse"]),
         ("inertias_are_definite_by_their_eigenvalues",   &["check_definite", "check_definite_at", "check_definite_uniform"]),
-        ("exponentials_are_their_series",                &["exponential", "phi"]),
+        ("exponentials_are_their_series",                &["exponential", "phi", "phi_times"]),
         ("logarithms_are_those_of_rotations",            &["logarithm"]),
         ("stumpff_functions_are_trigonometric",          &["stumpff"]),
         ("the_largest_is_one_of_them",                   &["largest"]),

@@ -72,6 +72,11 @@ impl Run<'_> {
         match callee {
             Callee::Analytic(Analytic::Logarithm) => logarithm(&arguments[0]),
             Callee::Analytic(function) => <f64 as Number>::analytic(*function, &arguments[0]),
+            Callee::PhiTimes => {
+                let matrix = <f64 as Number>::analytic(Analytic::Phi, &arguments[0]);
+                let row = |i: usize| (0..matrix.shape.columns).map(|j| matrix.at(i, j) * arguments[1].at(j, 0)).sum();
+                Matrix::from_fn(arguments[1].shape, |(i, _)| row(i))
+            }
             Callee::Inverse => arguments[0].inverse().0,
             Callee::Value(name) | Callee::Gradient(name) => panic!("no numbers are known of the method `{name}`"),
         }
