@@ -10,11 +10,11 @@ use proc_macro2::{Span, TokenStream, TokenTree};
 use syn::{Expr, Type};
 
 use crate::diagnostic::{Diagnostic, Diagnostics, Location, error};
-use crate::parse::{ChartChoice, Closure, Declaration, Discretization, Kinetic, Order, Potential};
+use crate::parse::{ChartChoice, Closure, Declaration, Discretization, Kinetic, Located, Order, Potential};
 
-/// The work of one expansion, for each of its methods: about a second where the compiler is not optimised. Fixtures of the tests
-/// take less than a tenth of it, and the largest scenes a third.
-pub const WORK: u64 = 8_000_000;
+/// The work of one expansion, for each of its methods: about a second where the compiler is not optimised. A unit is about a tenth of a
+/// microsecond. Fixtures of the tests take up to a tenth of the budget, and the largest scenes a third.
+pub const WORK: u64 = 9_000_000;
 
 /// The stages behind the first one.
 #[derive(Copy, Clone, PartialEq, Eq)]
@@ -45,7 +45,8 @@ pub(crate) fn within<T>(
 /// The error for a declaration on which the budget was used up.
 fn too_large(declaration: &Declaration, stage: CompilerStage) -> Diagnostic {
     let kinetic = &declaration.kinetic.closure().body;
-    let (place, what, instead) = culprit(declaration).unwrap_or_else(|| {
+    let others = Others { declaration, left: Cell::new(WORK / 4) };
+    let (place, what, instead) = others.culprit().unwrap_or_else(|| {
         let (body, what) = match stage {
             CompilerStage::Model => (&declaration.action.body, "the laws of this action take"),
             CompilerStage::Derive => (kinetic, "the formulas that are derived from this take"),
@@ -56,7 +57,7 @@ fn too_large(declaration: &Declaration, stage: CompilerStage) -> Diagnostic {
         (body.into(), what.to_string(), less)
     });
     let mut error = error!(place, "`{}` is too large to expand: {what} more than {WORK} terms", declaration.ident);
-    for text in smaller(declaration) {
+    for text in others.smaller() {
         error = error.help(text);
     }
     error
@@ -64,54 +65,88 @@ fn too_large(declaration: &Declaration, stage: CompilerStage) -> Diagnostic {
         .note("formulas are expanded at compile time, and products of sums get a term for each pair of terms")
 }
 
-/// The closure that makes the declaration large, and its replacement. It is the first optional closure without which an
-/// eighth of the budget is enough.
-fn culprit(declaration: &Declaration) -> Option<(Location, String, &'static str)> {
-    type Without = fn(&mut Declaration);
-    let potential = declaration.potential.as_ref().and_then(Potential::closure);
-    const METHODS: &str = "write a shorter potential, or methods for its value and gradient: `potential = opaque(Self::value, Self::gradient)`";
-    let rows: [(Option<&Closure>, Without, &str, &str); 4] = [
-        (declaration.endpoint.as_ref(), |rest| rest.endpoint = None, "price", "write a shorter price of the end"),
-        (potential, |rest| rest.potential = None, "potential", METHODS),
-        (declaration.force.as_ref(), |rest| rest.force = None, "force", SHORTER_FORCE),
-        (declaration.force_on.as_ref(), |rest| rest.force_on = None, "force", SHORTER_FORCE),
-    ];
-    let is_small = |without: Without| {
-        let mut rest = declaration.clone();
-        without(&mut rest);
-        rest.methods.clear();
-        let stages = || crate::program(&Graph::new(), &rest, &Cell::new(CompilerStage::Model)).is_ok();
-        work::within(WORK / 8, stages) == Ok(true)
-    };
-    rows.into_iter().find_map(|(closure, without, what, instead)| {
-        let closure = closure.filter(|_| is_small(without))?;
-        Some((Location::from(&closure.body), format!("the formulas of this {what} take"), instead))
-    })
+/// A change of a declaration.
+type Change = fn(&mut Declaration);
+
+/// Declarations next to one that is too large.
+struct Others<'a> {
+    declaration: &'a Declaration,
+    /// The work that may be spent on all of them yet.
+    left: Cell<u64>,
+}
+
+impl Others<'_> {
+    /// Whether the work that is left is enough for the declaration with a change.
+    fn is_small(&self, change: Change) -> bool {
+        let mut other = self.declaration.clone();
+        change(&mut other);
+        other.methods.clear();
+        let before = work::spent();
+        let stages = || crate::program(&Graph::new(), &other, &Cell::new(CompilerStage::Model)).is_ok();
+        let is_small = work::within(self.left.get(), stages) == Ok(true);
+        self.left.set(self.left.get().saturating_sub(work::spent() - before));
+        is_small
+    }
+
+    /// The closure that makes the declaration large, and its replacement. It is the first optional closure without which the
+    /// declaration is small.
+    fn culprit(&self) -> Option<(Location, String, &'static str)> {
+        let declaration = self.declaration;
+        let potential = declaration.potential.as_ref().and_then(Potential::closure);
+        const METHODS: &str = "write a shorter potential, or methods for its value and gradient: `potential = opaque(Self::value, Self::gradient)`";
+        let rows: [(Option<&Closure>, Change, &str, &str); 4] = [
+            (declaration.endpoint.as_ref(), |rest| rest.endpoint = None, "price", "write a shorter price of the end"),
+            (potential, |rest| rest.potential = None, "potential", METHODS),
+            (declaration.force.as_ref(), |rest| rest.force = None, "force", SHORTER_FORCE),
+            (declaration.force_on.as_ref(), |rest| rest.force_on = None, "force", SHORTER_FORCE),
+        ];
+        rows.into_iter().find_map(|(closure, without, what, instead)| {
+            let closure = closure.filter(|_| self.is_small(without))?;
+            Some((Location::from(&closure.body), format!("the formulas of this {what} take"), instead))
+        })
+    }
+
+    /// The changes of dials that make the declaration small. Each was tried.
+    fn smaller(&self) -> Vec<&'static str> {
+        let dials = &self.declaration.dials;
+        let chart = dials.chart.as_ref().map(|chart| chart.value);
+        let discretization = dials.discretization.as_ref().map(|discretization| discretization.value);
+        let is_other_lagrangian = matches!(self.declaration.kinetic, Kinetic::Lagrangian(_))
+            && discretization != Some(Discretization::Exponential);
+        let is_high = dials.order.as_ref().is_some_and(|order| !matches!(order.value, Order::First | Order::Second));
+        // with a const generic it is in loops already
+        let is_written_out = |ty: &Type| matches!(ty, Type::Array(array) if matches!(array.len, Expr::Lit(_)));
+        let mut types = self.declaration.action.arguments.iter().filter_map(|argument| argument.ty.as_ref());
+        let is_product = types.any(is_written_out);
+        let rows: [(bool, Change, &str); 4] = [
+            (
+                dials.emit.tangent,
+                |other| other.dials.emit.tangent = false,
+                "leave `tangent` out of `emit`: it takes second derivatives of everything",
+            ),
+            (
+                chart == Some(ChartChoice::Exponential),
+                |other| other.dials.chart = None,
+                "leave out `chart = exponential`: formulas in Cayley's are shorter",
+            ),
+            (
+                is_other_lagrangian,
+                |other| other.dials.discretization = Some(exponential()),
+                "write `discretization = exponential`, whose formulas are shorter",
+            ),
+            (is_high, |other| other.dials.order = None, "write `order = 2`"),
+        ];
+        let tried =
+            rows.into_iter().filter_map(|(applies, change, text)| (applies && self.is_small(change)).then_some(text));
+        is_product.then_some(crate::model::IN_LOOPS).into_iter().chain(tried).into_list()
+    }
+}
+
+fn exponential() -> Located<Discretization> {
+    Located { value: Discretization::Exponential, span: Span::call_site() }
 }
 
 const SHORTER_FORCE: &str = "write a shorter force, or put the part of it that is long into the input";
-
-/// The optional parts of a declaration that make its formulas long.
-fn smaller(declaration: &Declaration) -> Vec<&'static str> {
-    let dials = &declaration.dials;
-    let chart = dials.chart.as_ref().map(|chart| chart.value);
-    let discretization = dials.discretization.as_ref().map(|discretization| discretization.value);
-    let is_other_lagrangian =
-        matches!(declaration.kinetic, Kinetic::Lagrangian(_)) && discretization != Some(Discretization::Exponential);
-    let is_high = dials.order.as_ref().is_some_and(|order| !matches!(order.value, Order::First | Order::Second));
-    // with a const generic it is in loops already
-    let is_written_out = |ty: &Type| matches!(ty, Type::Array(array) if matches!(array.len, Expr::Lit(_)));
-    let mut types = declaration.action.arguments.iter().filter_map(|argument| argument.ty.as_ref());
-    let is_product = types.any(is_written_out);
-    let rows = [
-        (is_product, crate::model::IN_LOOPS),
-        (dials.emit.tangent, "leave `tangent` out of `emit`: it takes second derivatives of everything"),
-        (chart == Some(ChartChoice::Exponential), "leave out `chart = exponential`: formulas in Cayley's are shorter"),
-        (is_other_lagrangian, "write `discretization = exponential`, whose formulas are often much shorter"),
-        (is_high, "write `order = 2`"),
-    ];
-    rows.into_iter().filter_map(|(applies, text)| applies.then_some(text)).into_list()
-}
 
 /// The result, or the error that a panic of ours becomes. It is our fault, but shows at the user's item.
 ///

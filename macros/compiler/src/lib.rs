@@ -22,7 +22,7 @@ use proc_macro2::TokenStream;
 
 pub use budget::WORK;
 pub use clebsch_symbolic::Graph;
-use clebsch_symbolic::work;
+use clebsch_symbolic::work::{self, Exhausted};
 
 use crate::budget::{CompilerStage, Stage};
 use crate::diagnostic::Diagnostics;
@@ -107,10 +107,13 @@ fn program_of_steps<'g>(
     declaration: &Declaration,
     stage: &Stage,
 ) -> Result<Program<'g>, Diagnostics> {
-    stage.set(CompilerStage::Model);
-    let model = model::model(graph, declaration)?;
-    stage.set(CompilerStage::Derive);
-    let formulas = derive::derive(model)?;
-    stage.set(CompilerStage::Lower);
-    lower::lower(formulas)
+    let stages = || {
+        stage.set(CompilerStage::Model);
+        let model = model::model(graph, declaration)?;
+        stage.set(CompilerStage::Derive);
+        let formulas = derive::derive(model)?;
+        stage.set(CompilerStage::Lower);
+        lower::lower(formulas)
+    };
+    work::within(WORK, stages).unwrap_or_else(|Exhausted| work::give_up())
 }

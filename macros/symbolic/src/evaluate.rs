@@ -122,7 +122,7 @@ impl<K: Number> Matrix<K> {
 
     /// The matrix whose entries a function gives.
     pub fn from_fn(shape: Shape, entry: impl FnMut((usize, usize)) -> K) -> Matrix<K> {
-        work::spend(1 + shape.len() / 4);
+        work::spend(6 + shape.len() / 4);
         Matrix::new(shape, shape.positions().map(entry).into_list())
     }
 
@@ -137,7 +137,7 @@ impl<K: Number> Matrix<K> {
     }
 
     pub(crate) fn zeros(shape: Shape) -> Matrix<K> {
-        work::spend(1 + shape.len() / 4);
+        work::spend(6 + shape.len() / 4);
         Matrix::new(shape, vec![zero(); shape.len()])
     }
 
@@ -171,7 +171,7 @@ impl<K: Number> Matrix<K> {
             return self.scale(other.entries[0]);
         }
         let (columns, shape) = (other.shape.columns, Shape::new(self.shape.rows, other.shape.columns));
-        work::spend(1 + self.shape.len() * columns / 16 + shape.len() / 4);
+        work::spend(10 + self.shape.len() * columns / 16 + shape.len() / 4);
         let mut entries = Vec::with_capacity(shape.len());
         for row in self.entries.chunks(self.shape.columns) {
             entries.extend((0..columns).map(|j| K::dot(row, other.entries[j..].iter().step_by(columns))));
@@ -191,7 +191,7 @@ impl<K: Number> Matrix<K> {
     /// The inverse and the determinant, by elimination; the inverse of a singular matrix is made of reciprocals of zero.
     pub fn inverse(&self) -> (Matrix<K>, K) {
         let n = self.shape.rows;
-        work::spend(n * n * n / 8);
+        work::spend(40 + n * n * n / 8);
         // (A I) becomes (I A⁻¹)
         let unit = |i: usize| (0..n).map(move |j| if i == j { one() } else { zero() });
         let rows = self.entries.chunks(n).enumerate().flat_map(|(i, row)| row.iter().copied().chain(unit(i)));

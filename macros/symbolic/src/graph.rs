@@ -19,6 +19,8 @@ pub struct Graph {
     pub(crate) definitions: RefCell<Vec<Rc<Definition>>>,
     pub(crate) transposed: Images,
     pub(crate) expanded: Images,
+    /// Expressions that are too long to be expanded, each its own image.
+    pub(crate) long: Images,
     pub(crate) maps: Maps,
     /// The matrices of ad of the bases of groups.
     pub(crate) adjoints: RefCell<Table<Group, Algebra>>,
@@ -51,7 +53,7 @@ impl Graph {
     }
 
     pub(crate) fn intern(&self, node: ExprNode, shape: Shape) -> Expr<'_> {
-        work::spend(node.size());
+        work::spend(1 + node.size() / 2);
         let (position, _) = self.nodes.borrow_mut().intern((Rc::new(node), shape));
         self.expr(Id(position as u32))
     }

@@ -2,7 +2,8 @@
 
 use crate::memory::{self, Images, Map};
 use crate::node::{Exponent, ExprNode, Id, Operation, Term};
-use crate::{Elements, Expr, Graph, IntoList, Rational, Shape, Table, work};
+use crate::work::{self, Exhausted};
+use crate::{Elements, Expr, Graph, IntoList, Rational, Shape, Table};
 
 impl<'g> Expr<'g> {
     /// All nodes that this expression is made of, children before parents, itself last.
@@ -23,7 +24,7 @@ impl<'g> Expr<'g> {
                 self.graph.node(id).each_child(|child| open.push(child));
             }
         }
-        work::spend((count + seen.len()) / 4);
+        work::spend(10 + (count + seen.len()) / 4);
         let mut reached = Vec::with_capacity(count);
         for (word, mut bits) in seen.into_iter().enumerate() {
             while bits != 0 {
@@ -180,9 +181,20 @@ impl<'g> Expr<'g> {
         self.mapped(images, |part| part.expand_node(images))
     }
 
-    /// As [`expand`](Self::expand), where that takes so much work at most; as it is otherwise.
+    /// As [`expand`](Self::expand), where that takes so much work at most. Otherwise it stays as it is, also where it occurs again.
     pub fn expand_within(self, units: u64) -> Expr<'g> {
-        work::within(units, || self.expand()).unwrap_or(self)
+        if self.is_long() {
+            return self;
+        }
+        work::within(units, || self.expand()).unwrap_or_else(|Exhausted| {
+            self.graph.long.set(self.id, self.id);
+            self
+        })
+    }
+
+    /// Whether [`expand_within`](Self::expand_within) has left it as it is.
+    pub fn is_long(self) -> bool {
+        self.graph.long.get(self.id).is_some()
     }
 
     /// As [`expand`](Self::expand), and inside roots and functions too: for limits, where cancellation is the goal.

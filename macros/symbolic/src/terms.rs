@@ -50,7 +50,7 @@ fn add(sum: &mut Vec<Term>, term: Term) {
         Ok(position) => sum[position].coefficient += term.coefficient,
         Err(position) => {
             // later terms move
-            work::spend((sum.len() - position) / 64);
+            work::spend((sum.len() - position) / 32);
             sum.insert(position, term);
         }
     }
@@ -69,7 +69,7 @@ impl Graph {
     pub fn total<'g>(&'g self, shape: Shape, parts: impl IntoIterator<Item = Expr<'g>>) -> Expr<'g> {
         let mut sum: Vec<Term> = Vec::new();
         for part in parts {
-            work::spend(1);
+            work::spend(4);
             part.terms().into_iter().for_each(|term| add(&mut sum, term));
         }
         self.settle(shape, sum)

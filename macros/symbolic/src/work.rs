@@ -33,9 +33,14 @@ pub fn spend(units: usize) {
         spent > limit
     });
     if is_exhausted {
-        // an end that is expected: no panic hook runs, and nothing is printed
-        resume_unwind(Box::new(Exhausted));
+        give_up();
     }
+}
+
+/// Ends the work around it as one that takes more than its limit.
+pub fn give_up() -> ! {
+    // an end that is expected: no panic hook runs, and nothing is printed
+    resume_unwind(Box::new(Exhausted));
 }
 
 /// The count on this thread.

@@ -96,6 +96,8 @@ pub(super) struct Sources<'a, 'g> {
     pub(super) inertia: Expr<'g>,
     /// The number of substeps in a step, by which h is divided.
     pub(super) divisor: i64,
+    /// Whether exponentials are substituted late, as their products are long.
+    pub(super) keeps_exponentials: bool,
 }
 
 /// The momentum r(F) = T* ∂_F K − J(q, ∂_q K) of a substep, which its equations solve for F.
@@ -110,6 +112,13 @@ pub(super) struct Momentum<'g> {
     pub(super) couples: bool,
     /// Whether a force that depends on the velocity joins the equations: then Σ alone gives no coordinate.
     pub(super) is_forced: bool,
+}
+
+impl Sources<'_, '_> {
+    /// Whether D(x) is substituted late in a chart.
+    pub(super) fn keeps(&self, chart: Chart, couples: bool) -> bool {
+        is_kept(chart, couples || self.keeps_exponentials)
+    }
 }
 
 impl<'g> Deref for Sources<'_, 'g> {
@@ -186,6 +195,6 @@ pub(super) fn is_diagonal(matrix: Expr<'_>) -> bool {
 /// Whether D(x) = F − I is substituted late and its products are not distributed, because that would make them many
 /// times longer. This is so in a chart with roots, and with exponentials if the cost couples configuration and group
 /// element.
-pub(super) fn is_kept(chart: Chart, couples: bool) -> bool {
+fn is_kept(chart: Chart, couples: bool) -> bool {
     chart == Chart::Root || chart == Chart::Exponential && couples
 }

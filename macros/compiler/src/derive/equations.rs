@@ -1,14 +1,27 @@
 //! The implicit equation in the chart: both trivialisations of ∂_F ℓd, denominators cleared, coupled blocks together.
 
-use clebsch_symbolic::{Chart, Elements, Expr, IntoList, Shape, identity, indexed, work};
+use clebsch_symbolic::work::{self, Exhausted};
+use clebsch_symbolic::{Chart, Elements, Expr, IntoList, Shape, identity, indexed};
 
 use super::clearing;
 use super::closed_form::{closed_form, is_solved_by_predictor};
-use super::equation::{DISTRIBUTED, Form, Momentum, MomentumEquation, Solution, Sources, is_diagonal, is_kept};
+use super::equation::{DISTRIBUTED, Form, Momentum, MomentumEquation, Solution, Sources, is_diagonal};
 use super::letters::Letters;
 use super::{ChartBlock, exact, structure};
 
+/// The equations of a substep. Where the products of exponentials take much work, D(x) = F − I of these is substituted late.
 pub(super) fn equations<'g>(sources: &Sources<'_, 'g>, momentum: &Momentum<'g>) -> Vec<MomentumEquation<'g>> {
+    if !sources.symbols.charts.contains(&Chart::Exponential) {
+        return in_charts(sources, momentum);
+    }
+    let late = Sources { keeps_exponentials: true, ..*sources };
+    work::within(EXPONENTIALS, || in_charts(sources, momentum)).unwrap_or_else(|Exhausted| in_charts(&late, momentum))
+}
+
+/// The work for the equations of a substep in the exponential chart, products distributed.
+const EXPONENTIALS: u64 = 2_000_000;
+
+fn in_charts<'g>(sources: &Sources<'_, 'g>, momentum: &Momentum<'g>) -> Vec<MomentumEquation<'g>> {
     let (model, symbols) = (sources.model, &sources.symbols);
     let is_free_rotation = |block: &ChartBlock<'g>| exact::is_free_rotation(model, block.factor);
     let letters = Letters::new(sources, momentum);
@@ -78,7 +91,7 @@ fn explicit<'g>(sources: &Sources<'_, 'g>, residuals: &[Residual<'g>], i: usize)
     if exact::is_free_rotation(sources.model, block.factor)
         || holds_others()
         || residuals[i].is_near
-        || is_kept(symbols.charts[block.factor], sources.is_moving(rows))
+        || sources.keeps(symbols.charts[block.factor], sources.is_moving(rows))
     {
         return None;
     }
@@ -155,6 +168,12 @@ fn residual<'g>(
     }
 }
 
+/// Whether D(x) is substituted late in one of these blocks because of its length alone.
+fn factors_keep(sources: &Sources<'_, '_>, blocks: &[usize]) -> bool {
+    let chart = |i: &usize| sources.symbols.charts[sources.symbols.blocks[*i].factor];
+    sources.keeps_exponentials && blocks.iter().any(|i| chart(i) == Chart::Exponential)
+}
+
 fn equation<'g>(
     sources: &Sources<'_, 'g>,
     momentum: &Momentum<'g>,
@@ -172,6 +191,8 @@ fn equation<'g>(
     let residual = sources.model.graph.below(&rows);
     let cleared = blocks.iter().all(|&i| residuals[i].cleared);
     let is_near = blocks.iter().any(|&i| residuals[i].is_near);
+    // no products are distributed either where D(x) is substituted late
+    let is_near = is_near || factors_keep(sources, &blocks);
     let mut equation = MomentumEquation::new(sources, components, residual, Form { cleared, is_near });
     if let [only] = blocks[..]
         && !equation.moves

@@ -2,7 +2,7 @@
 
 use clebsch_symbolic::{Chart, Expr, IntoList, Property, Role, WordTerm, identity, indexed};
 
-use super::equation::{Momentum, Sources, is_kept};
+use super::equation::{Momentum, Sources};
 use super::moves::from_increment;
 use super::summation::expression;
 use super::symbols::at_zero;
@@ -38,7 +38,7 @@ impl<'a, 'g> Letters<'a, 'g> {
         let (mut images, mut displacements) = (Vec::new(), Vec::new());
         if momentum.couples {
             let near: Vec<_> = indexed(model.factors.len(), |j| {
-                let is_long = is_kept(symbols.charts[j], true);
+                let is_long = sources.keeps(symbols.charts[j], true);
                 let increment = if is_long { symbols.increments[j] } else { sources.chart_increment(j) };
                 (symbols.increments[j], increment)
             });
@@ -95,7 +95,7 @@ fn late<'g>(sources: &Sources<'_, 'g>, momentum: &Momentum<'g>) -> Vec<(Expr<'g>
     let is_polynomial = |k: usize| !parts().any(|part| part.has_poles_in(&[model.factors[k].symbol]));
     let is_late = |k: &usize| match symbols.charts[*k] {
         Chart::Cayley | Chart::Product => momentum.couples && is_polynomial(*k),
-        chart => is_kept(chart, momentum.coupling.is_some()),
+        chart => sources.keeps(chart, momentum.coupling.is_some()),
     };
     (0..model.factors.len()).filter(is_late).map(|k| (symbols.increments[k], sources.chart_increment(k))).into_list()
 }

@@ -2,7 +2,7 @@
 
 use clebsch_symbolic::{Elements, Expr, IntoList, Shape};
 
-use super::moves::{inserted, inverse_by};
+use super::moves::{distributed, inserted, inverse_by};
 use super::{EdgeDerivatives, Id, MechanicsFormulas, SystemFormulas};
 use crate::model::LeafSpace;
 
@@ -51,9 +51,15 @@ impl<'g> Inserted<'g> {
         MatrixForm::Whole(inserted(expression, &self.elements))
     }
 
-    /// A matrix from its columns, products distributed.
+    /// A matrix from its columns, products distributed as long as no column before is too long for that.
     pub(super) fn columns(&self, columns: &[Expr<'g>]) -> MatrixForm<'g> {
-        MatrixForm::of_columns(columns.iter().map(|column| inserted(*column, &self.elements)))
+        let mut is_long = false;
+        MatrixForm::of_columns(columns.iter().map(|column| {
+            let plain = column.substitute(&self.elements);
+            let distributed = if is_long { plain } else { distributed(plain) };
+            is_long = is_long || distributed.is_long();
+            distributed
+        }))
     }
 
     /// A matrix of scalars.

@@ -104,7 +104,7 @@ fn mechanics(mut model: Mechanics<'_>) -> Result<MechanicsFormulas<'_>, Diagnost
     let is_timed = is_timed(&model, &lagrangian);
     let quantities = if model.emit.tangent { variation::quantities(&model, is_timed) } else { Vec::new() };
     let variations = variation::Source { system: &system, quantities: &quantities };
-    let sources = |divisor| Sources { model: &model, system: &system, inertia, divisor };
+    let sources = |divisor| Sources { model: &model, system: &system, inertia, divisor, keeps_exponentials: false };
     let covector = force::covector(&model, &system);
     let mut edges = discrete_lagrangian::substeps(&model, &lagrangian, &declared);
     let stepped = if edges.len() == 1 { 1 } else { 2 };

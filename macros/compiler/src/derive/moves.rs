@@ -64,10 +64,14 @@ pub(super) fn from_increment<'g>(group: Group, increment: Expr<'g>) -> Expr<'g> 
     if group.is_translation() { increment } else { group.identity(increment.graph()) + increment }
 }
 
-/// An expression with I + D put in for F. Products are distributed, so that terms cancel. Products around an inverse
-/// are not, since that only makes them many times longer: there F occurs as F − I and F + I. Nor are those of long formulas.
+/// An expression with I + D put in for F, its products distributed.
 pub(super) fn inserted<'g>(expression: Expr<'g>, elements: &[(Expr<'g>, Expr<'g>)]) -> Expr<'g> {
-    let inserted = expression.substitute(elements);
+    distributed(expression.substitute(elements))
+}
+
+/// An expression in I + D, products distributed, so that terms cancel. Products around an inverse are not, since that only
+/// makes them many times longer: there F occurs as F − I and F + I. Nor are those of long formulas.
+pub(super) fn distributed(inserted: Expr<'_>) -> Expr<'_> {
     if inserted.has_inverse() { inserted } else { inserted.expand_within(DISTRIBUTED) }
 }
 

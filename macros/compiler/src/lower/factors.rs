@@ -48,7 +48,7 @@ struct Choice {
 impl Factored<'_> {
     /// One use more.
     fn take(&mut self, id: Id) {
-        work::spend(1);
+        work::spend(3);
         self.uses[id] += 1;
         if self.uses[id] > 1 {
             return;
@@ -100,7 +100,7 @@ impl Factored<'_> {
             let Operation::Product(factors) = self.operations.value(*term) else { continue };
             for (i, factor) in factors.iter().enumerate() {
                 // the product without it is looked for
-                work::spend(1 + factors.len() / 2);
+                work::spend(4 + factors.len() / 2);
                 if i == 0 || factors[i - 1] != *factor {
                     positions.entry(*factor).push(position);
                 }

@@ -41,6 +41,10 @@ pub struct Form {
     pub is_body_or_point: bool,
     /// The feature of the system that has no matrix code.
     pub missing: Option<&'static str>,
+    /// Whether it is matrix code because unrolled code is beyond a limit.
+    pub is_beyond: bool,
+    /// Whether code is left as it is, as it takes too much work to shorten it.
+    pub is_plain: bool,
 }
 
 impl Form {
@@ -48,7 +52,29 @@ impl Form {
     pub fn keeps_matrices(&self) -> bool {
         self.code == CodeForm::Matrices
     }
+
+    /// This form and simpler ones, in the order in which they are tried, with the work for each. A form may be long, or take long to
+    /// shorten. Matrix code stands in for large matrices, and code that is not shortened for long formulas.
+    pub(super) fn simpler(self, has_matrices: bool) -> Vec<(Form, u64)> {
+        let plain = Form { is_plain: true, ..self.clone() };
+        let matrices = Form { code: CodeForm::Matrices, is_beyond: true, ..self.clone() };
+        let has_large_matrices = self.estimate > LARGEST_UNROLLED;
+        let stands_in = has_matrices && !self.is_asked && !self.keeps_matrices();
+        let forms = [
+            (true, self, SHORTENED),
+            (stands_in && has_large_matrices, matrices.clone(), IN_MATRICES),
+            (true, plain, u64::MAX),
+            (stands_in && !has_large_matrices, matrices, u64::MAX),
+        ];
+        forms.into_iter().filter_map(|(applies, form, most)| applies.then_some((form, most))).into_list()
+    }
 }
+
+/// The work to shorten the code of a step. A step that takes more is written in a simpler form.
+const SHORTENED: u64 = 5_000_000;
+
+/// The work for matrix code in its place.
+const IN_MATRICES: u64 = 2_000_000;
 
 /// The form of a system. A declaration may ask for one; otherwise it is matrix code if unrolled code would exceed the
 /// budget.
@@ -83,7 +109,7 @@ pub(super) fn choose(formulas: &MechanicsFormulas<'_>) -> Result<Form, Diagnosti
         return Err(too_large(&formulas.model, size).into());
     }
     let missing = missing.map(Feature::words);
-    Ok(Form { code, estimate, is_asked: asked.is_some(), is_body_or_point, missing })
+    Ok(Form { code, estimate, is_asked: asked.is_some(), is_body_or_point, missing, is_beyond: false, is_plain: false })
 }
 
 /// Steps of inputs are unrolled.
@@ -105,7 +131,7 @@ fn check_unknowns(model: &System<'_>, missing: Option<Feature>) -> Result<(), Di
         return Ok(());
     }
     let size = format!("{dimension} unknowns, {MOST_UNKNOWNS} is the most for unrolled code");
-    Err(written_out_too_large(model, missing, size))
+    Err(written_out_too_large(model, missing, true, size))
 }
 
 /// Whether an equation is that of a body on SO(n), whose Jacobian is Sylvester's map.

@@ -37,7 +37,7 @@ pub fn kernel(scalars: &mut Scalars, outputs: &[Grid], hoisting: Hoisting<'_>) -
         let entry = builder.convert(*entry);
         builder.outputs.push(entry);
     }
-    if !builder.is_beyond_limits() {
+    if !builder.scalars.is_plain && !builder.is_beyond_limits() {
         builder.share_pairs();
         if !builder.scalars.keeps_sums {
             builder.shorten();
@@ -132,7 +132,7 @@ impl Builder<'_, '_> {
     }
 
     fn intern(&mut self, operation: Operation) -> Id {
-        work::spend(2 + operation.operands().len());
+        work::spend(20 + 4 * operation.operands().len());
         self.operations.intern(operation).0
     }
 
@@ -275,12 +275,12 @@ impl Builder<'_, '_> {
 
     /// The operations of the outputs, in the order in which they were met.
     fn used(&self) -> Vec<Id> {
-        work::spend(self.operations.len() / 4);
+        work::spend(1 + self.operations.len() / 2);
         let mut is_used = vec![false; self.operations.len()];
         let mut waiting = self.outputs.clone();
         while let Some(id) = waiting.pop() {
             if !std::mem::replace(&mut is_used[id], true) {
-                waiting.extend(self.operands(id));
+                self.each_operand(id, |operand| waiting.push(operand));
             }
         }
         (0..is_used.len()).filter(|&id| is_used[id]).into_list()
@@ -295,6 +295,17 @@ impl Builder<'_, '_> {
             Operation::Sum(_, terms) => self.terms(id, terms).each(|(_, term)| *term),
             Operation::Product(factors) => self.products.get(id).unwrap_or(factors).to_vec(),
             operation => operation.operands(),
+        }
+    }
+
+    /// Hands the operands on, one after the other, without a list of them.
+    fn each_operand(&self, id: Id, mut visit: impl FnMut(Id)) {
+        match self.operations.value(id) {
+            Operation::Sum(_, terms) => self.terms(id, terms).iter().for_each(|(_, term)| visit(*term)),
+            Operation::Product(factors) => {
+                self.products.get(id).unwrap_or(factors).iter().for_each(|factor| visit(*factor));
+            }
+            operation => operation.operands().into_iter().for_each(visit),
         }
     }
 
@@ -334,7 +345,7 @@ impl Builder<'_, '_> {
     }
 
     fn count(&self, id: Id, uses: &mut [usize], order: &mut Vec<Id>) {
-        work::spend(1);
+        work::spend(6);
         uses[id] += 1;
         let is_first = uses[id] == 1;
         // an operation without a name of its own is repeated at each use

@@ -96,7 +96,7 @@ impl Matrices {
 
     /// The code as a shared term, unless it is simply read; the same code is one term.
     fn shared(&mut self, code: Code) -> Code {
-        work::spend(3);
+        work::spend(40);
         let is_read = match &code {
             Code::Read(_) | Code::Number(_) | Code::Pi | Code::Local(_) => true,
             Code::Whole(whole) => matches!(whole.operation, MatrixOperation::Argument(_)),

@@ -23,6 +23,7 @@ mod stepping;
 mod sums;
 mod variation;
 
+use clebsch_symbolic::work::{self, Exhausted};
 use clebsch_symbolic::{Elements, Expr, IntoList};
 
 use crate::derive::{self, Formulas, Id, MechanicsFormulas, SteeredFormulas, Stencil};
@@ -69,18 +70,31 @@ fn steered(formulas: SteeredFormulas<'_>) -> Result<SteeredProgram<'_>, Diagnost
     maker.membership();
     maker
         .check_length()
-        .map_err(|TooLong(size)| written_out_too_large(&formulas.model, Some(Feature::Inputs), size))?;
+        .map_err(|TooLong(size)| written_out_too_large(&formulas.model, Some(Feature::Inputs), false, size))?;
     let table = KernelTable { kernels: maker.table, constant_names: Vec::new() };
     Ok(SteeredProgram { formulas, table })
 }
 
 fn mechanics(formulas: MechanicsFormulas<'_>) -> Result<MechanicsProgram<'_>, Diagnostics> {
     let form = form::choose(&formulas)?;
-    let kernels = kernels(&formulas, &form);
-    let kernels = kernels
-        .map_err(|TooLong(size)| written_out_too_large(&formulas.model, form::without_matrices(&formulas), size));
-    let Kernels { table, steps, gathered } = kernels?;
+    let (form, kernels) = in_some_form(&formulas, form)?;
+    let Kernels { table, steps, gathered } = kernels;
     Ok(MechanicsProgram { formulas, form, table, steps, gathered, methods: Vec::new() })
+}
+
+/// The kernels in the form that was chosen, or in the first simpler one in which they are within limits.
+fn in_some_form<'g>(formulas: &MechanicsFormulas<'g>, form: Form) -> Result<(Form, Kernels<'g>), Diagnostics> {
+    let missing = form::without_matrices(formulas);
+    let (is_asked, mut refused) = (form.is_asked, None);
+    for (form, most) in form.simpler(missing.is_none()) {
+        match work::within(most, || kernels(formulas, &form)) {
+            Ok(Ok(kernels)) => return Ok((form, kernels)),
+            Ok(Err(TooLong(size))) => refused = Some(written_out_too_large(&formulas.model, missing, is_asked, size)),
+            Err(Exhausted) => refused = None,
+        }
+    }
+    // where no work is left, the closure that takes it is told
+    Err(refused.unwrap_or_else(|| work::give_up()))
 }
 
 /// The kernels of a mechanical system, and its steps.
@@ -98,6 +112,7 @@ fn kernels<'g>(formulas: &MechanicsFormulas<'g>, form: &Form) -> Result<Kernels<
     let mut maker = Maker::new(formulas, formulas.table());
     maker.of_steps = of_steps(formulas);
     maker.scalars.keeps_matrices = form.keeps_matrices();
+    maker.scalars.is_plain = form.is_plain;
     let steps = maker.steps(formulas)?;
     maker.known_rows([Id::SplittingKick, Id::SplittingGradient]);
     maker.collocation(formulas);
@@ -122,9 +137,12 @@ fn of_steps(formulas: &MechanicsFormulas<'_>) -> Vec<Id> {
 }
 
 /// The error for a system whose unrolled code would be too large, with the feature that has no matrix code.
-fn written_out_too_large(model: &System<'_>, missing: Option<Feature>, size: String) -> Diagnostics {
+///
+/// Matrix code is offered where unrolled code is asked for: otherwise it was tried.
+fn written_out_too_large(model: &System<'_>, missing: Option<Feature>, is_asked: bool, size: String) -> Diagnostics {
     let error = too_large(model, size);
     match missing {
+        None if !is_asked => error,
         None => error.help("or write `code = matrices`, whose code grows less with the size"),
         Some(what) => error.note(format!("{} has no matrix code yet, which grows less with the size", what.words())),
     }

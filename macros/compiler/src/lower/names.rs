@@ -44,7 +44,7 @@ type Term = (Rational, Factors);
 impl Scalars {
     /// The name of a value or of its negative; `None` where there is no short one.
     fn name(&self, scalar: Scalar, is_negative: bool) -> Option<String> {
-        work::spend(1);
+        work::spend(200);
         let sign = integer(if is_negative { -1 } else { 1 });
         let name = match self.node(scalar) {
             ScalarNode::Sum(constant, terms) => {

@@ -67,7 +67,7 @@ impl Pairs {
     }
 
     fn count(&mut self, product: Id, length: usize, pair: Pair) {
-        work::spend(2);
+        work::spend(5);
         let uses = self.uses.entry(pair);
         uses.all += 1;
         uses.long += usize::from(length > 2);
@@ -77,7 +77,7 @@ impl Pairs {
     /// The pair that most products share, the first of several; `None` if no product of more than two factors shares one.
     pub fn most_common(&mut self) -> Option<Pair> {
         while let Some((count, Reverse(pair))) = self.queue.pop() {
-            work::spend(1);
+            work::spend(3);
             let uses = &self.uses[&pair];
             if uses.are_shared() && uses.all == count {
                 return Some(pair);

@@ -224,28 +224,30 @@ fn costs(kernels: &[(String, &Kernel)]) -> String {
 impl Form {
     /// How code is written, and why.
     fn sentence(&self) -> String {
-        let Form { code, estimate, is_asked, is_body_or_point, missing } = *self;
+        let Form { code, estimate, is_asked, is_body_or_point, missing, is_beyond, is_plain } = *self;
         let written = match code {
             CodeForm::Unrolled => "Code is unrolled, entry by entry",
             CodeForm::Matrices => "Code is matrix code, in loops",
         };
-        let why = match (is_asked, code) {
-            (true, _) => "as the declaration asks".to_string(),
-            (false, CodeForm::Unrolled) if estimate > LARGEST_UNROLLED => match missing {
+        let plain = if is_plain { " It is not shortened, as that takes too long." } else { "" };
+        let why = match (is_beyond, is_asked, code) {
+            (true, ..) => "and unrolled code is too long".to_string(),
+            (_, true, _) => "as the declaration asks".to_string(),
+            (_, false, CodeForm::Unrolled) if estimate > LARGEST_UNROLLED => match missing {
                 Some(why) => format!("and {why} has no matrix code"),
                 None => "of few unknowns".to_string(),
             },
-            (false, CodeForm::Unrolled) => format!("up to {LARGEST_UNROLLED}"),
-            (false, CodeForm::Matrices) if estimate <= LARGEST_UNROLLED && is_body_or_point => {
+            (_, false, CodeForm::Unrolled) => format!("up to {LARGEST_UNROLLED}"),
+            (_, false, CodeForm::Matrices) if estimate <= LARGEST_UNROLLED && is_body_or_point => {
                 "and bodies in five dimensions or more and points on S⁷ or larger keep them at any number".to_string()
             }
-            (false, CodeForm::Matrices) if estimate <= LARGEST_UNROLLED => {
+            (_, false, CodeForm::Matrices) if estimate <= LARGEST_UNROLLED => {
                 format!("and its momentum more than {MOST_UNKNOWNS} components")
             }
-            (false, CodeForm::Matrices) => format!("more than {LARGEST_UNROLLED}"),
+            (_, false, CodeForm::Matrices) => format!("more than {LARGEST_UNROLLED}"),
         };
         format!(
-            "{written}: the matrices of a linearisation and of a move have about {estimate} products of entries, {why}."
+            "{written}: the matrices of a linearisation and of a move have about {estimate} products of entries, {why}.{plain}"
         )
     }
 }

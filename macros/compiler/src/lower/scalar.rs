@@ -123,6 +123,8 @@ impl ScalarNode {
 pub struct Scalars {
     /// Whether kernels leave sums as they are written, sums within them too.
     pub keeps_sums: bool,
+    /// Whether kernels are left as they are: without a search for pairs of factors and for sums that others share.
+    pub is_plain: bool,
     /// Whether kernels are matrix code, and not unrolled.
     pub keeps_matrices: bool,
     nodes: Interner<ScalarNode>,

@@ -73,7 +73,7 @@ fn replaced(whole: &[(Rational, Id)], part: &[(Rational, Id)], name: Id) -> Opti
         return None;
     }
     let weight_in = |terms: &[(Rational, Id)], wanted: Id| {
-        clebsch_symbolic::work::spend(1 + terms.len() / 16);
+        clebsch_symbolic::work::spend(6 + terms.len() / 4);
         // a term that stands in it twice is left alone
         let mut found = terms.iter().filter(|(_, term)| *term == wanted).map(|(weight, _)| weight.clone());
         found.next().filter(|_| found.next().is_none())

@@ -191,8 +191,9 @@ fn assert_within(errors: &Diagnostics, text: &str, part: &str) {
 /// A potential or a force that is too long is told at its place, and not at the cost, which is short.
 #[test]
 fn what_exhausts_the_budget_is_told_at_its_own_closure() {
-    let long = lets("(b + self.s * x.y).sin()", 200);
-    let of_velocity = format!("{} * v", long.replace("x.", "v."));
+    let long = lets("(b + self.s * x.y).sin()", 400);
+    let factor = |k: usize| format!("({} * v.x + {} * v.y - {} * v.z + {k})", k + 1, k + 2, 2 * k + 1);
+    let of_velocity = format!("{} * v", (0..30).map(factor).collect::<Vec<_>>().join(" * "));
     for (key, value, what) in [
         ("potential", format!("|x| {long}"), "this potential"),
         ("force", format!("|v| {of_velocity}"), "this force"),

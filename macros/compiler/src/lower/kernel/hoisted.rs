@@ -22,6 +22,8 @@ struct Met {
     is_negative: bool,
     /// Its index among the stored values.
     place: usize,
+    /// Whether it is the first of its place.
+    is_first: bool,
 }
 
 impl Hoisted {
@@ -36,8 +38,9 @@ impl Hoisted {
             Some(opposite) => (!opposite.is_negative, opposite.place),
             None => (scalars.is_negative(scalar), self.kept),
         };
+        let is_first = place == self.kept;
         self.kept = self.kept.max(place + 1);
-        self.met.push(Met { scalar, is_negative, place });
+        self.met.push(Met { scalar, is_negative, place, is_first });
         (is_negative, place)
     }
 
@@ -48,8 +51,7 @@ impl Hoisted {
 
     /// The first of each place, with its number among those that were met.
     fn first(&self) -> impl Iterator<Item = (usize, &Met)> {
-        let is_first = |(number, met): &(usize, &Met)| self.met[..*number].iter().all(|other| other.place != met.place);
-        self.met.iter().enumerate().filter(is_first)
+        self.met.iter().enumerate().filter(|(_, met)| met.is_first)
     }
 
     /// Computes the stored values, one output each.

@@ -105,7 +105,7 @@ impl Builder<'_, '_> {
                 let scaled = terms.iter().filter(|(weight, _)| !is_unit(weight)).count();
                 (terms.len() + usize::from(!constant.is_zero())).saturating_sub(1) + scaled
             }
-            Operation::Product(_) => self.operands(id).len() - 1,
+            Operation::Product(factors) => self.products.get(id).unwrap_or(factors).len() - 1,
             _ => 0,
         };
         self.used().into_iter().map(count).sum()
@@ -144,14 +144,21 @@ impl Builder<'_, '_> {
     }
 
     fn delay(&self, id: Id, delays: &[u32]) -> u32 {
-        let latest = || self.operands(id).into_iter().map(|operand| delays[operand]).max().unwrap_or(0);
+        let latest = || {
+            let mut latest = 0;
+            self.each_operand(id, |operand| latest = latest.max(delays[operand]));
+            latest
+        };
         match self.operations.value(id) {
             Operation::Leaf(_) => 0,
             Operation::Sum(constant, terms) => {
                 let terms = self.terms(id, terms).iter().map(|term| delay_of_term(delays, term));
                 balance::delay(terms.chain((!constant.is_zero()).then_some(0)))
             }
-            Operation::Product(_) => latest() + balance::STEP * (self.operands(id).len() as u32 - 1),
+            Operation::Product(factors) => {
+                let count = self.products.get(id).unwrap_or(factors).len() as u32;
+                latest() + balance::STEP * (count - 1)
+            }
             Operation::Reciprocal(_) => latest() + DIVISION,
             Operation::Root(..) => latest() + ROOT,
             Operation::Function(..) | Operation::Call(..) => latest() + CALL,
