@@ -29,7 +29,8 @@ pub use crate::matrices::{skew, skew_components, skew_outer, skew_times};
 pub use crate::opaque::check_slope;
 pub use crate::orbit::{
     largest, length_defect, of_length_one, of_length_one_with_rest, orientation_defect, orthogonal,
-    orthogonal_with_rest, orthogonality_defect, symmetric, symmetric_with_rest, symmetry_defect,
+    orthogonal_with_rest, orthogonality_defect, orthonormality_defect, projector, projector_defect,
+    projector_with_rest, symmetric, symmetric_with_rest, symmetry_defect,
 };
 pub use crate::orientation::Orientation;
 pub use crate::parameters::{

@@ -12,15 +12,20 @@ const LARGEST_DEFECT: f64 = 1.0 / 1024.0;
 
 /// The largest entry of |RᵀR − I|; +∞ for a reflection, whose determinant is negative.
 pub fn orthogonality_defect<T: Scalar, const N: usize>(r: &SMatrix<T, N, N>) -> T {
+    T::select(orientated(r, Orientation::NEGATIVE), T::one() / T::zero(), orthonormality_defect(r))
+}
+
+/// The largest entry of |XᵀX − I|.
+pub fn orthonormality_defect<T: Scalar, const R: usize, const C: usize>(x: &SMatrix<T, R, C>) -> T {
     let mut defect = T::zero();
-    for i in 0..N {
-        for j in 0..N {
-            let product = (0..N).fold(T::zero(), |sum, k| sum + r[(k, i)] * r[(k, j)]);
+    for i in 0..C {
+        for j in 0..C {
+            let product = (0..R).fold(T::zero(), |sum, k| sum + x[(k, i)] * x[(k, j)]);
             let expected = if i == j { T::one() } else { T::zero() };
             defect = larger(defect, (product - expected).abs());
         }
     }
-    T::select(orientated(r, Orientation::NEGATIVE), T::one() / T::zero(), defect)
+    defect
 }
 
 /// 0 for a matrix with a positive determinant, +∞ for the others: those on another component, or singular.
@@ -62,14 +67,14 @@ pub fn symmetric_with_rest<T: Scalar, const N: usize>(
 
 /// R, brought back to the next rotation where |Re|², e = (1, …, 1), is off N by more than 8Nε. It takes one step R(3I −
 /// RᵀR)/2 of Newton and Schulz. Without it, rounding of products would add up like √steps. |Re|² costs N² additions
-/// that nothing waits for; corrections are rare.
+/// that nothing waits for; corrections are rare. Matrices of C orthonormal columns come back in the same way, with C for N.
 ///
 /// Starts may be off by √ε: one step of Newton and Schulz leaves round-off. A larger defect takes three steps. Beyond
 /// 1/1024 the result is NaN, as formulas have lost their digits.
 ///
 /// Source: Higham, *Functions of Matrices*, section 8.3.
 #[inline(always)]
-pub fn orthogonal<T: Scalar, const N: usize>(r: SMatrix<T, N, N>) -> SMatrix<T, N, N> {
+pub fn orthogonal<T: Scalar, const R: usize, const C: usize>(r: SMatrix<T, R, C>) -> SMatrix<T, R, C> {
     let is_off = is_off_rotations(&r);
     if !is_off.any() {
         return r;
@@ -83,10 +88,10 @@ pub fn orthogonal<T: Scalar, const N: usize>(r: SMatrix<T, N, N>) -> SMatrix<T, 
 /// The same for R + δ, where δ is the rounding error of sums. The correction is added as the step was, and its rounding
 /// error is returned in turn.
 #[inline(always)]
-pub fn orthogonal_with_rest<T: Scalar, const N: usize>(
-    r: SMatrix<T, N, N>,
-    rest: SMatrix<T, N, N>,
-) -> (SMatrix<T, N, N>, SMatrix<T, N, N>) {
+pub fn orthogonal_with_rest<T: Scalar, const R: usize, const C: usize>(
+    r: SMatrix<T, R, C>,
+    rest: SMatrix<T, R, C>,
+) -> (SMatrix<T, R, C>, SMatrix<T, R, C>) {
     let is_off = is_off_rotations(&r);
     if !is_off.any() {
         return (r, rest);
@@ -95,29 +100,37 @@ pub fn orthogonal_with_rest<T: Scalar, const N: usize>(
     accumulate_where(is_off, r, rest, to_rotations(&moved, &left))
 }
 
-/// The lanes in which |Re|² is off N by more than 8Nε.
+/// The lanes in which |Re|² is off their number by more than 8ε of it.
 #[inline(always)]
-fn is_off_rotations<T: Scalar, const N: usize>(r: &SMatrix<T, N, N>) -> T::Mask {
+fn is_off_rotations<T: Scalar, const R: usize, const C: usize>(r: &SMatrix<T, R, C>) -> T::Mask {
     let square = r.row_iter().fold(T::zero(), |sum, row| {
         let along = row.iter().fold(T::zero(), |along, &entry| along + entry);
         sum + along * along
     });
-    let expected = T::from_ratio(N as i64, 1);
+    let expected = T::from_ratio(C as i64, 1);
     (T::from_ratio(8, 1) * T::EPSILON * expected).below((square - expected).abs())
 }
 
 /// The correction from R + δ to the nearest rotation, NaN in lanes where there is none near.
 #[cold]
 #[inline(never)]
-fn to_rotations<T: Scalar, const N: usize>(r: &SMatrix<T, N, N>, rest: &SMatrix<T, N, N>) -> SMatrix<T, N, N> {
+fn to_rotations<T: Scalar, const R: usize, const C: usize>(
+    r: &SMatrix<T, R, C>,
+    rest: &SMatrix<T, R, C>,
+) -> SMatrix<T, R, C> {
     let (change, missing) = newton_schulz(r, rest);
-    let is_near = missing.at_most(T::from_ratio(N as i64, 1) * T::EPSILON.sqrt());
+    let is_near = missing.at_most(T::from_ratio(C as i64, 1) * T::EPSILON.sqrt());
     if is_near.all() {
         return change;
     }
     let again = (0..2).fold(change, |change, _| change + newton_schulz(&(r + change), rest).0);
-    let is_known = missing.at_most(T::from_f64(LARGEST_DEFECT));
+    let is_known = is_known_defect(missing);
     change.zip_map(&again, |change, again| T::select(is_near, change, known(is_known, again)))
+}
+
+/// The lanes whose defect is small enough to be corrected.
+fn is_known_defect<T: Scalar>(missing: T) -> T::Mask {
+    missing.at_most(T::from_f64(LARGEST_DEFECT))
 }
 
 /// `value` in the lanes of the mask, NaN in the others.
@@ -127,15 +140,18 @@ fn known<T: Scalar>(mask: T::Mask, value: T) -> T {
 }
 
 /// R(I − RᵀR − Rᵀδ − δᵀR)/2, and the largest entry of its second factor.
-fn newton_schulz<T: Scalar, const N: usize>(r: &SMatrix<T, N, N>, rest: &SMatrix<T, N, N>) -> (SMatrix<T, N, N>, T) {
+fn newton_schulz<T: Scalar, const R: usize, const C: usize>(
+    r: &SMatrix<T, R, C>,
+    rest: &SMatrix<T, R, C>,
+) -> (SMatrix<T, R, C>, T) {
     // of the size of the defect
-    let missing = SMatrix::<T, N, N>::from_fn(|i, j| {
+    let missing = SMatrix::<T, C, C>::from_fn(|i, j| {
         let start = if i == j { T::one() } else { T::zero() };
-        let of_sums = (0..N).fold(start, |sum, k| sum - r[(k, i)] * r[(k, j)]);
-        let of_rests = (0..N).fold(T::zero(), |sum, k| sum + r[(k, i)] * rest[(k, j)] + rest[(k, i)] * r[(k, j)]);
+        let of_sums = (0..R).fold(start, |sum, k| sum - r[(k, i)] * r[(k, j)]);
+        let of_rests = (0..R).fold(T::zero(), |sum, k| sum + r[(k, i)] * rest[(k, j)] + rest[(k, i)] * r[(k, j)]);
         (of_sums - of_rests) * T::from_ratio(1, 2)
     });
-    let change = SMatrix::from_fn(|i, j| (0..N).fold(T::zero(), |sum, k| sum + r[(i, k)] * missing[(k, j)]));
+    let change = SMatrix::from_fn(|i, j| (0..C).fold(T::zero(), |sum, k| sum + r[(i, k)] * missing[(k, j)]));
     (change, missing.max_abs())
 }
 
@@ -217,6 +233,10 @@ pub fn largest<T: Scalar, const K: usize>(values: [T; K]) -> T {
         T::select(is_ordered, larger(max, x), T::zero() / T::zero())
     })
 }
+
+mod projector;
+
+pub use projector::{projector, projector_defect, projector_with_rest};
 
 #[cfg(test)]
 mod tests;

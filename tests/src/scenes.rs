@@ -44,6 +44,11 @@ pub fn unit() -> Vector3<f64> {
     Vector3::new(0.6, 0.0, 0.8)
 }
 
+/// The projector to a plane in four dimensions.
+pub fn plane() -> Matrix4<f64> {
+    Matrix4::new(0.36, 0.0, 0.48, 0.0, 0.0, 0.64, 0.0, 0.48, 0.48, 0.0, 0.64, 0.0, 0.0, 0.48, 0.0, 0.36)
+}
+
 /// A rigid motion.
 pub fn placed() -> Matrix4<f64> {
     let mut placed = turned().to_homogeneous();
@@ -107,6 +112,9 @@ macro_rules! every_scene {
             a_top_of_three_ways: three_ways::ThreeWays { moments: Vector3::new(2.0, 1.5, 1.0), weight: 3.0, center: centre() }, turned(), 0.05;
             two_bodies: two_bodies::TwoBodies { mass: [1.0, 2.0], gravitation: 1.1 }, [Vector3::x(), -Vector3::y()], 0.05;
             a_watched_top: watched_top::WatchedTop { mass: principal(), weight: 1.3 }, turned(), 0.05;
+            a_moving_frame: moving_frame::MovingFrame { mass: 0.8, pull: Matrix3x2::new(0.3, -0.4, 1.0, 0.2, 0.1, 0.9) },
+                Matrix3x2::new(0.6, 0.0, 0.0, 1.0, 0.8, 0.0), 0.05;
+            a_plane_in_four_dimensions: rayleigh_plane::RayleighPlane { mass: 0.7, form: four() }, plane(), 0.05;
             a_geodesic_of_covariances: covariance_geodesic::CovarianceGeodesic { }, Matrix2::new(1.2, 0.3, 0.3, 0.9), 0.1;
             a_centred_body: centred_body::CentredBody { mass: 1.2, inertia: inertia(), gravity: 9.81 }, placed(), 0.05;
             a_fluid_ellipsoid: fluid_ellipsoid::FluidEllipsoid { mass: 1.2 }, Matrix3::identity(), 0.05;

@@ -71,6 +71,8 @@ A configuration, the second argument, is typed as one of these:
 | `Quaternion` | all quaternions |
 | `Unit<VectorN>` | vectors of length one |
 | `Symmetric<MatrixN>` | symmetric matrices |
+| `Projector<MatrixN, K>` | orthogonal projectors of rank K, Pᵀ = P = P² and tr P = K, as points of a Grassmann manifold |
+| `Orthonormal<MatrixNxK>` | matrices of K < N orthonormal columns, XᵀX = I, as points of a Stiefel manifold |
 | a group | the elements of the group |
 | a tuple or an array | products of these |
 

@@ -44,7 +44,7 @@ impl<'g> Expr<'g> {
             ExprNode::Literal(entries) => graph.literal(shape, positions().map(|k| entries[k].clone()).into_list()),
             ExprNode::Stack(entries) => graph.stack(shape, positions().map(|k| graph.expr(entries[k])).into_list()),
             ExprNode::Hadamard(a, b) => graph.expr(*a).transpose().hadamard(graph.expr(*b).transpose()),
-            ExprNode::Symbol(symbol) if matches!(symbol.property, Property::Symmetric | Property::Diagonal) => self,
+            ExprNode::Symbol(symbol) if symbol.property.is_symmetric() => self,
             ExprNode::Symbol(symbol) if symbol.property == Property::Skew => -self,
             ExprNode::Of(operation, inner) => {
                 let inner = graph.expr(*inner);

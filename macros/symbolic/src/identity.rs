@@ -176,8 +176,21 @@ impl<'g> Point<'g> {
             Property::Skew => Matrix::from_fn(shape, |(i, j)| random(i, j).add(negative(random(j, i)))),
             Property::Orthogonal => self.sample_element(symbol, Group::SpecialOrthogonal(shape.rows)),
             Property::Unit => stereographic(shape, random),
+            Property::Orthonormal => self.orthonormal(symbol, shape.columns),
+            Property::Projector(rank) => {
+                let columns = self.orthonormal(symbol, rank);
+                columns.multiply(&columns.transpose())
+            }
             Property::Element(group) => self.sample_element(symbol, group),
         }
+    }
+
+    /// The first columns of a random rotation.
+    fn orthonormal(&self, symbol: Expr<'g>, count: usize) -> Matrix<Residue> {
+        let rotation = self.sample_element(symbol, Group::SpecialOrthogonal(symbol.shape().rows));
+        Matrix::from_fn(Shape::new(rotation.shape.rows, count), |(i, j)| {
+            rotation.entries[i * rotation.shape.columns + j]
+        })
     }
 
     /// A random element of a group. If no way to make elements is known, it is any matrix: laws of all matrices hold

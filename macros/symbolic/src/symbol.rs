@@ -86,8 +86,19 @@ pub enum Property {
     Orthogonal,
     /// |v| = 1.
     Unit,
+    /// AᵀA = I, of more rows than columns.
+    Orthonormal,
+    /// Aᵀ = A and A² = A, of this rank.
+    Projector(usize),
     /// An element of a group that is not SO(n).
     Element(Group),
+}
+
+impl Property {
+    /// Whether Aᵀ = A.
+    pub fn is_symmetric(self) -> bool {
+        matches!(self, Property::Symmetric | Property::Diagonal | Property::Projector(_))
+    }
 }
 
 /// A symbol as it was declared.

@@ -249,8 +249,11 @@ impl Graph {
             ExprNode::Of(Operation::Inverse, inner) => *inner == b,
             _ => false,
         };
-        if inverse(left, right) || inverse(right, left) {
+        if inverse(left, right) || inverse(right, left) || self.are_orthonormal(left, right) {
             return Some(self.identity(self.shape(left).rows));
+        }
+        if left == right && matches!(self.expr(left).property(), Property::Projector(_)) {
+            return Some(self.expr(left));
         }
         let shape = Shape::new(self.shape(left).rows, self.shape(right).columns);
         let embedded = |(operation, inner): (&Operation, &Id)| match operation {
@@ -312,6 +315,12 @@ impl Graph {
         let Some(first) = filled.next() else { return Some((0, literal)) };
         let rows = filled.next_back().unwrap_or(first) + 1 - first;
         (rows < shape.rows).then(|| (first, literal.block(first, 0, Shape::new(rows, shape.columns))))
+    }
+
+    /// Whether the letters are Xᵀ and X of orthonormal columns.
+    fn are_orthonormal(&self, left: Id, right: Id) -> bool {
+        *self.node(left) == ExprNode::Of(Operation::Transpose, right)
+            && self.expr(right).property() == Property::Orthonormal
     }
 
     pub(crate) fn is_orthogonal(&self, id: Id) -> bool {

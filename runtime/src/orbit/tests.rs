@@ -129,3 +129,30 @@ fn matrices_become_symmetric() {
     assert_eq!(symmetry_defect(&above), 0.0);
     assert_eq!(symmetry_defect(&Matrix3::<f64>::zeros()), 0.0);
 }
+
+/// Projectors and frames come back to round-off from small and from larger defects, and are NaN where digits are lost.
+#[test]
+fn projectors_and_frames_come_back() {
+    let rotation = Matrix3::new(0.36, 0.48, -0.8, -0.8, 0.6, 0.0, 0.48, 0.64, 0.6);
+    let columns = rotation.fixed_columns::<2>(0).into_owned();
+    let plane = columns * columns.transpose();
+    assert_eq!(projector(plane), symmetric(plane));
+    assert_eq!(orthogonal(columns), columns);
+    let direction = Matrix3::new(1.0, 0.5, -0.25, 0.5, 1.0, 0.75, -0.25, 0.75, 0.5);
+    let zero = SMatrix::zeros();
+    for defect in [1e-13, 1e-11, 1e-8, 1e-6, 1e-4, 3e-4] {
+        let off = plane + direction * defect;
+        for found in [projector(off), projector_with_rest(off, zero).0] {
+            assert!(projector_defect(&found, 2) < 1e-15 + 8.0 * f64::EPSILON, "{defect:e}: {found}");
+        }
+        let off = columns + direction.fixed_columns::<2>(0) * defect;
+        assert!(orthonormality_defect(&orthogonal(off)) < 8.0 * f64::EPSILON, "{defect:e}");
+    }
+    for defect in [1e-2, 0.1, 0.5, 1e10] {
+        let found = projector(plane + direction * defect);
+        assert!(found.iter().all(|entry| !entry.is_finite()), "{defect:e}: {found}");
+    }
+    assert!(projector(plane.map(|_| f64::NAN)).iter().all(|entry| entry.is_nan()));
+    assert_eq!(projector_defect(&Matrix3::from_diagonal(&Vector3::new(1.0, 0.0, 0.0)), 1), 0.0);
+    assert_eq!(projector_defect(&Matrix3::from_diagonal(&Vector3::new(1.0, 0.0, 0.0)), 2), 1.0);
+}

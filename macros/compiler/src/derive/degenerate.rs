@@ -5,7 +5,7 @@ use clebsch_symbolic::{Elements, Expr, Group, IntoList, Shape, identity};
 use super::symbols::of_columns;
 use super::{SystemFormulas, isotropy, naming};
 use crate::diagnostic::{Diagnostic, error};
-use crate::model::{Isotropy, Kinetic, Mechanics};
+use crate::model::{Configuration, Isotropy, Kinetic, LeafSpace, Mechanics, spelled};
 
 /// The error for a singular Σ. It names the motions without kinetic energy by their directions, by the points that they
 /// leave unchanged, or by their factors.
@@ -71,6 +71,7 @@ impl<'g> Degenerate<'_, 'g> {
                 .help(format_args!("or write their kinetic energy, as in `… + {term}`"))
         } else if isotropy::is_left_open(self.model, self.system) {
             error
+                .maybe_help(self.symmetric_matrix())
                 .help("let a smaller group act, which has no such motions and moves the configuration in as many directions")
                 .note("their velocity is arbitrary here, and no vertical term is known for this action that sets it to 0")
         } else {
@@ -79,6 +80,21 @@ impl<'g> Degenerate<'_, 'g> {
                 .note(format_args!("the {key} depends on such motions, but not to second order"))
         };
         error.note(format_args!("its Hessian at the identity has rank {rank} of {dimension}"))
+    }
+
+    /// The advice for a square matrix that moves as symmetric ones do.
+    fn symmetric_matrix(&self) -> Option<String> {
+        let model = self.model;
+        let is_moved = |leaf: &Configuration<'g>, image: Expr<'g>| {
+            let (q, is_plain) = (leaf.symbol, leaf.space == LeafSpace::Vectors && leaf.shape.is_square());
+            let moved = |f: Expr<'g>| f.shape() == leaf.shape && identity::equal(&[image], &[f * q * f.transpose()]);
+            let by = |f: Expr<'g>| moved(f) || moved(f.transpose());
+            is_plain && !leaf.shape.is_scalar() && model.factors.iter().any(|factor| by(factor.symbol))
+        };
+        let leaves = || model.configurations.iter().zip(&model.action);
+        let (leaf, _) = leaves().find(|(leaf, image)| is_moved(leaf, **image))?;
+        let (name, shape) = (&leaf.name, spelled(leaf.shape));
+        Some(format!("write `{name}: Symmetric<{shape}>` if `{name}` is symmetric, as covariances are"))
     }
 
     /// The displacement, or the velocity, of the configuration as the user writes it.

@@ -7,13 +7,15 @@
 //! equation with W has a solution without vertical part. W vanishes there with its derivative. Therefore q moves as by
 //! the declared cost.
 
+mod projection;
+mod scale;
 mod sections;
 
-use clebsch_symbolic::{Elements, Expr, Graph, Group, IntoList, Shape, identity};
+use clebsch_symbolic::{Elements, Expr, IntoList, Shape, identity};
 
 use super::symbols::{at_zero, identities, of_columns};
 use super::{Energy, SystemFormulas, energy, structure, trivialisation, velocity};
-use crate::model::{Configuration, Discretization, Isotropy, Kinetic, LeafSpace, Mechanics, Side};
+use crate::model::{Discretization, Isotropy, Kinetic, Mechanics};
 
 /// The vertical term, and the kinetic part with it.
 pub struct Vertical<'g> {
@@ -92,6 +94,8 @@ struct Part<'a, 'g> {
     model: &'a Mechanics<'g>,
     system: &'a SystemFormulas<'g>,
     factors: Vec<usize>,
+    /// The leaves that they move.
+    leaves: Vec<usize>,
     /// The matrix of ξ ↦ ξ_Q(q).
     map: Expr<'g>,
     form: Form<'g>,
@@ -101,8 +105,9 @@ struct Part<'a, 'g> {
 
 /// The quadratic form V of rank dim 𝔤_q that is positive on 𝔤_q, with W = ½ κ ξ·Vξ for ξ of first order.
 enum Form<'g> {
-    /// ξ ↦ cξ − J(q, ξ_Q(q)), c times the orthogonal projection to 𝔤_q. On a sphere the leaf is a vector that SO(n) turns.
-    Difference { weight: Expr<'g>, sphere: Option<usize> },
+    /// c − A + eA² of A: ξ ↦ J(q, ξ_Q(q)), c times the orthogonal projection to 𝔤_q. On a sphere the leaf is a vector that
+    /// SO(n) turns.
+    Difference { weight: Expr<'g>, square: Option<Expr<'g>>, sphere: Option<usize> },
     /// A diagonal matrix, in the components of the factors.
     Diagonal(Expr<'g>),
     /// ξ·Vξ = u·Cu of u = Aᵀξ, with sections A of 𝔤_q lowered by an inner product, and a weight C.
@@ -133,7 +138,7 @@ fn parts<'a, 'g>(
         let own =
             Own { model, inertia, factors: &factors, leaves: &leaves, components: &components, columns: &columns, map };
         if let Some((form, scale)) = own.form(system, kinetic) {
-            parts.push(Part { model, system, factors, map, form, scale });
+            parts.push(Part { model, system, factors, leaves, map, form, scale });
         }
     }
     parts
@@ -153,11 +158,10 @@ struct Own<'a, 'g> {
 impl<'g> Own<'_, 'g> {
     /// V and κ. `None` where no motion leaves the leaves unchanged, and where no short form is known.
     fn form(&self, system: &SystemFormulas<'g>, kinetic: Expr<'g>) -> Option<(Form<'g>, Expr<'g>)> {
-        let graph = self.model.graph;
         if let Some((leaf, weight)) = self.sphere() {
             let rank = self.model.configurations[leaf].shape.rows as i64 - 1;
-            let scale = self.scale_of_displacement(rank * weight, graph.integer(rank * (rank + 1)));
-            return Some((Form::Difference { weight, sphere: Some(leaf) }, scale));
+            let scale = self.scale_on_sphere(rank * weight, rank * (rank + 1));
+            return Some((Form::Difference { weight, square: None, sphere: Some(leaf) }, scale));
         }
         let (count, rank) = (self.columns.len(), identity::rank(self.map));
         if rank == count {
@@ -172,33 +176,6 @@ impl<'g> Own<'_, 'g> {
         let constant = self.without(is_constant, rank).or_else(|| self.factors.iter().find_map(|&k| of_factor(k)));
         let by_sections = || Some((sections::form(self, system, kinetic)?, self.scale_at_points(rank)));
         constant.or_else(|| self.difference(rank)).or_else(by_sections)
-    }
-
-    /// The form cI − A with A of ξ ↦ J(q, ξ_Q(q)), where A/c is a projection.
-    fn difference(&self, rank: usize) -> Option<(Form<'g>, Expr<'g>)> {
-        let graph = self.model.graph;
-        let square = self.map.transpose() * self.map;
-        let length = graph.total(
-            Shape::scalar(),
-            self.leaves.iter().map(|&leaf| self.model.configurations[leaf].symbol.norm_squared()),
-        );
-        let weights = [1, 2, 3, 4].map(|weight| graph.integer(weight)).into_iter().chain([length]);
-        let mut fitting = weights.filter(|weight| identity::equal(&[square * square], &[*weight * square]));
-        let weight = fitting.next()?;
-        let scale = self.scale_of_displacement(rank as i64 * weight, self.over_units(square.trace()));
-        Some((Form::Difference { weight, sphere: None }, scale))
-    }
-
-    /// The only leaf, where it is a vector of three or more components that SO(n) turns, and |q|².
-    fn sphere(&self) -> Option<(usize, Expr<'g>)> {
-        let ([k], [leaf]) = (self.factors, self.leaves) else { return None };
-        let (factor, configuration) = (&self.model.factors[*k], &self.model.configurations[*leaf]);
-        let (f, q) = (factor.symbol, configuration.symbol);
-        let Group::SpecialOrthogonal(n) = factor.group else { return None };
-        let turned = if factor.side == Side::Left { f * q } else { f.transpose() * q };
-        let is_turned =
-            n > 2 && configuration.shape == Shape::vector(n) && identity::equal(&[self.model.action[*leaf]], &[turned]);
-        is_turned.then(|| (*leaf, q.norm_squared()))
     }
 
     /// The form |ξ_J|² of all components but some that move the leaves in all directions by themselves.
@@ -219,45 +196,6 @@ impl<'g> Own<'_, 'g> {
         let trace = self.model.graph.total(Shape::scalar(), entries.map(|(_, &j)| self.inertia.entry(j, j)));
         trace.expand()
     }
-
-    /// The mass κ of a kinetic energy like ½ κ |ξ_Q(q)|²: the mean of tr Σ over the unit vectors q, a constant. Where Σ
-    /// is not defined there, it is tr Σ at q itself.
-    fn scale_of_displacement(&self, trace: Expr<'g>, sum_over_units: Expr<'g>) -> Expr<'g> {
-        let inertia = self.inertia_along(|_| true);
-        let mean = self.over_units(inertia) / sum_over_units;
-        if mean.is_defined() && !identity::vanishes(mean) { mean } else { inertia / trace }
-    }
-
-    /// The mean of tr Σ/rank over points of the space, a constant. Where Σ is not defined there, it is that at q itself.
-    fn scale_at_points(&self, rank: usize) -> Expr<'g> {
-        let inertia = self.inertia_along(|_| true);
-        let points = self.leaves.each(|&leaf| points(self.model.graph, &self.model.configurations[leaf]));
-        let count = points.iter().map(Vec::len).max().unwrap_or(1);
-        let value = |number: usize| {
-            let at = |(leaf, points): (&usize, &Vec<Expr<'g>>)| {
-                (self.model.configurations[*leaf].symbol, points[number % points.len()])
-            };
-            inertia.substitute(&self.leaves.iter().zip(&points).map(at).into_list())
-        };
-        let sum = self.model.graph.total(Shape::scalar(), (0..count).map(value)).expand();
-        let mean = sum / (count * rank) as i64;
-        if mean.is_defined() && !identity::vanishes(mean) { mean } else { inertia / rank as i64 }
-    }
-
-    /// The sum of the values of a function of the leaves at their unit vectors.
-    fn over_units(&self, function: Expr<'g>) -> Expr<'g> {
-        let graph = self.model.graph;
-        let leaves = || self.leaves.iter().map(|&leaf| &self.model.configurations[leaf]);
-        let mut values = Vec::new();
-        for (number, leaf) in leaves().enumerate() {
-            for (i, j) in leaf.shape.positions() {
-                let mut point = at_zero(leaves().map(|leaf| leaf.symbol));
-                point[number].1 = graph.unit(leaf.shape, i, j);
-                values.push(function.substitute(&point));
-            }
-        }
-        graph.total(Shape::scalar(), values).expand()
-    }
 }
 
 impl<'g> Part<'_, 'g> {
@@ -267,21 +205,29 @@ impl<'g> Part<'_, 'g> {
     }
 
     /// W(h, q, F) = κ/(2h) w·V(q)w of w = P(F − I). For points on spheres it is κ/(4h) (|F − I|² − 2|Φ_F(q) − q|²). The
-    /// chord of the point adds up with that to the chord of the rotation.
+    /// chord of the point adds up with that to the chord of the rotation. For projectors it is κ/(2h) (c|w|² − |Φ_F(q) − q|²), whose chord
+    /// adds up with that of the cost to |w|² alone.
     fn of_cost(&self) -> Term<'g> {
         let (model, graph) = (self.model, self.model.graph);
         let scale = self.scale / (2 * model.step_size);
-        if let Form::Difference { weight, sphere: Some(leaf) } = self.form {
+        if let Form::Difference { weight, sphere: Some(leaf), .. } = self.form {
             let (f, n) = (model.factors[self.factors[0]].symbol, model.configurations[leaf].shape.rows);
-            let moved = model.action[leaf] - model.configurations[leaf].symbol;
             return Term {
                 motion: scale * weight * (f - graph.identity(n)).norm_squared() / 2,
-                displacement: scale * moved.norm_squared(),
+                displacement: scale * self.chord(),
             };
         }
         let of_factor = |k: usize| velocity::of_element(model, k, graph.integer(1), Discretization::Projection);
         let motions = (0..model.factors.len()).map(of_factor).into_list();
-        self.of_motion(&motions, scale)
+        let term = self.of_motion(&motions, scale);
+        let by_chord = Term { motion: term.motion, displacement: scale * self.chord() };
+        if self.vanishes_on_reflections(&by_chord) { by_chord } else { term }
+    }
+
+    /// |Φ_F(q) − q|².
+    fn chord(&self) -> Expr<'g> {
+        let moved = |&leaf: &usize| self.model.action[leaf] - self.model.configurations[leaf].symbol;
+        self.model.graph.total(Shape::scalar(), self.leaves.iter().map(|leaf| moved(leaf).norm_squared()))
     }
 
     /// The components of these factors, one below the other.
@@ -297,10 +243,13 @@ impl<'g> Part<'_, 'g> {
         let motions: Vec<_> = motions.iter().enumerate().map(|(k, motion)| own(k, motion)).into_list();
         let sum = |terms: &[Expr<'g>]| graph.total(Shape::scalar(), terms.iter().copied());
         match self.form {
-            Form::Difference { weight, .. } => Term {
-                motion: scale * weight * sum(&motions.each(|motion| motion.norm_squared())),
-                displacement: scale * sum(&self.system.motion_by(&motions).each(|motion| motion.norm_squared())),
-            },
+            Form::Difference { weight, square, .. } => {
+                let norm = |parts: &[Expr<'g>]| sum(&parts.each(|part| part.norm_squared()));
+                let displacement = self.system.motion_by(&motions);
+                let images = square.map(|square| square * norm(&self.system.momenta_of(displacement.clone())));
+                let motion = weight * norm(&motions) + images.unwrap_or(graph.integer(0));
+                Term { motion: scale * motion, displacement: scale * norm(&displacement) }
+            }
             Form::Diagonal(matrix) => {
                 let own = self.own(&motions);
                 Term { motion: scale * own.dot(matrix * own), displacement: graph.integer(0) }
@@ -310,17 +259,6 @@ impl<'g> Part<'_, 'g> {
                 Term { motion: scale * along.dot(weight * along), displacement: graph.integer(0) }
             }
         }
-    }
-}
-
-/// Points of the space of a leaf.
-fn points<'g>(graph: &'g Graph, leaf: &Configuration<'g>) -> Vec<Expr<'g>> {
-    match leaf.space {
-        LeafSpace::Vectors | LeafSpace::Unit => {
-            leaf.shape.positions().map(|(i, j)| graph.unit(leaf.shape, i, j)).into_list()
-        }
-        LeafSpace::Symmetric => vec![graph.identity(leaf.shape.rows)],
-        LeafSpace::Group(group) => vec![group.identity(graph)],
     }
 }
 

@@ -24,6 +24,14 @@ fn typical(symbol: Expr<'_>, seed: u64) -> Matrix<f64> {
     let small = 0.1 / shape.rows as f64;
     Matrix::from_fn(shape, |(i, j)| match (shape.is_column(), i == j, symbol.property()) {
         (true, ..) => 0.5 + number(i, j),
+        (_, true, Property::Projector(rank)) => {
+            if i < rank {
+                1.0
+            } else {
+                0.0
+            }
+        }
+        (_, true, Property::Orthonormal) => 1.0,
         (_, true, _) => 1.0 + 0.5 * number(i, i),
         (_, false, Property::Diagonal) => 0.0,
         (_, false, Property::General) => small * number(i, j),

@@ -142,6 +142,8 @@ impl Emitter<'_, '_> {
                 LeafSpace::Group(group) if group.is_orthogonal() => ("orthogonal", quote!(#access)),
                 LeafSpace::Unit => ("of_length_one", quote!(#access)),
                 LeafSpace::Symmetric => ("symmetric", quote!(#access)),
+                LeafSpace::Orthonormal => ("orthogonal", quote!(#access)),
+                LeafSpace::Projector(_) => ("projector", quote!(#access)),
                 LeafSpace::Vectors | LeafSpace::Group(_) => continue,
             };
             let with_rest = format_ident!("{function}_with_rest");

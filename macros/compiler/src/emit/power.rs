@@ -62,7 +62,7 @@ impl<'g> Emitter<'_, 'g> {
         let of_site = if power.has_own_inputs { quote!(&u[i]) } else { quote!(u) };
         let terms = Terms::new(self, power);
         let is_bounded = self.model.configurations.iter().all(|leaf| match leaf.space {
-            LeafSpace::Unit => true,
+            LeafSpace::Unit | LeafSpace::Projector(_) | LeafSpace::Orthonormal => true,
             LeafSpace::Group(group) => Group::element_property(group) == Property::Orthogonal,
             LeafSpace::Vectors | LeafSpace::Symmetric => false,
         });

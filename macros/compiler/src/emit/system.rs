@@ -244,6 +244,11 @@ impl SystemEmitter<'_, '_> {
                 LeafSpace::Group(Group::UnitQuaternions) => quote!(runtime::length_defect(&q #access.coords)),
                 LeafSpace::Unit => quote!(runtime::length_defect(&q #access)),
                 LeafSpace::Symmetric => quote!(runtime::symmetry_defect(&q #access)),
+                LeafSpace::Orthonormal => quote!(runtime::orthonormality_defect(&q #access)),
+                LeafSpace::Projector(rank) => {
+                    let rank = size(rank);
+                    quote!(runtime::projector_defect(&q #access, #rank))
+                }
                 LeafSpace::Vectors | LeafSpace::Group(_) => return None,
             })
         });

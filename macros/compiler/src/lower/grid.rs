@@ -95,8 +95,8 @@ impl<'g> Scalars {
     fn symbol(&mut self, symbol: &Symbol) -> Grid {
         let zero = self.zero();
         Grid::from_fn(symbol.shape, |(i, j)| match symbol.property {
-            Property::Symmetric => self.input(Input::of(symbol, i.min(j), i.max(j))),
             Property::Diagonal if i != j => zero,
+            property if property.is_symmetric() => self.input(Input::of(symbol, i.min(j), i.max(j))),
             _ => self.input(Input::of(symbol, i, j)),
         })
     }

@@ -3,6 +3,7 @@
 use clebsch_symbolic::{Expr, Group, Shape, identity};
 
 use super::action_laws::{Action, Verdict};
+use super::shapes::spelled;
 use super::{Configuration, Factor, LeafSpace, Side};
 use crate::diagnostic::{Diagnostic, error};
 use crate::parse::{joined, shortened, spell};
@@ -26,6 +27,8 @@ impl<'g> Action<'_, 'g> {
         let promise = match leaf.space {
             LeafSpace::Group(group) => format!("in {}", group.name(self.graph)),
             LeafSpace::Symmetric => "symmetric".to_string(),
+            LeafSpace::Projector(rank) => format!("an orthogonal projector of rank {rank}"),
+            LeafSpace::Orthonormal => "a matrix of orthonormal columns".to_string(),
             _ => "a unit vector".to_string(),
         };
         let which = if verdict == Verdict::Open { "cannot be shown to be always" } else { "is not always" };
@@ -135,6 +138,8 @@ impl<'g> Action<'_, 'g> {
             LeafSpace::Vectors => plain,
             LeafSpace::Unit => format!("Unit<{plain}>"),
             LeafSpace::Symmetric => format!("Symmetric<{plain}>"),
+            LeafSpace::Projector(rank) => format!("Projector<{plain}, {rank}>"),
+            LeafSpace::Orthonormal => format!("Orthonormal<{plain}>"),
             LeafSpace::Group(group) => group.name(self.graph),
         };
         let is_affine = group.linear_part().is_some() && !leaf.shape.is_square();
@@ -147,8 +152,8 @@ impl<'g> Action<'_, 'g> {
 fn acts_on(group: Group, leaf: &Configuration) -> bool {
     match leaf.space {
         LeafSpace::Group(space) => space == group,
-        LeafSpace::Unit => group == Group::SpecialOrthogonal(leaf.shape.rows),
-        LeafSpace::Symmetric => false,
+        LeafSpace::Unit | LeafSpace::Orthonormal => group == Group::SpecialOrthogonal(leaf.shape.rows),
+        LeafSpace::Symmetric | LeafSpace::Projector(_) => false,
         LeafSpace::Vectors if leaf.is_quaternion => group == Group::UnitQuaternions,
         LeafSpace::Vectors => group.element_shape() == leaf.shape || group.element_shape().rows == leaf.shape.rows,
     }
@@ -156,13 +161,7 @@ fn acts_on(group: Group, leaf: &Configuration) -> bool {
 
 /// The type of any value of the shape of a leaf.
 fn plain_name(leaf: &Configuration) -> String {
-    match (leaf.is_quaternion, leaf.shape.columns, leaf.shape.rows) {
-        (true, ..) => "Quaternion".to_string(),
-        (_, 1, n @ 1..=6) => format!("Vector{n}"),
-        (_, 1, n) => format!("SVector<{n}>"),
-        (_, m, n @ 1..=6) if m == n => format!("Matrix{n}"),
-        (_, m, n) => format!("SMatrix<{n}, {m}>"),
-    }
+    if leaf.is_quaternion { "Quaternion".to_string() } else { spelled(leaf.shape) }
 }
 
 /// The smallest group that is built in and holds two groups that act on the same space.

@@ -76,6 +76,14 @@ impl<'g> Action<'_, 'g> {
                 LeafSpace::Vectors => Verdict::Inside,
                 LeafSpace::Unit => obeys(identity::equal(&[moved.norm_squared()], &[self.graph.integer(1)])),
                 LeafSpace::Symmetric => obeys(identity::equal(&[moved], &[moved.transpose()])),
+                LeafSpace::Projector(rank) => {
+                    let (square, trace) = (moved * moved, self.graph.integer(rank as i64));
+                    obeys(identity::equal(&[moved.transpose(), square, moved.trace()], &[moved, moved, trace]))
+                }
+                LeafSpace::Orthonormal => {
+                    let identity = self.graph.identity(moved.shape().columns);
+                    obeys(identity::equal(&[moved.transpose() * moved], &[identity]))
+                }
                 LeafSpace::Group(group) => lies_on(moved, group),
             };
             if verdict != Verdict::Inside {

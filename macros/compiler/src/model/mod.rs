@@ -23,6 +23,7 @@ mod shapes;
 mod sites;
 mod slots;
 mod space;
+mod space_names;
 mod spaces;
 mod symmetries;
 #[cfg(test)]
@@ -40,7 +41,7 @@ pub use groups::is_large;
 pub use layout::{Access, Layout, Part};
 pub use outline::{Nested, Outline, outline};
 pub use power::{Linear, Range, SiteIndex, Term};
-pub(crate) use shapes::IN_LOOPS;
+pub(crate) use shapes::{IN_LOOPS, spelled};
 pub(crate) use slots::arguments_of;
 pub use types::*;
 

@@ -99,6 +99,8 @@ impl System<'_> {
                 LeafSpace::Vectors => String::new(),
                 LeafSpace::Unit => ", unit".to_string(),
                 LeafSpace::Symmetric => ", symmetric".to_string(),
+                LeafSpace::Projector(rank) => format!(", projector of rank {rank}"),
+                LeafSpace::Orthonormal => ", orthonormal columns".to_string(),
                 LeafSpace::Group(group) => format!(" in {}", name(group)),
             };
             writeln!(f, "  configuration {}: {}{space}", leaf.name, leaf.shape)?;

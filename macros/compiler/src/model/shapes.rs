@@ -85,6 +85,17 @@ pub(super) fn type_parameter<'p>(ty: &Type, generics: &'p Generics) -> Option<&'
 /// The largest n for which `VectorN` and `MatrixN` have names.
 const NAMED: usize = 6;
 
+/// The type of vectors or matrices of a shape.
+pub(crate) fn spelled(shape: Shape) -> String {
+    match (shape.columns, shape.rows) {
+        (1, n @ 1..=NAMED) => format!("Vector{n}"),
+        (1, n) => format!("SVector<{n}>"),
+        (m, n @ 1..=NAMED) if m == n => format!("Matrix{n}"),
+        (m @ 1..=NAMED, n @ 1..=NAMED) => format!("Matrix{n}x{m}"),
+        (m, n) => format!("SMatrix<{n}, {m}>"),
+    }
+}
+
 /// A type without parentheses around it.
 pub(super) fn plain(ty: &Type) -> &Type {
     match ty {

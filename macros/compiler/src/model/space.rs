@@ -51,7 +51,7 @@ impl<'g> Space<'g> {
     pub fn members(&self) -> impl Iterator<Item = (Expr<'g>, Group)> {
         self.leaves.iter().filter_map(|leaf| match leaf.space {
             LeafSpace::Group(group) => Some((leaf.symbol, group)),
-            LeafSpace::Vectors | LeafSpace::Unit | LeafSpace::Symmetric => None,
+            _ => None,
         })
     }
 

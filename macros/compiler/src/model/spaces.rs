@@ -5,9 +5,11 @@ use syn::{GenericArgument, Type};
 
 use super::groups::{GroupNames, group, known_group, suggestion};
 use super::quaternion;
-use super::shapes::{IN_LOOPS, LEAVES, arguments, hint, last_name, last_segment, length, plain, vectors};
-use super::{Layout, LeafSpace};
-use crate::diagnostic::{Diagnostic, error, refuse};
+use super::shapes::{
+    IN_LOOPS, LEAVES, arguments, hint, last_name, last_segment, length, plain, size_argument, spelled, vectors,
+};
+use super::{Layout, LeafSpace, space_names};
+use crate::diagnostic::{Diagnostic, bail, error, refuse};
 use crate::parse::spell_type;
 
 /// A type as a product of leaves.
@@ -35,6 +37,8 @@ impl SpaceType<'_> {
             LeafSpace::Vectors => Property::General,
             LeafSpace::Unit => Property::Unit,
             LeafSpace::Symmetric => Property::Symmetric,
+            LeafSpace::Projector(rank) => Property::Projector(rank),
+            LeafSpace::Orthonormal => Property::Orthonormal,
             LeafSpace::Group(group) => group.element_property(),
         }
     }
@@ -112,6 +116,25 @@ fn read_space<'t>(ty: &'t Type, names: GroupNames) -> Result<SpaceType<'t>, Diag
             _ => Err(no_symmetric(ty)),
         },
         ("Symmetric", _) => Err(no_symmetric(ty)),
+        ("Projector", [GenericArgument::Type(inner), rank]) => match vectors(inner, names.generics).transpose()? {
+            Some(found) if found.0.is_square() => {
+                let rank = rank_of(rank, found.0.rows, names)?;
+                Ok(of_vectors(LeafSpace::Projector(rank), found))
+            }
+            found => Err(no_projector(ty, found.map(|(shape, _)| shape))),
+        },
+        ("Projector", [GenericArgument::Type(inner)]) => {
+            let found = vectors(inner, names.generics).transpose()?;
+            Err(no_projector(ty, found.map(|(shape, _)| shape)))
+        }
+        ("Projector", _) => Err(no_projector(ty, None)),
+        ("Orthonormal", [GenericArgument::Type(inner)]) => match vectors(inner, names.generics).transpose()? {
+            Some(found) if found.0.columns > 1 && found.0.rows > found.0.columns => {
+                Ok(of_vectors(LeafSpace::Orthonormal, found))
+            }
+            found => Err(no_orthonormal(ty, found.map(|(shape, _)| shape))),
+        },
+        ("Orthonormal", _) => Err(no_orthonormal(ty, None)),
         ("Quaternion", []) => Ok(of_quaternions(None)),
         ("Quaternion", [GenericArgument::Type(scalar)]) => Ok(of_quaternions(Some(scalar))),
         _ => Err(unknown_space(ty, &name, names)),
@@ -137,12 +160,55 @@ fn no_symmetric(ty: &Type) -> Diagnostic {
         help "write `Symmetric<Matrix3>` for symmetric matrices")
 }
 
+/// The rank of a projector, between 1 and n − 1.
+fn rank_of(argument: &GenericArgument, n: usize, names: GroupNames) -> Result<usize, Diagnostic> {
+    let rank = size_argument(argument, names.generics)?;
+    if n == 1 {
+        bail!(argument, "projectors of one dimension are 0 and 1"; help "write at least two dimensions, `Projector<Matrix2, 1>`");
+    }
+    if rank >= n {
+        bail!(argument, "the rank {rank} is not below the dimension {n}";
+            help "write a rank from 1 to {}", n - 1; note "projectors in {n} dimensions have ranks up to {n}, and only the identity has rank {n}");
+    }
+    Ok(rank)
+}
+
+fn no_projector(ty: &Type, shape: Option<Shape>) -> Diagnostic {
+    let error = error!(ty, "`{}` is no space of projectors", spell_type(ty));
+    let n = shape.map_or(4, |shape| shape.rows.max(2));
+    let error = error.help(format!(
+        "write `Projector<{}, {}>`, with the rank behind the matrix",
+        spelled(Shape::square(n)),
+        n / 2
+    ));
+    error.note("projectors are square, P² = P = Pᵀ, and their rank is the dimension of the subspace")
+}
+
+fn no_orthonormal(ty: &Type, shape: Option<Shape>) -> Diagnostic {
+    let error = error!(ty, "`{}` is no space of orthonormal columns", spell_type(ty));
+    match shape {
+        Some(Shape { rows, columns: 1 }) if rows > 1 => {
+            error.help(format!("write `Unit<Vector{rows}>` for unit vectors"))
+        }
+        Some(Shape { rows, columns }) if rows == columns && rows > 1 => {
+            error.help(format!("write `SO<{rows}>` for rotations, which are square"))
+        }
+        Some(Shape { rows, columns }) if rows < columns && rows > 1 => error
+            .help(format!("write `Orthonormal<Matrix{columns}x{rows}>`"))
+            .note(format!("{columns} columns of {rows} numbers cannot be orthonormal")),
+        _ => error.help("write `Orthonormal<Matrix3x2>` for two orthonormal columns of three numbers"),
+    }
+}
+
 fn unknown_space(ty: &Type, name: &str, names: GroupNames) -> Diagnostic {
     let error = error!(ty, "unknown space `{}`", spell_type(ty));
     if matches!(name, "f32" | "f64") {
         return error.help("write `Vector1` for a single coordinate");
     }
-    let help = suggestion(name, names).map(|group| format!("write `{group}`")).or_else(|| hint(name));
+    let sizes = last_segment(ty).map(arguments).unwrap_or_default();
+    let sizes = sizes.iter().filter_map(|size| size_argument(size, names.generics).ok()).into_list();
+    let named = space_names::written(name, &sizes).or_else(|| suggestion(name, names));
+    let help = named.map(|written| format!("write `{written}`")).or_else(|| hint(name));
     error.help(
         help.as_deref()
             .unwrap_or("write a space of vectors (`Vector3`), of unit vectors (`Unit<Vector3>`) or a group (`SO<3>`)"),

@@ -277,6 +277,10 @@ pub enum LeafSpace {
     Unit,
     /// A symmetric matrix.
     Symmetric,
+    /// The orthogonal projector to a subspace of this dimension.
+    Projector(usize),
+    /// A matrix of orthonormal columns, fewer than its rows.
+    Orthonormal,
     /// An element of a group.
     Group(Group),
 }

@@ -6,7 +6,7 @@ use crate::arbitrary::{attitude, cases, definite, matrix, rotation, unit, vector
 use clebsch::__private as private;
 use clebsch::Error;
 use clebsch_tests::oracle::near::assert_near;
-use nalgebra::{Matrix3, Quaternion, SVector, UnitQuaternion, Vector3};
+use nalgebra::{Matrix2, Matrix3, Quaternion, SMatrix, SVector, UnitQuaternion, Vector3};
 use proptest::prelude::*;
 
 /// Some ten roundings of numbers of order one.
@@ -55,6 +55,53 @@ proptest! {
         prop_assert!(private::length_defect(&(back + rest)) < near);
         prop_assert!(rest.amax() <= f64::EPSILON);
         prop_assert_eq!(private::of_length_one_with_rest(q, left), (q, left));
+    }
+
+    /// Brought back by one step of McWeeny, or of Newton and Schulz for columns. The error is the square of the defect.
+    #[test]
+    fn projectors_and_frames_come_back(r in attitude(), off in matrix::<3, 3>(1.0), k in 1..3_usize, size in -12.0_f64..-4.0) {
+        let defect = 10.0_f64.powf(size);
+        let near = 16.0 * defect * defect + NEAR;
+        let columns = r.columns(0, k);
+        let p = columns * columns.transpose();
+        let moved = p + (off + off.transpose()) * defect;
+        prop_assert!(private::projector_defect(&p, k) < NEAR);
+        prop_assert!((private::projector_defect(&p, k + 1) - 1.0).abs() < NEAR);
+        let square = (moved * moved - moved).amax();
+        let trace = (moved.trace() - k as f64).abs();
+        prop_assert!((private::projector_defect(&moved, k) - square.max(trace)).abs() < NEAR);
+        // of corrections that are made: one direction of the defect is looked at
+        let back = private::projector(moved);
+        prop_assert_eq!(back.transpose(), back);
+        if back != private::symmetric(moved) {
+            prop_assert!(private::projector_defect(&back, k) < 4.0 * near);
+        }
+        let skewed = p + off * defect;
+        let asymmetry = (skewed - skewed.transpose()).amax() / skewed.amax();
+        prop_assert!(private::projector_defect(&skewed, k) >= asymmetry * (1.0 - 1e-9));
+
+        let x: SMatrix<f64, 3, 2> = (r + off * defect).fixed_columns::<2>(0).into_owned();
+        let expected = (x.transpose() * x - Matrix2::identity()).amax();
+        prop_assert!((private::orthonormality_defect(&x) - expected).abs() < NEAR);
+        let back = private::orthogonal(x);
+        if back != x {
+            prop_assert!(private::orthonormality_defect(&back) < near);
+        }
+    }
+
+    /// The same for the rounding errors of sums, which count as much.
+    #[test]
+    fn rests_of_projectors_come_back(r in attitude(), off in matrix::<3, 3>(1.0), left in matrix::<3, 3>(1.0), size in -12.0_f64..-4.0) {
+        let defect = 10.0_f64.powf(size);
+        let near = 256.0 * defect * defect + 4.0 * NEAR;
+        let columns = r.columns(0, 2);
+        let p = columns * columns.transpose() + (off + off.transpose()) * defect;
+        let left = (left + left.transpose()) * defect;
+        let (back, rest) = private::projector_with_rest(p, left);
+        if back != private::symmetric(p) {
+            prop_assert!(private::projector_defect(&(back + rest), 2) < near);
+            prop_assert!(rest.amax() <= f64::EPSILON);
+        }
     }
 
     /// The entries above the diagonal decide, and the defect is that of the entries, relative to the largest.

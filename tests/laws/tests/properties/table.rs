@@ -99,6 +99,8 @@ pub const PROPERTIES: &[(&str, &[Property])] = &[
     ]),
     ("tests/laws/tests/properties/places.rs", &[
         ("what_has_left_its_space_comes_back",           &["orthogonal", "of_length_one", "orthogonality_defect", "orientation_defect", "length_defect"]),
+        ("projectors_and_frames_come_back",              &["projector", "projector_defect", "orthonormality_defect"]),
+        ("rests_of_projectors_come_back",                &["projector_with_rest"]),
         ("matrices_become_symmetric",                    &["symmetric", "symmetric_with_rest", "symmetry_defect"]),
         ("rests_come_back_with_their_sums",              &["orthogonal_with_rest", "of_length_one_with_rest"]),
         ("promises_of_fields_are_checked",               &["check_symmetric", "check_diagonal", "check_unit", "check_finite", "check_limit"]),

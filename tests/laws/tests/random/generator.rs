@@ -129,7 +129,9 @@ impl Generator<'_> {
         let (side, leaf) = (self.made.factors[0].side, self.made.leaves[0].clone());
         self.made.factors.push(Acting { group: group.clone(), side });
         let start = self.element(&group, 0.5);
-        let start = if leaf.start.shape() == start.shape() { start } else { leaf.start.clone() };
+        // rotations are no projectors
+        let is_point = leaf.start.shape() == start.shape() && !leaf.type_name.starts_with("Projector");
+        let start = if is_point { start } else { leaf.start.clone() };
         let image = leaf.image.moved(&[1], 0);
         self.made.leaves.push(Leaf { start, image, ..leaf });
         self.made.array = true;
@@ -203,6 +205,7 @@ impl Generator<'_> {
         let element = self.element(group, 0.5);
         let (any, column) = (self.matrix(n, n), self.matrix(n, 1));
         let small = group.group.basis.len() <= 4;
+        let is_turned = name.starts_with("SO") && !name.contains(',') && n > 2;
         let (typed, start, image, side) = match self.pick(10) {
             0..=2 => (name, element, q * f, Side::Right),
             3 | 4 => (name, element, f * q, Side::Left),
@@ -218,8 +221,18 @@ impl Generator<'_> {
                 let image = f.clone().method("rotation") * q + f.method("translation");
                 (format!("SVector<{}>", n - 1), self.matrix(n - 1, 1), image, Side::Left)
             }
+            8 if is_turned && self.is_natural => {
+                let columns = element.block(0..n, 0..1 + self.pick(n - 1));
+                let (k, start) = (columns.shape().1, columns.clone() * columns.transpose());
+                let image = f.clone() * q * f.method("transpose");
+                (format!("Projector<{square}, {k}>"), start, image, Side::Left)
+            }
+            9 if is_turned && self.is_natural => {
+                let columns = element.block(0..n, 0..2 + self.pick(n - 2));
+                (format!("Orthonormal<SMatrix<{n}, {}>>", columns.shape().1), columns, f * q, Side::Left)
+            }
             8 => (vector, column, f.method("transpose") * q, Side::Right),
-            _ if name.starts_with("SO") && !name.contains(',') && n > 2 => {
+            _ if is_turned => {
                 let length = column.norm_squared().sqrt();
                 (format!("Unit<SVector<{n}>>"), column * (1.0 / length), f * q, Side::Left)
             }

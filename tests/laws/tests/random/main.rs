@@ -127,6 +127,15 @@ fn what_is_linear_integrates_as_the_oracle_does() {
     integrates(some.into_iter());
 }
 
+/// Costs of the displacement of planes and frames. Few of the problems above are such.
+#[test]
+fn planes_and_frames_integrate_as_the_oracle_does() {
+    let moves = |seed: &u64| ["Projector<", "Orthonormal<"].iter().any(|space| problem(*seed).text().contains(space));
+    let some: Vec<u64> = (5000..20_000).filter(moves).take(cases(48) as usize).collect();
+    assert_eq!(some.len() as u64, cases(48));
+    integrates(some.into_iter());
+}
+
 /// Costs that couple and are composed with their adjoint. Once F⁻¹ did not cancel in F⁻¹ Φ_F(q), and they did not end.
 #[test]
 fn adjoints_of_coupled_costs_stay_short() {

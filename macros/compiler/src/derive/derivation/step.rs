@@ -112,6 +112,14 @@ fn spaces(formulas: &MechanicsFormulas<'_>) -> String {
         what.push("orthogonal matrices");
         how.push("by R(3I − RᵀR)/2 once |R(1, …, 1)|² is off N by 8Nε");
     }
+    if is(|space| *space == LeafSpace::Orthonormal) {
+        what.push("orthonormal columns");
+        how.push("by X(3I − XᵀX)/2 once |X(1, …, 1)|² is off their number k by 8kε");
+    }
+    if is(|space| matches!(space, LeafSpace::Projector(_))) {
+        what.push("projectors");
+        how.push("by 3P² − 2P³ once |P(1, …, 1)|² is off (1, …, 1)·P(1, …, 1) by 8nε");
+    }
     if is(|space| matches!(space, LeafSpace::Unit | LeafSpace::Group(Group::UnitQuaternions))) {
         what.push("vectors of length one");
         how.push("by q(3 − |q|²)/2 once |q|² is off by 8ε");
