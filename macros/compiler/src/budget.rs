@@ -10,7 +10,7 @@ use proc_macro2::{Span, TokenStream, TokenTree};
 use syn::{Expr, Type};
 
 use crate::diagnostic::{Diagnostic, Diagnostics, Location, error};
-use crate::parse::{ChartChoice, Closure, Declaration, Discretization, Kinetic, Located, Order, Potential};
+use crate::parse::{ChartChoice, Closure, CodeForm, Declaration, Discretization, Kinetic, Located, Order, Potential};
 
 /// The work of one expansion, for each of its methods: about a second where the compiler is not optimised. A unit is about a tenth of a
 /// microsecond. Fixtures of the tests take up to a tenth of the budget, and the largest scenes a third.
@@ -118,7 +118,13 @@ impl Others<'_> {
         let is_written_out = |ty: &Type| matches!(ty, Type::Array(array) if matches!(array.len, Expr::Lit(_)));
         let mut types = self.declaration.action.arguments.iter().filter_map(|argument| argument.ty.as_ref());
         let is_product = types.any(is_written_out);
-        let rows: [(bool, Change, &str); 4] = [
+        let is_unrolled = dials.code.as_ref().is_some_and(|code| code.value == CodeForm::Unrolled);
+        let rows: [(bool, Change, &str); 5] = [
+            (
+                is_unrolled,
+                |other| other.dials.code = None,
+                "leave out `code = unrolled`: then long code has a shorter form",
+            ),
             (
                 dials.emit.tangent,
                 |other| other.dials.emit.tangent = false,

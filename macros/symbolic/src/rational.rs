@@ -194,7 +194,7 @@ impl Rational {
         let value = Rational::fitted(value);
         if !matches!(value.0, Size::Short(_)) {
             // digits meet digits in products and in lowest terms
-            work::spend(8 + value.digits() * value.digits() / 8);
+            work::spend(25 + value.digits() * value.digits() / 8);
         }
         value
     }

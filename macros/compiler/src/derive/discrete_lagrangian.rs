@@ -104,7 +104,11 @@ impl<'g> DiscreteLagrangian<'g> {
         let exchanged = leaves.flat_map(|(q, image)| [(q, image), (image, q)]);
         let by_ends: Vec<_> = reversed.iter().copied().chain(exchanged).into_list();
         reversed.extend(moved(model));
-        let kinetic = -self.kinetic.substitute(&reversed);
+        let reversed = -self.kinetic.substitute(&reversed);
+        // it is often the same function at the other end of the step, as it was written
+        let later = self.kinetic.substitute(&[(model.time, model.time + h)]);
+        let is_same = self.couples && identity::equal(&[reversed], &[later]);
+        let kinetic = if is_same { later } else { reversed };
         // in a cost of q and F alone, F⁻¹ cancels in F⁻¹ Φ_F(q), and does not with a symbol for q⁺
         let is_plain = self.by_ends == self.kinetic;
         DiscreteLagrangian {

@@ -7,7 +7,7 @@
 mod pattern;
 mod sylvester;
 
-use clebsch_symbolic::{Elements, Expr, IntoElements, IntoList, Shape, identity};
+use clebsch_symbolic::{Elements, Expr, IntoElements, IntoList, Shape, identity, work};
 
 use super::equation::{Form, MomentumEquation, Solution, Sources};
 use super::symbols::{ChartBlock, rows_at};
@@ -26,10 +26,18 @@ pub(super) fn specialised<'g>(sources: &Sources<'_, 'g>, equation: MomentumEquat
     if equation.solution != Solution::Newton {
         return vec![equation];
     }
-    if equation.components.len() > LARGEST {
+    let is_small = equation.components.len() <= LARGEST;
+    let found = is_small.then(|| work::within(SEARCH, || parts(sources, equation.clone())).ok()).flatten();
+    found.unwrap_or_else(|| {
         let is_inertial = pattern::is_inertial_as_a_whole(sources, &equation);
-        return vec![MomentumEquation { is_inertial, ..equation }];
-    }
+        vec![MomentumEquation { is_inertial, ..equation }]
+    })
+}
+
+/// The work to look for the structure of a Jacobian. One that takes more is taken as it is.
+const SEARCH: u64 = 700_000;
+
+fn parts<'g>(sources: &Sources<'_, 'g>, equation: MomentumEquation<'g>) -> Vec<MomentumEquation<'g>> {
     let mut whole = Reduced::new(sources, equation);
     whole.equation.is_inertial = pattern::is_inertial(sources, &whole.equation, &whole.columns);
     if let Some(explicit) = whole.substituted() {

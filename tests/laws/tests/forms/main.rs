@@ -587,3 +587,21 @@ fn what_is_conserved_is_the_same() {
     let q = Matrix4::identity();
     checks::conserve_alike(&free_body_4::unrolled::system(), &free_body_4::matrices::system(), &q);
 }
+
+// matrix code stands in for the unrolled code of larger ones
+both!(
+    coupled_costs_of_two_groups,
+    Matrix2::new(1.0, 0.2, -0.1, 1.3),
+    Two { weight: mass() },
+    #[clebsch(
+        action = |(F, G): (GL<2>, SO<2>), q: Matrix2| G * q * F,
+        cost = |h, q, (F, G)| {
+            let moved = G * q * F - q;
+            (moved.dot(&(self.weight * moved)) + (F - I).norm_squared() + (G - I).norm_squared()) / (2 * h)
+        },
+        potential = |q| q[(1, 0)] * q[(0, 0)] / 3,
+    )]
+    struct Two {
+        weight: Matrix2<f64>,
+    }
+);

@@ -47,9 +47,6 @@ fn seeds(count: u64) -> Range<u64> {
     }
 }
 
-/// Problems whose formulas take the compiler more than ten seconds in the test profile: left out unless they are asked for.
-const SLOW: [u64; 2] = [26, 46];
-
 /// Fails with all that has failed.
 fn report(failures: &[String]) {
     assert!(failures.is_empty(), "{} failures\n\n{}", failures.len(), failures.join("\n\n"));
@@ -70,8 +67,7 @@ fn smallest(seed: u64, failure: &str) -> String {
 /// Problems that have a motion: none is refused, and all step as the oracle does.
 fn integrates(seeds: impl Iterator<Item = u64>) {
     let (mut found, mut failures) = (Vec::new(), Vec::new());
-    let asked = std::env::var("CLEBSCH_RANDOM").is_ok();
-    for seed in seeds.filter(|seed| asked || !SLOW.contains(seed)) {
+    for seed in seeds {
         match check(&problem(seed), seed) {
             Ok(one) => {
                 println!("{seed}: {one:?}");
@@ -137,9 +133,10 @@ fn planes_and_frames_integrate_as_the_oracle_does() {
 }
 
 /// Costs that couple and are composed with their adjoint. Once F⁻¹ did not cancel in F⁻¹ Φ_F(q), and they did not end.
+/// The last one changes with the time alone, and its adjoint was too large.
 #[test]
 fn adjoints_of_coupled_costs_stay_short() {
-    const SEEDS: [u64; 3] = [920_257, 920_286, 920_321];
+    const SEEDS: [u64; 4] = [920_257, 920_286, 920_321, 930_161];
     integrates(SEEDS.into_iter());
 }
 
