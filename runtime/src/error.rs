@@ -153,7 +153,8 @@ errors! {
                  sign of its determinant, for example the order or the signs of its columns")
             } else {
                 write!(f, "off its space by {defect:.3e} where {tolerance:.1e} is accepted: normalise it, for example \
-                 give unit length to a vector or orthonormal columns to a rotation")
+                 give unit length to a vector, orthonormal columns to a rotation or a frame, equal entries across the \
+                 diagonal to a symmetric matrix, or make a projector XXᵀ of orthonormal columns X")
             });
         /// The momentum has a component along the motions that leave the configuration unchanged.
         OutsideMomentumSpace {

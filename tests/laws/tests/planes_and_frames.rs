@@ -365,6 +365,7 @@ fn states_lie_on_their_spaces() {
     let plane = Matrix3::from_diagonal(&Vector3::new(1.0, 1.0, 0.0));
     for (matrix, expected) in [(turned, 1e-3), (line * 1.25, 0.3125), (plane, 1.0), (Matrix3::zeros(), 1.0)] {
         let error = stepper.state(matrix, Vector3::zeros()).expect_err("no line");
+        assert!(error.to_string().contains("make a projector"), "{error}");
         let Error::OffOrbit { defect, .. } = error else { panic!("{error}") };
         assert!((defect - expected).abs() < 1e-12, "{defect} not {expected}");
     }
