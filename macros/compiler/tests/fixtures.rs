@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use clebsch_compiler::lower::Program;
 use clebsch_compiler::{Graph, WORK, compile, expand};
-use clebsch_symbolic::work;
+use clebsch_symbolic::{identity, work};
 use proc_macro2::{Delimiter, Spacing, TokenStream, TokenTree};
 use quote::ToTokens;
 
@@ -47,6 +47,25 @@ fn accepted_fixtures_compile() {
     for file in files {
         assert_eq!(errors(&file), None, "{}", file.display());
     }
+}
+
+/// Dρ(x)·δ, which the tangent of a chart may have given, is the derivative of ρ, for all numbers.
+#[test]
+fn jacobians_are_derivatives() {
+    let (mut count, mut other_forms) = (0, 0);
+    for file in fixtures("accept") {
+        let graph = Graph::new();
+        let Ok(Program::Mechanics(program)) = compile(&graph, item(&file)) else { continue };
+        let symbols = &program.formulas.symbols;
+        for equation in program.formulas.substeps.iter().flat_map(|substep| &substep.equations) {
+            let own = symbols.blocks_of(&equation.components).into_iter().map(|i| symbols.blocks[i]);
+            let directions: Vec<_> = own.map(|block| (block.coordinates, block.direction)).collect();
+            let derivative = equation.residual.differential(&directions);
+            (count, other_forms) = (count + 1, other_forms + usize::from(equation.directional != derivative));
+            assert!(identity::equal(&[equation.directional], &[derivative]), "{}", file.display());
+        }
+    }
+    assert!(count > 60 && other_forms > 3, "{other_forms} of {count} equations");
 }
 
 /// Declarations of people are far from the limit: no fixture takes a twentieth of the budget.

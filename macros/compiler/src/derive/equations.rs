@@ -7,7 +7,7 @@ use super::clearing;
 use super::closed_form::{closed_form, is_solved_by_predictor};
 use super::equation::{DISTRIBUTED, Form, Momentum, MomentumEquation, Solution, Sources, is_diagonal};
 use super::letters::Letters;
-use super::{ChartBlock, exact, structure};
+use super::{ChartBlock, exact, structure, tangent};
 
 /// The equations of a substep. Where the products of exponentials take much work, D(x) = F − I of these is substituted late.
 pub(super) fn equations<'g>(sources: &Sources<'_, 'g>, momentum: &Momentum<'g>) -> Vec<MomentumEquation<'g>> {
@@ -35,8 +35,9 @@ fn in_charts<'g>(sources: &Sources<'_, 'g>, momentum: &Momentum<'g>) -> Vec<Mome
         residuals.extend(symbols.blocks.iter().filter(|block| block.factor == k).map(|block| {
             let start = block.offset - model.offset(k);
             let is_near = momentum.couples && letters.occur_in(residual);
-            let rows = letters.replaced(residual.block(start, 0, block.coordinates.shape()));
-            Residual { rows, cleared, is_near }
+            let rows = residual.block(start, 0, block.coordinates.shape());
+            let slope = if is_near { tangent::directional(sources, &letters, rows) } else { None };
+            Residual { rows: letters.replaced(rows), slope, cleared, is_near }
         }));
     }
     if !momentum.is_forced {
@@ -44,7 +45,7 @@ fn in_charts<'g>(sources: &Sources<'_, 'g>, momentum: &Momentum<'g>) -> Vec<Mome
     }
     for (residual, block) in residuals.iter_mut().zip(&symbols.blocks).filter(|(_, block)| !is_free_rotation(block)) {
         if let Some(rows) = clearing::of_rotation(sources, block, residual.rows) {
-            *residual = Residual { rows, cleared: true, ..*residual };
+            *residual = Residual { rows, slope: None, cleared: true, ..*residual };
         }
     }
     let depends = |i: usize, j: usize| residuals[i].rows.depends_on(symbols.blocks[j].coordinates);
@@ -59,6 +60,8 @@ fn in_charts<'g>(sources: &Sources<'_, 'g>, momentum: &Momentum<'g>) -> Vec<Mome
 #[derive(Copy, Clone)]
 struct Residual<'g> {
     rows: Expr<'g>,
+    /// Its derivative by the tangent of the chart.
+    slope: Option<Expr<'g>>,
     cleared: bool,
     /// Whether it is written with D(x).
     is_near: bool,
@@ -77,7 +80,7 @@ fn substitute_explicit<'g>(sources: &Sources<'_, 'g>, residuals: &mut [Residual<
             let inserted = residual.rows.substitute(&[(coordinates, solution)]);
             let without = sources.without_momentum_of_block(inserted, i);
             if identity::equal(&[inserted], &[without]) {
-                residual.rows = without.expand();
+                (residual.rows, residual.slope) = (without.expand(), None);
             }
         }
     }
@@ -194,6 +197,10 @@ fn equation<'g>(
     // no products are distributed either where D(x) is substituted late
     let is_near = is_near || factors_keep(sources, &blocks);
     let mut equation = MomentumEquation::new(sources, components, residual, Form { cleared, is_near });
+    let slopes: Option<Vec<_>> = blocks.iter().map(|&i| residuals[i].slope).collect();
+    if let Some(slopes) = slopes {
+        equation.directional = sources.model.graph.below(&slopes);
+    }
     if let [only] = blocks[..]
         && !equation.moves
         && !momentum.is_forced

@@ -19,7 +19,7 @@ pub(super) struct Letters<'a, 'g> {
     /// q⁺ = q + Δ, with letters for Δ.
     images: Vec<(Expr<'g>, Expr<'g>)>,
     /// Δ = Φ_F(q) − q, without cancellation.
-    displacements: Vec<(Expr<'g>, Expr<'g>)>,
+    pub displacements: Vec<(Expr<'g>, Expr<'g>)>,
 }
 
 impl<'a, 'g> Letters<'a, 'g> {
@@ -65,6 +65,14 @@ impl<'a, 'g> Letters<'a, 'g> {
     pub(super) fn replaced(&self, expression: Expr<'g>) -> Expr<'g> {
         let stages = [&self.gradients, &self.images, &self.displacements, &self.increments];
         stages.into_iter().fold(expression, |expression, letters| expression.substitute(letters))
+    }
+
+    /// The expression with the letters Δ and D alone. `None` if none of them is left.
+    pub(super) fn by_increments(&self, expression: Expr<'g>) -> Option<Expr<'g>> {
+        let expression =
+            [&self.gradients, &self.images].into_iter().fold(expression, |sum, letters| sum.substitute(letters));
+        let mut letters = self.increments.iter().chain(&self.displacements);
+        letters.any(|(letter, _)| expression.depends_on(*letter)).then_some(expression)
     }
 
     /// A sum in which terms that do not vanish at F = I are written with Δ, until they cancel. The others keep their letters.

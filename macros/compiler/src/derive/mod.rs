@@ -41,6 +41,7 @@ mod symbols;
 mod symmetric;
 mod symmetry;
 mod system;
+mod tangent;
 mod trivialisation;
 mod variation;
 mod velocity;

@@ -13,16 +13,19 @@ struct Factored<'a> {
     uses: Vec<usize>,
     /// Sums that are still to be looked at.
     waiting: Vec<Id>,
+    /// Whether sums that stand nowhere else are joined with those around them.
+    joins: bool,
 }
 
 /// Takes common factors out of all sums in the code of the outputs. Some of these sums have terms other than those of
-/// their creation.
+/// their creation. With `joins`, terms of a sum and of the sums in it have factors in common too.
 pub(super) fn factored(
     operations: &mut Operations,
     outputs: &[Id],
     sums: Table<Id, Vec<(Rational, Id)>>,
+    joins: bool,
 ) -> Table<Id, Vec<(Rational, Id)>> {
-    let mut factored = Factored { uses: vec![0; operations.len()], operations, sums, waiting: Vec::new() };
+    let mut factored = Factored { uses: vec![0; operations.len()], operations, sums, waiting: Vec::new(), joins };
     outputs.iter().for_each(|&output| factored.take(output));
     while let Some(sum) = factored.waiting.pop() {
         factored.sum(sum);
@@ -79,12 +82,39 @@ impl Factored<'_> {
         if self.uses[sum] == 0 {
             return;
         }
-        while let Some(terms) = self.terms(sum)
-            && let Some(choice) = self.choose(&terms)
-        {
-            let terms = self.taken_out(terms, &choice);
+        while let Some(terms) = self.terms(sum) {
+            let terms = match self.choose(&terms) {
+                Some(choice) => self.taken_out(terms, &choice),
+                None if !self.joins => break,
+                None => {
+                    let (flat, inner) = self.flat(&terms);
+                    let Some(choice) = self.choose(&flat).filter(|_| !inner.is_empty()) else { break };
+                    inner.into_iter().for_each(|sum| self.uses[sum] = 0);
+                    self.taken_out(flat, &choice)
+                }
+            };
             self.sums.insert(sum, terms);
         }
+    }
+
+    /// The terms with those of sums that stand nowhere else, and these sums. There are none where a term would stand twice.
+    fn flat(&self, terms: &[(Rational, Id)]) -> (Vec<(Rational, Id)>, Vec<Id>) {
+        work::spend(terms.len());
+        let (mut flat, mut inner) = (Vec::new(), Vec::new());
+        for (coefficient, term) in terms {
+            match self.operations.value(*term) {
+                Operation::Sum(constant, _) if constant.is_zero() && is_unit(coefficient) && self.uses[*term] == 1 => {
+                    inner.push(*term);
+                    let terms = self.terms(*term).unwrap_or_default();
+                    flat.extend(terms.into_iter().map(|(weight, term)| (weight * coefficient, term)));
+                }
+                _ => flat.push((coefficient.clone(), *term)),
+            }
+        }
+        let mut ids = flat.each(|(_, term)| *term);
+        ids.sort_unstable();
+        let is_distinct = ids.windows(2).all(|pair| pair[0] != pair[1]);
+        (flat, if is_distinct { inner } else { Vec::new() })
     }
 
     fn terms(&self, sum: Id) -> Option<Vec<(Rational, Id)>> {

@@ -23,9 +23,20 @@ impl<'g> Scalars {
         if let Some(grid) = self.grids.get(&expr.position()) {
             return grid.clone();
         }
-        let grid = Rc::new(self.lower(expr));
+        let grid = Rc::new(self.transposed(expr).unwrap_or_else(|| self.lower(expr)));
         self.grids.insert(expr.position(), grid.clone());
         grid
+    }
+
+    /// The entries of a sum whose transpose is known. Its products of three and more letters would associate in another way, and be other
+    /// scalars.
+    fn transposed(&self, expr: Expr<'g>) -> Option<Grid> {
+        let View::Sum(terms) = expr.view() else { return None };
+        if !terms.iter().any(|term| term.word.len() > 2) {
+            return None;
+        }
+        let known = self.grids.get(&expr.transpose().position())?;
+        Some(Grid::from_fn(expr.shape(), |(i, j)| known.at(j, i)))
     }
 
     fn lower(&mut self, expr: Expr<'g>) -> Grid {

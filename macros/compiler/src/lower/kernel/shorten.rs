@@ -34,15 +34,29 @@ impl Builder<'_, '_> {
     pub(super) fn shorten(&mut self) {
         let separated = self.separate_numbers();
         let products = (!separated.is_empty()).then(|| self.products.clone());
-        self.factor_sums();
-        self.share_sums();
+        self.shorten_sums();
         let Some(products) = products else { return };
         let before = self.count_operations();
         let plain = (std::mem::replace(&mut self.sums, separated), std::mem::replace(&mut self.products, products));
-        self.factor_sums();
-        self.share_sums();
+        self.shorten_sums();
         if self.count_operations() >= before {
             (self.sums, self.products) = plain;
+        }
+    }
+
+    /// Common factors, and sums within sums, as long as they leave fewer operations.
+    fn shorten_sums(&mut self) {
+        self.factor_sums(false);
+        self.share_sums();
+        let mut before = self.count_operations();
+        loop {
+            self.factor_sums(true);
+            self.share_sums();
+            let after = self.count_operations();
+            if after >= before {
+                return;
+            }
+            before = after;
         }
     }
 
@@ -83,9 +97,9 @@ impl Builder<'_, '_> {
     }
 
     /// Takes common factors out of sums, where that leaves fewer operations once pairs are shared again.
-    fn factor_sums(&mut self) {
+    fn factor_sums(&mut self, joins: bool) {
         let before = self.count_operations();
-        let sums = factors::factored(&mut self.operations, &self.outputs, self.sums.clone());
+        let sums = factors::factored(&mut self.operations, &self.outputs, self.sums.clone(), joins);
         if sums.iter().all(|(id, terms)| self.sums.get(id) == Some(terms)) {
             return;
         }
