@@ -110,6 +110,7 @@ impl<'g> Closures<'_, '_, 'g> {
         }
         let energy = scalar(self.context, closure, scope, "a Lagrangian is a scalar")?;
         let (velocities, factors, pattern) = (velocities?, factors?, pattern?);
+        self.check_name(pattern, factors)?;
         let unmoved = |(velocity, _): &(&Expr<'g>, &Factor<'g>)| !energy.depends_on(**velocity);
         if let Some((velocity, factor)) = velocities.iter().zip(factors).find(unmoved) {
             let of = if factors.len() > 1 { format!(" of `{}`", factor.name) } else { String::new() };
@@ -120,6 +121,24 @@ impl<'g> Closures<'_, '_, 'g> {
         self.check_momentum(closure, pattern, energy, &velocities)?;
         let discretization = chosen_discretization(graph, self.declaration, factors);
         Some(Kinetic::Lagrangian { energy, velocities, name: pattern.spell(), discretization })
+    }
+
+    /// Refuses `R_dot` for the velocity of a rotation `R`: it is a vector of the algebra, and no derivative of a matrix.
+    fn check_name(&self, pattern: &Pattern, factors: &[Factor<'g>]) -> Option<()> {
+        let (name, configuration) = (pattern.spell(), self.arguments.names.configuration.spell());
+        let is_derivative =
+            [format!("{configuration}dot"), format!("{configuration}_dot"), format!("d{configuration}")];
+        let [factor] = factors else { return Some(()) };
+        if !is_derivative.contains(&name) || factor.group.is_translation() {
+            return Some(());
+        }
+        let (group, n) = (factor.group.name(self.context.graph), factor.group.dimension());
+        let error = error!(
+            pattern.place(),
+            "the velocity is a vector of the Lie algebra of `{group}` with {n} components, not the derivative of `{configuration}`"
+        );
+        let other = if factor.group == Group::SpecialOrthogonal(3) { "omega" } else { "xi" };
+        self.context.diagnostics.refuse(error.help(format!("give it another name, as `{other}`")))
     }
 
     /// Refuses p²/(2m): a kinetic energy that falls with the mass is a function of the momentum.
@@ -239,7 +258,13 @@ pub(super) fn scalar<'g>(
 fn of_velocity<'g>(closure: &Closure, value: &Value<'g>, elaborator: &Elaborator<'_, '_, 'g>) -> Option<String> {
     let velocity = closure.arguments.last().filter(|_| closure.key == "lagrangian")?.pattern.spell();
     let shape = elaborator.named(&velocity)?.shape();
-    value.matrix().filter(|momentum| momentum.shape() == shape && shape.is_column())?;
+    let momentum = value.matrix().filter(|momentum| momentum.shape() == shape && shape.is_column())?;
+    let energy = elaborator.named(&velocity)?.dot(momentum);
+    if identity::vanishes(energy) {
+        return Some(format!(
+            "a Lagrangian is the kinetic energy: write `{velocity}.dot(&(inertia * {velocity})) / 2`, with the inertia of the body"
+        ));
+    }
     Some(format!("write `{velocity}.dot(&({}))`", spell(tail(&closure.body))))
 }
 

@@ -7,12 +7,12 @@ use super::closures::{optional, written};
 use super::features::{self, Feature, Found};
 use super::sites;
 use super::slots::{FORCE, Slot};
-use super::space::Space;
+use super::space::{Space, column};
 use super::spaces::{SpaceType, read_spaces};
 use super::typed::{ActedSystem, Velocity};
 use super::value::{Each, Value};
 use super::{Factor, Force, LeafSpace};
-use crate::diagnostic::{Diagnostics, refuse};
+use crate::diagnostic::{Diagnostics, error, refuse};
 use crate::parse::{Argument, Closure, Declaration, shortened, tail};
 
 /// A closure that has been read.
@@ -139,8 +139,13 @@ impl<'g> ActedSystem<'_, '_, 'g> {
         } else {
             ("the force gives", "it has", "a covector of the group: it has the components of the momentum")
         };
-        refuse!(self.context.diagnostics, tail(&closure.body), "{gives} {found}, but {has} to give {needed}";
-            note "`{}` is {is}", shortened(&closure.body))
+        let error = error!(tail(&closure.body), "{gives} {found}, but {has} to give {needed}";
+            note "`{}` is {is}", shortened(&closure.body));
+        let help = match self.factors {
+            [factor] => column(Shape::vector(factor.group.dimension()), &closure.body, value),
+            _ => None,
+        };
+        self.context.diagnostics.refuse(error.maybe_help(help))
     }
 }
 

@@ -217,6 +217,9 @@ fn unknown_group(ty: &Type, names: GroupNames) -> Diagnostic {
     if name.is_empty() {
         return error.help("write a group, as in `SO<3>`, or a tuple of groups").note(known);
     }
+    if ["Quaternion", "UnitQuaternion"].contains(&name.as_str()) {
+        return error.help("write `SU<2>`: its elements are unit quaternions");
+    }
     match suggestion(&name, names) {
         Some(suggestion) => error.help(format!("write `{suggestion}`")),
         None => error.help(format!("declare it, `group {name} = |F: Matrix3| F.transpose() * F == I`")).note(known),

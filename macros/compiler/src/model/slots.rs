@@ -127,6 +127,9 @@ impl<'d> Matched<'d> {
         if slots.contains(&Slot::Input) && arguments.last().is_some_and(|argument| argument.ty.is_some()) {
             untyped -= 1;
             taken[untyped] = Some(Slot::Input);
+            // a second input before it, an error of its own
+            let is_typed = |position: usize| arguments[position].ty.is_some() && taken[position].is_none();
+            untyped = (0..untyped).rev().find(|&position| !is_typed(position)).map_or(0, |position| position + 1);
         }
         if let Some(last) = untyped.checked_sub(1).filter(|_| slots.contains(&Slot::Velocity))
             && taken[last].is_none()
@@ -185,6 +188,13 @@ impl<'d> Matched<'d> {
         let argument = &self.closure.arguments[position];
         let slot = self.taken[position];
         let (name, place) = (argument.pattern.spell(), argument.pattern.place());
+        if let (Some(ty), None, Some(Some(Slot::Input))) = (&argument.ty, slot, self.taken.get(position + 1)) {
+            let next = &self.closure.arguments[position + 1];
+            let (other, other_ty) = (next.pattern.spell(), next.ty.as_ref().map(spell_type).unwrap_or_default());
+            report!(diagnostics, place, "the {} has two inputs, `{name}` and `{other}`", self.closure.key;
+                help "write one, a tuple: `({name}, {other}): ({}, {other_ty})`", spell_type(ty));
+            return;
+        }
         if let Some(ty) = argument.ty.as_ref().filter(|_| !matches!(slot, Some(Slot::Offered | Slot::Input))) {
             report!(diagnostics, ty, "`{name}` has a type again";
                 help "write `{name}` without `: {}`", spell_type(ty);
@@ -214,6 +224,18 @@ impl<'d> Matched<'d> {
         }
     }
 
+    /// The error for a velocity where a price is one of places and inputs.
+    fn price_of_velocity(&self, position: usize) -> Option<Diagnostic> {
+        let Argument { pattern, .. } = &self.closure.arguments[position];
+        let key = &self.closure.key;
+        let is_velocity = self.names.velocity.is_some_and(|velocity| velocity.matches(pattern));
+        let is_price = self.slots == PRICE || self.slots == BOUNDS || key == "endpoint";
+        (is_velocity && is_price).then(|| {
+            let name = pattern.spell();
+            error!(pattern.place(), "the {key} cannot depend on the velocity `{name}`"; help "leave `{name}` out: {}", self.dependence())
+        })
+    }
+
     /// The advice if the potential reads the velocity and this is its pattern in the Lagrangian.
     fn of_velocity(&self) -> Option<(&'d Pattern, String)> {
         let velocity = self.names.velocity.filter(|_| self.slots == POTENTIAL)?;
@@ -231,6 +253,9 @@ impl<'d> Matched<'d> {
     fn unknown(&self, position: usize) -> Diagnostic {
         let Argument { pattern, .. } = &self.closure.arguments[position];
         let (name, key) = (pattern.spell(), &self.closure.key);
+        if let Some(error) = self.price_of_velocity(position).or_else(|| self.without_type(position)) {
+            return error;
+        }
         if let Some((_, help)) = self.of_velocity().filter(|(velocity, _)| velocity.matches(pattern)) {
             return error!(pattern.place(), "the {key} cannot depend on the velocity `{name}`"; help "{help}");
         }
@@ -255,6 +280,23 @@ impl<'d> Matched<'d> {
         };
         let order = if self.slots.len() > 1 { ", in this order" } else { "" };
         error.note(format!("arguments go by name: {}{order}", joined(self.slots.iter().map(describe))))
+    }
+
+    /// The error for two new names at the end: the velocity, and an input without a type.
+    fn without_type(&self, position: usize) -> Option<Diagnostic> {
+        let arguments = &self.closure.arguments;
+        let is_new = |position: usize| !self.names.is_known(&arguments[position].pattern);
+        let last = arguments.len() - 1;
+        let is_input =
+            self.slots.contains(&Slot::Velocity) && self.slots.contains(&Slot::Input) && !self.has(Slot::Input);
+        if !is_input || position + 1 != last || !is_new(position) || !is_new(last) || arguments[last].ty.is_some() {
+            return None;
+        }
+        let (key, input) = (&self.closure.key, arguments[last].pattern.spell());
+        let head = arguments.iter().map(|argument| argument.pattern.spell());
+        Some(error!(arguments[last].pattern.place(), "`{input}` is new in the {key} and has no type";
+            help "write `|{}: Vector3|`, with the type of the input", joined(head);
+            note "an input is the last argument, with its type; the velocity before it has none"))
     }
 
     /// The slot that an unknown argument most likely stands for: the last one that is free before those behind it.

@@ -1,6 +1,6 @@
 //! Products of spaces: their leaves, the expressions of a value for each leaf, and the names that a pattern gives them.
 
-use clebsch_symbolic::{Elements, Expr, Graph, Group, IntoList, Role};
+use clebsch_symbolic::{Elements, Expr, Graph, Group, IntoList, Role, Shape};
 use syn::ext::IdentExt;
 use syn::{Expr as Syntax, Ident};
 
@@ -8,7 +8,7 @@ use super::spaces::{Product, SpaceType};
 use super::value::Value;
 use super::{Configuration, Layout, LeafSpace, quaternion};
 use crate::diagnostic::{Diagnostics, error, refuse};
-use crate::parse::{Pattern, joined, shortened, tail};
+use crate::parse::{Pattern, joined, shortened, spell, tail};
 
 /// A configuration or an input: its leaves, and how they nest.
 #[derive(Clone)]
@@ -80,9 +80,17 @@ impl<'g> Space<'g> {
             Err((found, needed)) => {
                 let error = error!(tail(body), "the {key} gives {found}, but it has to give {needed}";
                     note "`{}` is {is}", shortened(body));
-                diagnostics.refuse(error.maybe_help(self.in_another_order(value)))
+                diagnostics
+                    .refuse(error.maybe_help(self.in_another_order(value).or_else(|| self.column((key, body), value))))
             }
         }
+    }
+
+    /// The advice for a space of one column.
+    fn column(&self, (key, body): (&Ident, &Syntax), value: &Value<'g>) -> Option<String> {
+        let [leaf] = self.leaves.as_slice() else { return None };
+        let is_meant = !leaf.is_quaternion && (key == "force_on" || matches!(value, Value::Array(_)));
+        column(leaf.shape, body, value).filter(|_| is_meant)
     }
 
     /// The advice for a tuple that has all parts in another order.
@@ -94,6 +102,22 @@ impl<'g> Space<'g> {
         needed.sort();
         let names = self.leaves.iter().map(|leaf| leaf.name.as_str());
         (given == needed).then(|| format!("write its parts in the order `({})`", joined(names)))
+    }
+}
+
+/// The advice for an array or a scalar in place of a column.
+pub(super) fn column(shape: Shape, body: &Syntax, value: &Value) -> Option<String> {
+    if !shape.is_column() || shape.is_scalar() {
+        return None;
+    }
+    match (value, tail(body)) {
+        (Value::Array(parts), array @ Syntax::Array(_)) if parts.len() == shape.rows => {
+            Some(format!("write `vector!{}`", spell(array)))
+        }
+        (Value::Matrix(expr), _) if expr.shape().is_scalar() => {
+            Some(format!("multiply it by a direction, a vector of {} components", shape.rows))
+        }
+        _ => None,
     }
 }
 

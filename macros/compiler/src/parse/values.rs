@@ -60,7 +60,11 @@ impl Reader<'_, '_> {
     /// `|a, b| …`; `None` if it can be read over and has an error.
     fn closure(&mut self, stream: ParseStream) -> Result<Option<Closure>, Diagnostic> {
         if !is_closure(stream) {
-            return Err(self.expected(stream, "a closure"));
+            let error = self.expected(stream, "a closure");
+            let is_method = self.name == "potential" && stream.peek(Token![Self]);
+            let opaque =
+                || "for methods of the struct write `potential = opaque(Self::value, Self::gradient)`".to_string();
+            return Err(error.maybe_help(is_method.then(opaque)));
         }
         let closure = closure::parse(stream)?;
         Ok(Closure::read(self.name, closure, self.diagnostics))

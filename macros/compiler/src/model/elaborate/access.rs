@@ -1,6 +1,6 @@
 //! Parts of values: `self.field`, `q.0`, `q[1]`, `x[(i, j)]`, `.x .y .z .w`.
 
-use clebsch_symbolic::{Expr, IntoList, Rational, Shape};
+use clebsch_symbolic::{Expr, Group, IntoList, Rational, Shape};
 use quote::ToTokens;
 use syn::{Expr as Syntax, ExprField, ExprIndex, Index, Member};
 
@@ -53,8 +53,13 @@ impl<'g> Elaborator<'_, '_, 'g> {
         let base = spell(&field.base);
         let shape = vector.shape();
         let Some(index) = COMPONENTS.iter().position(|component| name == component) else {
-            refuse!(self, name, "`{base}` has no component `{name}`";
-                note "components are `.x`, `.y`, `.z`, `.w`, `[i]` of a vector and `[(i, j)]` of a matrix");
+            let error = error!(name, "`{base}` has no component `{name}`");
+            let help = entry_named(field, shape, &name.to_string()).or_else(|| self.parts_of_velocity(&base, vector));
+            return self.refuse(
+                error
+                    .maybe_help(help)
+                    .note("components are `.x`, `.y`, `.z`, `.w`, `[i]` of a vector and `[(i, j)]` of a matrix"),
+            );
         };
         if !shape.is_column() && shape.rows != 1 {
             refuse!(self, name, "`{base}` is {shape}: `.{name}` is a component of a vector";
@@ -65,6 +70,16 @@ impl<'g> Elaborator<'_, '_, 'g> {
                 note "components are `.x`, `.y`, `.z`, `.w` in this order");
         }
         self.entry(field, vector, index)
+    }
+
+    /// The advice for a part of a velocity of SE(n) that has a name elsewhere, `xi.omega`.
+    pub(super) fn parts_of_velocity(&self, base: &str, vector: Expr<'g>) -> Option<String> {
+        let (_, group) = self.scope.velocities.iter().find(|(velocity, _)| *velocity == vector)?;
+        let &Group::SpecialEuclidean(n) = group else { return None };
+        let turns = n * (n - 1) / 2;
+        Some(format!(
+            "write `{base}.fixed_rows::<{turns}>(0)` for the rotation, `{base}.fixed_rows::<{n}>({turns})` for the translation"
+        ))
     }
 
     /// The component of a row or a column.
@@ -118,6 +133,18 @@ impl<'g> Elaborator<'_, '_, 'g> {
                 note "{of} are counted from 0 to {}", length - 1),
         }
     }
+}
+
+/// The entry that nalgebra names `m33`, counted from 0.
+fn entry_named(field: &ExprField, shape: Shape, name: &str) -> Option<String> {
+    let digits: Vec<usize> = name
+        .strip_prefix('m')?
+        .chars()
+        .map(|digit| digit.to_digit(10).map(|digit| digit as usize))
+        .collect::<Option<_>>()?;
+    let &[row, column] = digits.as_slice() else { return None };
+    let is_entry = (1..=shape.rows).contains(&row) && (1..=shape.columns).contains(&column);
+    is_entry.then(|| format!("write `{}[({}, {})]`, counted from 0", parenthesized(&field.base), row - 1, column - 1))
 }
 
 /// The replacement of `base.index`, if the base has that entry.

@@ -36,6 +36,11 @@ impl<'g> Elaborator<'_, '_, 'g> {
         match last {
             Stmt::Expr(value, None) => self.elaborate(value),
             Stmt::Macro(written) if written.semi_token.is_none() => self.macro_call(&written.mac),
+            Stmt::Expr(Syntax::Return(inner), _) if inner.expr.is_some() => {
+                let value = inner.expr.as_ref().map(|value| shortened(value)).unwrap_or_default();
+                refuse!(self, inner.return_token.span, "`return` cannot stand in the {}", self.key;
+                    help "end the block with its value: write `{value}`, without `return` and `;`")
+            }
             Stmt::Expr(value, Some(semicolon)) => refuse!(self, semicolon.span, "the block ends without a value";
                 help "remove the semicolon after `{}`", shortened(value)),
             other => {

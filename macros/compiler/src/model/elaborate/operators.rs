@@ -6,7 +6,7 @@ use syn::{BinOp, Expr as Syntax, ExprBinary, ExprUnary, UnOp};
 use super::errors::{no_product, not_added, point_moved, unequal_shapes, verb};
 use super::{Elaborator, Growth, Value};
 use crate::diagnostic::{Diagnostic, error, refuse};
-use crate::parse::{parenthesized, spell, spell_tokens};
+use crate::parse::{joined, parenthesized, spell, spell_tokens};
 
 /// A sum or a difference.
 pub(super) fn combined<'g>(link: &ExprBinary, a: Expr<'g>, b: Expr<'g>) -> Expr<'g> {
@@ -91,8 +91,16 @@ impl<'g> Elaborator<'_, '_, 'g> {
 
     fn no_matrix(&mut self, link: &ExprBinary, syntax: &Syntax, value: &Value<'g>) -> Option<Value<'g>> {
         let text = spell(syntax);
-        refuse!(self, syntax, "`{text}` is {} and cannot be {}", value.describe(), verb(&link.op);
-            help "take its parts, as in `{text}{}`", super::first_part(value))
+        let error = error!(syntax, "`{text}` is {} and cannot be {}", value.describe(), verb(&link.op));
+        let paths = [&link.left, &link.right].map(|side| matches!(&**side, Syntax::Path(_)).then(|| spell(side)));
+        let help = match (value, paths, &link.op) {
+            (Value::Array(parts), [Some(left), Some(right)], BinOp::Add(_)) if parts.len() <= 4 => {
+                let part = |i: usize| format!("{left}[{i}] + {right}[{i}]");
+                format!("write `[{}]`", joined((0..parts.len()).map(part)))
+            }
+            _ => format!("take its parts, as in `{text}{}`", super::first_part(value)),
+        };
+        self.refuse(error.help(help))
     }
 
     fn sum(&mut self, at: &ExprBinary, left: Value<'g>, right: Value<'g>) -> Option<Value<'g>> {
@@ -153,12 +161,28 @@ impl<'g> Elaborator<'_, '_, 'g> {
             if is_point {
                 return self.refuse(point_moved(at, left, right));
             }
+            if let Some(shifted) = self.shifted(at, [left, right]) {
+                return self.refuse(shifted);
+            }
             let meant = self.meant_group(at, left, right);
             return self.refuse(no_product(at, left, right, meant));
         }
         let product = self.grow(at, &[left, right], Growth::Product, || left * right)?;
         self.note_product(left, right, product);
         Some(Value::Matrix(product))
+    }
+
+    /// The error for an action that multiplies a point by an element of translations.
+    fn shifted(&self, at: &ExprBinary, operands: [Expr<'g>; 2]) -> Option<Diagnostic> {
+        let is_shift =
+            |operand: &Expr<'g>| matches!(operand.role(), Some(Role::Element(_))) && operand.shape().is_column();
+        let shift = operands.iter().position(is_shift)?;
+        let sides = [&at.left, &at.right];
+        let (a, x) = (spell(sides[shift]), spell(sides[1 - shift]));
+        (self.key == "action" && operands[0].shape() == operands[1].shape()).then(|| {
+            error!(at, "`{a}` is an element of `Translation<{}>`, which adds", operands[0].shape().rows;
+                help "write `{x} + {a}`")
+        })
     }
 
     /// The argument of the action with the group that it most likely has, `R: SO<3>`. It serves where the groups of two
