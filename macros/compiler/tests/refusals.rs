@@ -96,6 +96,10 @@ fn declarations() -> Vec<String> {
         particle(&format!("force = |v| ({}) * v", product(30, &mut Numbers(3)).replace("x.", "v."))),
     ];
     let mut numbers = Numbers(1);
+    for seed in 3..7 {
+        let product = product(14, &mut Numbers(seed));
+        all.push(particle(&format!("potential = |x| {product}, emit = [tangent]")));
+    }
     let mut potentials = vec![product(20, &mut numbers), nest(40, &mut numbers), nest(400, &mut numbers)];
     for _ in 0..3 {
         let (n, terms, depth) = (8 + numbers.below(16), 10 + numbers.below(40), 5 + numbers.below(300));

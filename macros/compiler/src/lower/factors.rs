@@ -88,7 +88,10 @@ impl Factored<'_> {
                 None if !self.joins => break,
                 None => {
                     let (flat, inner) = self.flat(&terms);
-                    let Some(choice) = self.choose(&flat).filter(|_| !inner.is_empty()) else { break };
+                    if inner.is_empty() {
+                        break;
+                    }
+                    let Some(choice) = self.choose(&flat) else { break };
                     inner.into_iter().for_each(|sum| self.uses[sum] = 0);
                     self.taken_out(flat, &choice)
                 }

@@ -24,6 +24,9 @@ pub(super) fn delay_of_term(delays: &[u32], (coefficient, term): &(Rational, Id)
 /// left less than a quarter.
 const BEYOND: usize = 8;
 
+/// Further searches leave next to nothing.
+const JOINS: usize = 2;
+
 impl Builder<'_, '_> {
     /// Whether unrolled code is refused for this kernel, however much shorter it can be made.
     pub(super) fn is_beyond_limits(&self) -> bool {
@@ -34,29 +37,29 @@ impl Builder<'_, '_> {
     pub(super) fn shorten(&mut self) {
         let separated = self.separate_numbers();
         let products = (!separated.is_empty()).then(|| self.products.clone());
-        self.shorten_sums();
-        let Some(products) = products else { return };
-        let before = self.count_operations();
-        let plain = (std::mem::replace(&mut self.sums, separated), std::mem::replace(&mut self.products, products));
-        self.shorten_sums();
-        if self.count_operations() >= before {
-            (self.sums, self.products) = plain;
-        }
-    }
-
-    /// Common factors, and sums within sums, as long as they leave fewer operations.
-    fn shorten_sums(&mut self) {
         self.factor_sums(false);
         self.share_sums();
-        let mut before = self.count_operations();
-        loop {
+        if let Some(products) = products {
+            let before = self.count_operations();
+            let plain = (std::mem::replace(&mut self.sums, separated), std::mem::replace(&mut self.products, products));
+            self.factor_sums(false);
+            self.share_sums();
+            if self.count_operations() >= before {
+                (self.sums, self.products) = plain;
+            }
+        }
+        self.join_sums();
+    }
+
+    /// Common factors of the terms of a sum and of sums in it, as long as they leave fewer operations, a few times at most.
+    fn join_sums(&mut self) {
+        for _ in 0..JOINS {
+            let before = self.count_operations();
             self.factor_sums(true);
             self.share_sums();
-            let after = self.count_operations();
-            if after >= before {
+            if self.count_operations() >= before {
                 return;
             }
-            before = after;
         }
     }
 
