@@ -161,8 +161,9 @@ impl<'g> Elaborator<'_, '_, 'g> {
             if is_point {
                 return self.refuse(point_moved(at, left, right));
             }
-            if let Some(shifted) = self.shifted(at, [left, right]) {
-                return self.refuse(shifted);
+            if let Some(error) = self.shifted(at, [left, right]).or_else(|| self.velocity_multiplied(at, [left, right]))
+            {
+                return self.refuse(error);
             }
             let meant = self.meant_group(at, left, right);
             return self.refuse(no_product(at, left, right, meant));
@@ -182,6 +183,29 @@ impl<'g> Elaborator<'_, '_, 'g> {
         (self.key == "action" && operands[0].shape() == operands[1].shape()).then(|| {
             error!(at, "`{a}` is an element of `Translation<{}>`, which adds", operands[0].shape().rows;
                 help "write `{x} + {a}`")
+        })
+    }
+
+    /// The error for the components of a velocity in place of its matrix.
+    fn velocity_multiplied(&self, at: &ExprBinary, operands: [Expr<'g>; 2]) -> Option<Diagnostic> {
+        let group = |operand: &Expr<'g>| self.scope.velocities.iter().find(|(velocity, _)| velocity == operand);
+        let (position, (velocity, group)) =
+            operands.iter().enumerate().find_map(|(position, operand)| Some((position, group(operand)?)))?;
+        let (n, other) = (group.element_shape().rows, operands[1 - position].shape());
+        let fits = velocity.shape().rows != n && n == if position == 0 { other.rows } else { other.columns };
+        let mut sides = [&at.left, &at.right].map(|side| parenthesized(side));
+        let [first, second] = [&operands[0], &operands[1]].map(|operand| operand.shape());
+        let error = error!(
+            at,
+            "`{}` is {first} and `{}` is {second}: they cannot be multiplied",
+            spell(&at.left),
+            spell(&at.right)
+        );
+        sides[position] += ".matrix()";
+        fits.then(|| {
+            error.help(format!("write `{} * {}`", sides[0], sides[1])).note(format!(
+                "a velocity is a vector of components; `matrix` makes the {n}x{n} matrix of the Lie algebra"
+            ))
         })
     }
 
