@@ -91,13 +91,18 @@ impl Factored<'_> {
                     if inner.is_empty() {
                         break;
                     }
-                    let Some(choice) = self.choose(&flat) else { break };
+                    let Some(choice) = self.choose(&flat).filter(|choice| !self.divides(choice)) else { break };
                     inner.into_iter().for_each(|sum| self.uses[sum] = 0);
                     self.taken_out(flat, &choice)
                 }
             };
             self.sums.insert(sum, terms);
         }
+    }
+
+    /// Whether a factor is a quotient. Taken out of several sums it would leave products that overflow, where it had made each of them small.
+    fn divides(&self, choice: &Choice) -> bool {
+        matches!(choice.factor, Factor::Of(factor) if matches!(self.operations.value(factor), Operation::Reciprocal(_)))
     }
 
     /// The terms with those of sums that stand nowhere else, and these sums. There are none where a term would stand twice.

@@ -259,11 +259,13 @@ impl Builder<'_, '_> {
     /// Replaces the pair of factors that most products share by a product of its own, as long as there is one.
     fn share_pairs(&mut self) {
         let used = self.used();
+        let divides = |id: &Id| matches!(self.operations.value(*id), Operation::Reciprocal(_));
+        let divisors = used.iter().copied().filter(divides).collect();
         let products = used.into_iter().filter_map(|id| match self.operations.value(id) {
             Operation::Product(factors) => Some((id, factors.clone())),
             _ => None,
         });
-        self.products = Pairs::new(products);
+        self.products = Pairs::new(products, divisors);
         while let Some((a, b)) = self.products.most_common() {
             let (product, _) = self.operations.intern(Operation::Product(vec![a, b]));
             if self.products.get(product).is_none() {

@@ -1,7 +1,7 @@
 //! Products that share pairs of factors: which pair most of them share, as pairs are taken out one after the other.
 
 use std::cmp::Reverse;
-use std::collections::BinaryHeap;
+use std::collections::{BTreeSet, BinaryHeap};
 
 use clebsch_symbolic::{Table, work};
 
@@ -15,9 +15,14 @@ type Pair = (Id, Id);
 pub struct Pairs {
     products: Table<Id, Vec<Id>>,
     uses: Table<Pair, Uses>,
-    /// The pairs that may be shared, each with at least the number of its uses.
-    queue: BinaryHeap<(usize, Reverse<Pair>)>,
+    /// Factors that divide. Products of two of them are made last: 1/d² overflows where a/d · b/d does not.
+    divisors: BTreeSet<Id>,
+    /// The pairs that may be shared, each with at least the number of its uses, those of two divisors last.
+    queue: BinaryHeap<Shared>,
 }
+
+/// Whether a pair has a factor that does not divide, the number of its uses, and the pair.
+type Shared = (bool, usize, Reverse<Pair>);
 
 /// Where a pair stands.
 #[derive(Clone, Default)]
@@ -42,16 +47,21 @@ impl Pairs {
         self.products.get(&product).map(Vec::as_slice)
     }
 
-    /// Products with their factors, sorted.
-    pub fn new(products: impl Iterator<Item = (Id, Vec<Id>)>) -> Pairs {
-        let mut pairs = Pairs::default();
+    /// Products with their factors, sorted, and the factors that divide.
+    pub fn new(products: impl Iterator<Item = (Id, Vec<Id>)>, divisors: BTreeSet<Id>) -> Pairs {
+        let mut pairs = Pairs { divisors, ..Pairs::default() };
         for (product, factors) in products {
             distinct(&factors).into_iter().for_each(|pair| pairs.count(product, factors.len(), pair));
             pairs.products.insert(product, factors);
         }
         let shared = pairs.uses.iter().filter(|(_, uses)| uses.are_shared());
-        pairs.queue = shared.map(|(pair, uses)| (uses.all, Reverse(*pair))).collect();
+        pairs.queue = shared.map(|(pair, uses)| pairs.waiting(*pair, uses.all)).collect();
         pairs
+    }
+
+    fn waiting(&self, (a, b): Pair, uses: usize) -> Shared {
+        let is_plain = !self.divisors.contains(&a) || !self.divisors.contains(&b);
+        (is_plain, uses, Reverse((a, b)))
     }
 
     /// Sets the factors of a product, sorted.
@@ -60,7 +70,8 @@ impl Pairs {
             self.count(product, factors.len(), pair);
             let uses = &self.uses[&pair];
             if uses.are_shared() {
-                self.queue.push((uses.all, Reverse(pair)));
+                let waiting = self.waiting(pair, uses.all);
+                self.queue.push(waiting);
             }
         }
         self.products.insert(product, factors);
@@ -76,14 +87,15 @@ impl Pairs {
 
     /// The pair that most products share, the first of several; `None` if no product of more than two factors shares one.
     pub fn most_common(&mut self) -> Option<Pair> {
-        while let Some((count, Reverse(pair))) = self.queue.pop() {
+        while let Some((_, count, Reverse(pair))) = self.queue.pop() {
             work::spend(3);
             let uses = &self.uses[&pair];
             if uses.are_shared() && uses.all == count {
                 return Some(pair);
             }
             // some of its uses are gone
-            self.queue.extend(uses.are_shared().then_some((uses.all, Reverse(pair))));
+            let waiting = uses.are_shared().then(|| self.waiting(pair, uses.all));
+            self.queue.extend(waiting);
         }
         None
     }

@@ -9,7 +9,7 @@ fn pairs_are_distinct() {
 #[test]
 fn the_most_common_pair_is_taken_first() {
     let products = [vec![1, 2, 3], vec![1, 2], vec![2, 3, 4], vec![2, 2, 3, 3]];
-    let mut pairs = Pairs::new((10..).zip(products));
+    let mut pairs = Pairs::new((10..).zip(products), Default::default());
     assert_eq!(pairs.most_common(), Some((2, 3)));
     pairs.insert(20, vec![2, 3]);
     pairs.replace((2, 3), 20);
