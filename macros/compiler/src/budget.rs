@@ -14,7 +14,7 @@ use crate::parse::{ChartChoice, Closure, CodeForm, Declaration, Discretization, 
 
 /// The work of one expansion, for each of its methods: about a second where the compiler is not optimised. A unit is about a tenth of a
 /// microsecond. Fixtures of the tests take up to a tenth of the budget, and the largest scenes a third.
-pub const WORK: u64 = 9_000_000;
+pub const WORK: u64 = 11_500_000;
 
 /// The stages behind the first one.
 #[derive(Copy, Clone, PartialEq, Eq)]
@@ -45,7 +45,7 @@ pub(crate) fn within<T>(
 /// The error for a declaration on which the budget was used up.
 fn too_large(declaration: &Declaration, stage: CompilerStage) -> Diagnostic {
     let kinetic = &declaration.kinetic.closure().body;
-    let others = Others { declaration, left: Cell::new(WORK / 4) };
+    let others = Others { declaration, left: Cell::new(WORK / 5) };
     let (place, what, instead) = others.culprit().unwrap_or_else(|| {
         let (body, what) = match stage {
             CompilerStage::Model => (&declaration.action.body, "the laws of this action take"),

@@ -6,7 +6,7 @@ use clebsch_compiler::{Graph, WORK, compile, emit};
 use clebsch_symbolic::work;
 
 /// The most work of a refusal: that of the declaration, of others next to it, and of one operation beyond a limit.
-const MOST: u64 = WORK + WORK / 4 + WORK / 50;
+const MOST: u64 = WORK + WORK / 5 + WORK / 50;
 
 /// Numbers that look random.
 struct Numbers(u64);
@@ -91,6 +91,13 @@ fn declarations() -> Vec<String> {
         covariance(4, "(1 + P[(0, 0)])", "discretization = projection,"),
         covariance(3, "(1 + P[(0, 0)])", "discretization = projection, order = 8,"),
         weighted("SO<4>", 4, "chart = exponential, isotropy = free"),
+        "#[clebsch(action = |(F, G): (SO<4>, SO<3>), (q, r): (SO<4>, SO<3>)| (q * F, r * G),
+            cost = |h, (F, G)| ((F - I).dot(&self.weight.component_mul(&(F - I))) + (G - I).norm_squared()) / (2 * h),
+            chart = exponential)]
+        struct B { weight: SMatrix<f64, 4, 4> }"
+            .to_string(),
+        particle(&format!("potential = |x| {}, emit = [tangent]", product(14, &mut Numbers(3)))),
+        particle(&format!("potential = |x| {}, emit = [tangent]", product(16, &mut Numbers(5)))),
         weighted("U<2>", 4, "chart = exponential"),
         weighted("SO<5>", 5, "emit = [tangent]"),
         particle(&format!("force = |v| ({}) * v", product(30, &mut Numbers(3)).replace("x.", "v."))),

@@ -38,7 +38,7 @@ impl Images {
         let mut known = self.known.borrow_mut();
         if known.len() <= id.0 as usize {
             let mut larger = vec![0; 2 * (id.0 as usize + 1)];
-            work::spend(larger.len() / 32);
+            work::spend(larger.len() / 8);
             larger[..known.len()].copy_from_slice(&known);
             *known = larger;
         }

@@ -163,7 +163,11 @@ impl ExprNode {
 
     /// About the work that it takes to make it once its parts are there.
     pub(crate) fn size(&self) -> usize {
-        let size_of = |term: &Term| 1 + term.coefficient.digits() + (term.scalars.len() + term.word.len()) / 4;
+        let size_of = |term: &Term| {
+            // long terms are copied more often than they are made
+            let factors = term.scalars.len() + term.word.len();
+            1 + term.coefficient.digits() + factors / 4 + factors * factors / 256
+        };
         2 + match self {
             ExprNode::Sum(terms) => terms.iter().map(size_of).sum(),
             ExprNode::Literal(entries) => entries.iter().map(|entry| 1 + entry.digits()).sum::<usize>() / 4,

@@ -61,7 +61,7 @@ impl Form {
         let has_large_matrices = self.estimate > LARGEST_UNROLLED;
         let stands_in = has_matrices && !self.is_asked && !self.keeps_matrices();
         let forms = [
-            (true, self, SHORTENED),
+            (true, self, if stands_in { SHORTENED } else { SHORTENED_ALONE }),
             (stands_in && has_large_matrices, matrices.clone(), IN_MATRICES),
             (true, plain, u64::MAX),
             (stands_in && !has_large_matrices, matrices, u64::MAX),
@@ -73,8 +73,11 @@ impl Form {
 /// The work to shorten the code of a step. A step that takes more is written in a simpler form.
 const SHORTENED: u64 = 5_000_000;
 
+/// The same of a system that has no matrix code.
+const SHORTENED_ALONE: u64 = 10_000_000;
+
 /// The work for matrix code in its place.
-const IN_MATRICES: u64 = 2_000_000;
+const IN_MATRICES: u64 = 4_000_000;
 
 /// The form of a system. A declaration may ask for one; otherwise it is matrix code if unrolled code would exceed the
 /// budget.

@@ -164,13 +164,13 @@ fn what_is_too_much_is_refused_at_its_place() {
     assert!(failures.is_empty(), "{} failures\n\n{}", failures.len(), failures.join("\n\n"));
 }
 
-/// A body in four dimensions in a chart whose derivatives are long: a declaration that exhausts the budget is refused
+/// Bodies in four and in three dimensions in a chart whose derivatives are long: a declaration that exhausts the budget is refused
 /// at its cost.
 #[test]
 fn what_exhausts_its_budget_is_refused_at_its_cost() {
-    let cost = "(F - I).dot(&self.weight.component_mul(&(F - I))) / (2 * h)";
-    let keys =
-        format!("action = |F: SO<4>, q: SO<4>| q * F, cost = |h, F| {cost}, isotropy = free, chart = exponential");
+    let cost = "((F - I).dot(&self.weight.component_mul(&(F - I))) + (G - I).norm_squared()) / (2 * h)";
+    let action = "|(F, G): (SO<4>, SO<3>), (q, r): (SO<4>, SO<3>)| (q * F, r * G)";
+    let keys = format!("action = {action}, cost = |h, (F, G)| {cost}, isotropy = free, chart = exponential");
     let text = format!("#[clebsch({keys})] pub struct Body {{ pub weight: SMatrix<f64, 4, 4> }}");
     let errors = compile(&Graph::new(), text.parse().expect("tokens")).err().expect("an error");
     let said = errors.to_string();

@@ -133,10 +133,11 @@ fn planes_and_frames_integrate_as_the_oracle_does() {
 }
 
 /// Costs that couple and are composed with their adjoint. Once F⁻¹ did not cancel in F⁻¹ Φ_F(q), and they did not end.
-/// The last one changes with the time alone, and its adjoint was too large.
+/// One changes with the time alone, and its adjoint was too large. The last one has no matrix code, and is long before it
+/// is shortened.
 #[test]
 fn adjoints_of_coupled_costs_stay_short() {
-    const SEEDS: [u64; 4] = [920_257, 920_286, 920_321, 930_161];
+    const SEEDS: [u64; 5] = [920_257, 920_286, 920_321, 930_161, 940_047];
     integrates(SEEDS.into_iter());
 }
 
