@@ -1,6 +1,6 @@
 //! Fewer operations for the same outputs, and when each of them is done.
 
-use clebsch_symbolic::{Elements, IntoList, Rational, Table, integer};
+use clebsch_symbolic::{Elements, IntoList, Rational, Table, integer, work};
 
 use super::{Builder, Id, Operation};
 use crate::lower::scalar::is_unit;
@@ -24,6 +24,8 @@ pub(super) fn delay_of_term(delays: &[u32], (coefficient, term): &(Rational, Id)
 /// left less than a quarter.
 const BEYOND: usize = 8;
 
+/// The work of a search through sums within sums. It is apart from that of the form of the code, which does not depend on it.
+const JOINED: u64 = 400_000;
 /// Further searches leave next to nothing.
 const JOINS: usize = 2;
 
@@ -48,7 +50,10 @@ impl Builder<'_, '_> {
                 (self.sums, self.products) = plain;
             }
         }
-        self.join_sums();
+        let found = (self.sums.clone(), self.products.clone());
+        if work::apart(JOINED, || self.join_sums()).is_err() {
+            (self.sums, self.products) = found;
+        }
     }
 
     /// Common factors of the terms of a sum and of sums in it, as long as they leave fewer operations, a few times at most.
