@@ -70,22 +70,9 @@ fn scaled_phi<T: Real, const N: usize>(a: &SMatrix<T, N, N>) -> SMatrix<T, N, N>
     value
 }
 
-/// Σ Aᵏv/(k + 1)! for |A| ≤ 1, until the terms, and their derivatives, cannot be seen.
+/// Σ Aᵏv/(k + 1)! for |A| ≤ 1.
 fn series_of_vectors<T: Real, const N: usize>(a: &SMatrix<T, N, N>, v: &SVector<T, N>) -> SVector<T, N> {
-    let (mut term, mut sum) = (*v, *v);
-    let negligible = T::EPSILON * T::from_ratio(1, 8) * norm(v);
-    let mut derivatives = T::DERIVATIVES;
-    for k in 2..=TERMS {
-        term = product(a, &term) * T::from_ratio(1, k);
-        sum += term;
-        if norm(&term) <= negligible {
-            if derivatives == 0 {
-                break;
-            }
-            derivatives -= 1;
-        }
-    }
-    sum
+    summed(*v, |term, k| product(a, term) * T::from_ratio(1, k))
 }
 
 /// A/2ˢ and s. From the second on, all powers of A/2ˢ are at most one in norm (or A/2ˢ itself is).
@@ -109,14 +96,22 @@ fn scale<T: Real, const N: usize>(a: &SMatrix<T, N, N>) -> (SMatrix<T, N, N>, u3
     (a * factor, halvings)
 }
 
-/// Σ_{k ≥ 1} Aᵏ/(k + shift)! for a shift of 0 or 1, until the terms, and their derivatives, cannot be seen.
+/// Σ_{k ≥ 1} Aᵏ/(k + shift)! for a shift of 0 or 1.
 fn series<T: Real, const N: usize>(a: &SMatrix<T, N, N>, shift: i64) -> SMatrix<T, N, N> {
-    let mut term = a * T::from_ratio(1, 1 + shift);
-    let mut sum = term;
-    let negligible = T::EPSILON * T::from_ratio(1, 8) * norm(&term);
+    summed(a * T::from_ratio(1, 1 + shift), |term, k| product(term, a) * T::from_ratio(1, k + shift))
+}
+
+/// The sum of terms, each made of the one before and of its number, until they, and their derivatives, cannot be seen.
+#[inline]
+fn summed<T: Real, const N: usize, const M: usize>(
+    first: SMatrix<T, N, M>,
+    next: impl Fn(&SMatrix<T, N, M>, i64) -> SMatrix<T, N, M>,
+) -> SMatrix<T, N, M> {
+    let (mut term, mut sum) = (first, first);
+    let negligible = T::EPSILON * T::from_ratio(1, 8) * norm(&first);
     let mut derivatives = T::DERIVATIVES;
     for k in 2..=TERMS {
-        term = product(&term, a) * T::from_ratio(1, k + shift);
+        term = next(&term, k);
         sum += term;
         if norm(&term) <= negligible {
             if derivatives == 0 {

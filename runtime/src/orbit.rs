@@ -118,19 +118,25 @@ fn to_rotations<T: Scalar, const R: usize, const C: usize>(
     r: &SMatrix<T, R, C>,
     rest: &SMatrix<T, R, C>,
 ) -> SMatrix<T, R, C> {
-    let (change, missing) = newton_schulz(r, rest);
+    corrected(newton_schulz, r, rest)
+}
+
+/// The correction from X + δ by an iteration whose step gives the change and the defect. It is one step from near, three steps from
+/// further away, and NaN in the lanes beyond [`LARGEST_DEFECT`].
+#[inline(always)]
+fn corrected<T: Scalar, const R: usize, const C: usize>(
+    step: impl Fn(&SMatrix<T, R, C>, &SMatrix<T, R, C>) -> (SMatrix<T, R, C>, T),
+    x: &SMatrix<T, R, C>,
+    rest: &SMatrix<T, R, C>,
+) -> SMatrix<T, R, C> {
+    let (change, missing) = step(x, rest);
     let is_near = missing.at_most(T::from_ratio(C as i64, 1) * T::EPSILON.sqrt());
     if is_near.all() {
         return change;
     }
-    let again = (0..2).fold(change, |change, _| change + newton_schulz(&(r + change), rest).0);
-    let is_known = is_known_defect(missing);
+    let again = (0..2).fold(change, |change, _| change + step(&(x + change), rest).0);
+    let is_known = missing.at_most(T::from_f64(LARGEST_DEFECT));
     change.zip_map(&again, |change, again| T::select(is_near, change, known(is_known, again)))
-}
-
-/// The lanes whose defect is small enough to be corrected.
-fn is_known_defect<T: Scalar>(missing: T) -> T::Mask {
-    missing.at_most(T::from_f64(LARGEST_DEFECT))
 }
 
 /// `value` in the lanes of the mask, NaN in the others.

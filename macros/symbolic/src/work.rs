@@ -61,7 +61,8 @@ pub fn within<T>(units: u64, work: impl FnOnce() -> T) -> Result<T, Exhausted> {
     ended(result)
 }
 
-/// Does work of this many units at most, which is not counted with the work around it: for texts, which may be shorter.
+/// Does work of this many units at most, which is not counted with the work around it. It is for results that may be left out: longer
+/// texts, and shorter code.
 ///
 /// # Errors
 /// Where it takes more.

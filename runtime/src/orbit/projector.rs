@@ -1,6 +1,6 @@
 //! Orthogonal projectors, Pᵀ = P and P² = P.
 
-use super::{accumulate_where, is_known_defect, known, largest, symmetric, symmetry_defect};
+use super::{accumulate_where, corrected, largest, symmetric, symmetry_defect};
 use crate::{Mask, Scalar, Space};
 use nalgebra::SMatrix;
 
@@ -55,14 +55,7 @@ fn is_off_projectors<T: Scalar, const N: usize>(p: &SMatrix<T, N, N>) -> T::Mask
 #[cold]
 #[inline(never)]
 fn to_projectors<T: Scalar, const N: usize>(p: &SMatrix<T, N, N>, rest: &SMatrix<T, N, N>) -> SMatrix<T, N, N> {
-    let (change, missing) = purified(p, rest);
-    let is_near = missing.at_most(T::from_ratio(N as i64, 1) * T::EPSILON.sqrt());
-    if is_near.all() {
-        return change;
-    }
-    let again = (0..2).fold(change, |change, _| change + purified(&(p + change), rest).0);
-    let is_known = is_known_defect(missing);
-    change.zip_map(&again, |change, again| T::select(is_near, change, known(is_known, again)))
+    corrected(purified, p, rest)
 }
 
 /// 3S² − 2S³ − S = (S − S²)(2S − I) of S = P + δ, symmetric, and the largest entry of its first factor.

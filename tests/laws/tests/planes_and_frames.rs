@@ -8,7 +8,7 @@
 use clebsch::{Clebsch, Conserved, Conserves, Error, State};
 use clebsch_tests::fixtures::moving_frame::MovingFrame;
 use clebsch_tests::fixtures::rayleigh_plane::RayleighPlane;
-use clebsch_tests::oracle::motion::{motion, order};
+use clebsch_tests::oracle::motion::{assert_second_order, errors_of_halved_steps as errors, motion, order};
 use clebsch_tests::oracle::precise::matrix::Matrix;
 use clebsch_tests::oracle::random::Random;
 use nalgebra::{Matrix2, Matrix3, Matrix3x2, Matrix4, SMatrix, SVector, Vector3, Vector6};
@@ -104,25 +104,6 @@ fn skew<const N: usize>(random: &mut Random) -> SMatrix<f64, N, N> {
 fn symmetric<const N: usize>(random: &mut Random) -> SMatrix<f64, N, N> {
     let any = random.matrix::<N, N>();
     (any + any.transpose()) * 0.5
-}
-
-/// The errors at t = 1, of steps that halve.
-fn errors<S: Clebsch<Scalar = f64, Time = ()> + Clone>(
-    system: &S,
-    (q, mu): (S::Configuration, S::Momentum),
-    error: impl Fn(&S::Configuration) -> f64,
-) -> [f64; 3] {
-    [20, 40, 80].map(|steps: usize| {
-        let stepper = system.stepper(1.0 / steps as f64).expect("a regular system");
-        let end = stepper.advance(&stepper.state(q, mu).expect("a state"), steps).expect("steps");
-        error(end.configuration())
-    })
-}
-
-fn assert_second_order(name: &str, errors: &[f64]) {
-    let measured = order(errors);
-    println!("{name}: order {measured:.3}, errors {errors:?}");
-    assert!((measured - 2.0).abs() < 0.1, "{name}: {measured}");
 }
 
 /// The configuration and the momentum do not leave their spaces. The result is the start and the end.

@@ -4,29 +4,10 @@
 
 use clebsch::{Clebsch, Conserved, Conserves, Error};
 use clebsch_tests::fixtures::covariance_geodesic::CovarianceGeodesic;
-use clebsch_tests::oracle::motion::{motion, order};
+use clebsch_tests::oracle::motion::{assert_second_order, errors_of_halved_steps as errors, motion, order};
 use clebsch_tests::oracle::precise::matrix::Matrix;
 use clebsch_tests::oracle::random::Random;
 use nalgebra::{Matrix2, SMatrix, SVector, Vector2, Vector4};
-
-/// The errors at t = 1, of steps that halve.
-fn errors<S: Clebsch<Scalar = f64, Time = ()> + Clone>(
-    system: &S,
-    (q, mu): (S::Configuration, S::Momentum),
-    error: impl Fn(&S::Configuration) -> f64,
-) -> [f64; 3] {
-    [20, 40, 80].map(|steps: usize| {
-        let stepper = system.stepper(1.0 / steps as f64).expect("a regular system");
-        let end = stepper.advance(&stepper.state(q, mu).expect("a state"), steps).expect("steps");
-        error(end.configuration())
-    })
-}
-
-fn assert_second_order(name: &str, errors: &[f64]) {
-    let measured = order(errors);
-    println!("{name}: order {measured:.3}, errors {errors:?}");
-    assert!((measured - 2.0).abs() < 0.1, "{name}: {measured}");
-}
 
 /// Conserved momenta change by rounding over 1000 steps, and so does the vertical momentum.
 fn assert_conserves<S, const K: usize>(system: &S, (q, mu): (S::Configuration, S::Momentum), h: f64)

@@ -1,6 +1,5 @@
 //! The laws of every problem that compiles.
 
-use std::cmp::Ordering;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
 use clebsch_compiler::derive::{self, Solution, Structure};
@@ -31,6 +30,8 @@ const STEPS: usize = 5;
 #[derive(Copy, Clone, Debug, Default)]
 #[allow(dead_code, reason = "some of it is only shown")]
 pub struct Found {
+    /// Whether it was stepped: other problems have no known vertical term, are too large, or are matrix code.
+    pub stepped: bool,
     pub composed: bool,
     pub conserved: usize,
     pub couples: bool,
@@ -61,7 +62,7 @@ pub fn check(problem: &Declared, seed: u64) -> Result<Found, String> {
             Err(errors) if is_too_large(&errors) => return Ok(Found::default()),
             Err(errors) => return Err(format!("refused:\n{errors}")),
         };
-        // matrix code in place of unrolled code that is too long: `forms` compares the two
+        // Matrix code stands in for unrolled code that is too long. `forms` compares the two.
         if program.form.is_beyond {
             return Ok(Found::default());
         }
@@ -106,6 +107,7 @@ fn compiled(problem: &Declared, program: &MechanicsProgram<'_>, random: &mut Ran
     let oracle = oracle.map_err(|lost| format!("the oracle has no step: {lost:?}"))?;
     let solves = || program.steps.iter().flat_map(|step| &step.solves);
     let mut found = Found {
+        stepped: true,
         composed,
         conserved: program.formulas.symmetries.conserved.len(),
         couples: program.formulas.lagrangian.couples,
@@ -162,7 +164,7 @@ fn collocated(problem: &Declared, seed: u64) -> Result<bool, String> {
         Err(errors) if errors.to_string().contains("`order = 16`") => return Ok(false),
         Err(errors) => return Err(format!("refused in steps of order 16:\n{errors}")),
     };
-    // a momentum of a projector that is rounded leaves the range of J by rounding, which is divided by h
+    // A rounded momentum of a projector is off the range of J. The short step divides that by h.
     let is_rounded = problem.leaves.iter().any(|leaf| leaf.type_name.starts_with("Projector"));
     let h = 2.0_f64.powi(if is_rounded { -24 } else { -30 });
     let state = start(&problem, &mut Random::new(seed ^ 0x5eed));
@@ -232,7 +234,8 @@ pub fn check_power(power: &Power, seed: u64) -> Result<Gradient, String> {
         let (mut sites, mut state) = (Sites::new(power, &program, H), seen(&unrolled, &start));
         let potential = unrolled.potential(0.0, &start.q);
         let found = sites.potential(0.0, &state);
-        if (found - potential).abs().partial_cmp(&(1e-12 * potential.abs().max(1.0))) != Some(Ordering::Less) {
+        let off = (found - potential).abs();
+        if off.is_nan() || off > 1e-12 * potential.abs().max(1.0) {
             return Err(format!("the potential is {found}, that of the oracle {potential}"));
         }
         for (k, exact) in oracle.iter().enumerate().skip(1) {

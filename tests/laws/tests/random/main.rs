@@ -77,7 +77,9 @@ fn integrates(seeds: impl Iterator<Item = u64>) {
         }
     }
     let count = |which: &dyn Fn(&Found) -> bool| found.iter().filter(|one| which(one)).count();
-    println!("{} problems", found.len());
+    let stepped = count(&|one| one.stepped);
+    println!("{stepped} of {} problems stepped", found.len());
+    assert!(10 * stepped >= 7 * found.len(), "only {stepped} of {} problems were stepped", found.len());
     report(&failures);
     if found.len() >= 50 {
         let kinds = [

@@ -97,17 +97,7 @@ impl Power {
             format!("{key} = |{arguments}| {body}")
         };
         let summed = |key: &str, formula: &Formula| closure(key, formula, format!("{}.sum()", each(formula)));
-        match &self.site.kinetic {
-            Kinetic::Cost(cost) => keys.push(summed("cost", cost)),
-            Kinetic::Lagrangian(lagrangian, discretization) => {
-                keys.push(summed("lagrangian", lagrangian));
-                keys.push(format!("discretization = {}", format!("{discretization:?}").to_lowercase()));
-            }
-            Kinetic::MoserVeselov(lagrangian, _) => {
-                keys.push(summed("lagrangian", lagrangian));
-                keys.push("discretization = moser_veselov".into());
-            }
-        }
+        keys.extend(self.site.kinetic.keys(summed));
         let (next, range) = match self.sum {
             Sum::Ring => ("q[(i + 1) % N]", "(0..N).map(|i| "),
             Sum::Chain => ("q[i + 1]", "(0..N - 1).map(|i| "),

@@ -71,6 +71,22 @@ pub enum Kinetic {
     MoserVeselov(Formula, Formula),
 }
 
+impl Kinetic {
+    /// The keys of the kinetic part, from the text of the closure of a key.
+    pub fn keys(&self, closure: impl Fn(&str, &Formula) -> String) -> Vec<String> {
+        match self {
+            Kinetic::Cost(cost) => vec![closure("cost", cost)],
+            Kinetic::Lagrangian(lagrangian, discretization) => {
+                let discretization = format!("{discretization:?}").to_lowercase();
+                vec![closure("lagrangian", lagrangian), format!("discretization = {discretization}")]
+            }
+            Kinetic::MoserVeselov(lagrangian, _) => {
+                vec![closure("lagrangian", lagrangian), "discretization = moser_veselov".into()]
+            }
+        }
+    }
+}
+
 /// A declaration.
 #[derive(Clone, Debug)]
 pub struct Declared {
@@ -113,17 +129,7 @@ impl Declared {
             let letters = [bare("q", &names.points), bare("F", &names.elements), bare("v", &names.velocities)];
             format!("{key} = |{}| {}", head(key, formula, letters), formula.text(&names))
         };
-        match &self.kinetic {
-            Kinetic::Cost(cost) => keys.push(closure("cost", cost)),
-            Kinetic::Lagrangian(lagrangian, discretization) => {
-                keys.push(closure("lagrangian", lagrangian));
-                keys.push(format!("discretization = {}", format!("{discretization:?}").to_lowercase()));
-            }
-            Kinetic::MoserVeselov(lagrangian, _) => {
-                keys.push(closure("lagrangian", lagrangian));
-                keys.push("discretization = moser_veselov".into());
-            }
-        }
+        keys.extend(self.kinetic.keys(closure));
         keys.extend(self.potential.iter().map(|potential| closure("potential", potential)));
         if self.order == 1 {
             keys.push("order = 1".into());

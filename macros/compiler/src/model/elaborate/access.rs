@@ -73,7 +73,7 @@ impl<'g> Elaborator<'_, '_, 'g> {
     }
 
     /// The advice for a part of a velocity of SE(n) that has a name elsewhere, `xi.omega`.
-    pub(super) fn parts_of_velocity(&self, base: &str, vector: Expr<'g>) -> Option<String> {
+    fn parts_of_velocity(&self, base: &str, vector: Expr<'g>) -> Option<String> {
         let (_, group) = self.scope.velocities.iter().find(|(velocity, _)| *velocity == vector)?;
         let &Group::SpecialEuclidean(n) = group else { return None };
         let turns = n * (n - 1) / 2;

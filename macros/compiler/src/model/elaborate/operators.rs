@@ -161,11 +161,10 @@ impl<'g> Elaborator<'_, '_, 'g> {
             if is_point {
                 return self.refuse(point_moved(at, left, right));
             }
-            if let Some(error) = self.shifted(at, [left, right]).or_else(|| self.velocity_multiplied(at, [left, right]))
-            {
+            if let Some(error) = self.shifted(at, [left, right]) {
                 return self.refuse(error);
             }
-            let meant = self.meant_group(at, left, right);
+            let meant = self.meant_group(at, left, right).or_else(|| self.meant_matrix(at, [left, right]));
             return self.refuse(no_product(at, left, right, meant));
         }
         let product = self.grow(at, &[left, right], Growth::Product, || left * right)?;
@@ -186,27 +185,16 @@ impl<'g> Elaborator<'_, '_, 'g> {
         })
     }
 
-    /// The error for the components of a velocity in place of its matrix.
-    fn velocity_multiplied(&self, at: &ExprBinary, operands: [Expr<'g>; 2]) -> Option<Diagnostic> {
+    /// The product with the matrix of a velocity, where its components stand in its place: `xi.matrix() * P`.
+    fn meant_matrix(&self, at: &ExprBinary, operands: [Expr<'g>; 2]) -> Option<String> {
         let group = |operand: &Expr<'g>| self.scope.velocities.iter().find(|(velocity, _)| velocity == operand);
         let (position, (velocity, group)) =
             operands.iter().enumerate().find_map(|(position, operand)| Some((position, group(operand)?)))?;
         let (n, other) = (group.element_shape().rows, operands[1 - position].shape());
         let fits = velocity.shape().rows != n && n == if position == 0 { other.rows } else { other.columns };
         let mut sides = [&at.left, &at.right].map(|side| parenthesized(side));
-        let [first, second] = [&operands[0], &operands[1]].map(|operand| operand.shape());
-        let error = error!(
-            at,
-            "`{}` is {first} and `{}` is {second}: they cannot be multiplied",
-            spell(&at.left),
-            spell(&at.right)
-        );
         sides[position] += ".matrix()";
-        fits.then(|| {
-            error.help(format!("write `{} * {}`", sides[0], sides[1])).note(format!(
-                "a velocity is a vector of components; `matrix` makes the {n}x{n} matrix of the Lie algebra"
-            ))
-        })
+        fits.then(|| sides.join(" * "))
     }
 
     /// The argument of the action with the group that it most likely has, `R: SO<3>`. It serves where the groups of two
