@@ -8,7 +8,7 @@
 use clebsch::{Clebsch, Conserved, Conserves, Error, State};
 use clebsch_tests::fixtures::moving_frame::MovingFrame;
 use clebsch_tests::fixtures::rayleigh_plane::RayleighPlane;
-use clebsch_tests::oracle::motion::{assert_second_order, errors_of_halved_steps as errors, motion, order};
+use clebsch_tests::oracle::motion::{assert_second_order, errors_of_halved_steps as errors, motion};
 use clebsch_tests::oracle::precise::matrix::Matrix;
 use clebsch_tests::oracle::random::Random;
 use nalgebra::{Matrix2, Matrix3, Matrix3x2, Matrix4, SMatrix, SVector, Vector3, Vector6};

@@ -4,7 +4,7 @@
 
 use clebsch::{Clebsch, Conserved, Conserves, Error};
 use clebsch_tests::fixtures::covariance_geodesic::CovarianceGeodesic;
-use clebsch_tests::oracle::motion::{assert_second_order, errors_of_halved_steps as errors, motion, order};
+use clebsch_tests::oracle::motion::{assert_second_order, errors_of_halved_steps as errors, motion};
 use clebsch_tests::oracle::precise::matrix::Matrix;
 use clebsch_tests::oracle::random::Random;
 use nalgebra::{Matrix2, SMatrix, SVector, Vector2, Vector4};
