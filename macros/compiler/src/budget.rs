@@ -12,7 +12,7 @@ use syn::{Expr, Type};
 use crate::diagnostic::{Diagnostic, Diagnostics, Location, error};
 use crate::parse::{ChartChoice, Closure, CodeForm, Declaration, Discretization, Kinetic, Located, Order, Potential};
 
-/// The work of one expansion, for each of its methods. A unit is about a tenth of a microsecond in the profile of the tests, and twice that
+/// The work of one expansion, for each of its methods. A unit is about a tenth of a microsecond in the profile of the tests. It is twice that
 /// where nothing is optimised, as in a crate of a user. Fixtures of the tests take up to a tenth of the budget, and the largest scenes a third.
 pub const WORK: u64 = 11_500_000;
 
