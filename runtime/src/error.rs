@@ -166,6 +166,24 @@ errors! {
             "the momentum has a component of {violation:.3e} along motions that leave the configuration unchanged, \
              where {tolerance:.1e} is accepted: project it by `Stepper::project` or compute it by `momentum_map`; \
              where such motions are motions of the body, declare `isotropy = free`";
+        /// The velocity of the momentum does not obey the constraint of the declaration.
+        ConstraintViolated {
+            /// The largest |A ξ − b| of its equations, in the units of the velocity that they fix.
+            violation: f64,
+            /// The largest violation that is accepted.
+            tolerance: f64,
+        } =>
+            "the velocity violates the constraint by {violation:.3e}, where {tolerance:.1e} is accepted: project the \
+             momentum by `Stepper::project`, or give a velocity that obeys every equation of the constraint";
+        /// The rows of the constraint depend on each other at this configuration: its forces are not determined.
+        DependentConstraints {
+            /// The number of independent rows.
+            rank: usize,
+            /// The number of rows.
+            rows: usize,
+        } =>
+            "the {rows} rows of the constraint have rank {rank} at this configuration, so that its forces are not \
+             determined: leave out the equations that follow from others, or start from another configuration";
         /// The equation of the step has no solution that is connected to the identity: the step is too long. For exact
         /// drifts the motion is longer than formulas can reach. On SO(3) duplication reaches h|M|/J up to some 10⁷ in
         /// `f64` and a thousand in `f32`. On SO(4) parts reach some thousand radians.
@@ -291,9 +309,9 @@ errors! {
         } =>
             "there is no body {body} in an ensemble of {bodies}: they are counted from 0, so give a number below \
              {bodies}";
-        /// A step on T*Q was asked of a system with forces, which act on momenta in 𝔤* and determine no covector, or of momenta alone.
+        /// A step on T*Q was asked of a system with forces or a constraint, or of momenta alone. Forces act on momenta in 𝔤* and determine no covector.
         NoCovector =>
-            "a system with forces, or of momenta alone, has no step in (q, p), as there are no covectors of the \
+            "a system with forces or a constraint, or of momenta alone, has no step in (q, p), as there are no covectors of the \
              configuration to step: step in (q, N), by `Stepper::step`";
         /// The step has no derivative: it is at the very edge of solvability.
         SingularTangent {

@@ -136,6 +136,7 @@ mod boundary;
 mod cofactors;
 mod collocation;
 mod conserved;
+mod constraint;
 mod control;
 mod controlled;
 mod definite;
@@ -188,6 +189,7 @@ mod variational;
 pub use boundary::{Boundary, Extremal, Guess, Node, States, Way};
 pub use clebsch_macros::Clebsch;
 pub use conserved::{Conserved, Conserves};
+pub use constraint::Constrained;
 pub use control::{Control, Optimum, Stage, Target};
 pub use controlled::{Arrival, BoundsExpansion, Controlled, EndpointExpansion, Expansion};
 #[cfg(feature = "double-double")]

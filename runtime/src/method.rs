@@ -1,5 +1,6 @@
 //! Methods: the ways in which one system is stepped.
 
+use crate::constraint::Violation;
 use crate::scheme::Scheme;
 use crate::{Clebsch, Error, Space};
 use core::fmt::Debug;
@@ -76,6 +77,32 @@ pub trait Method<S: Clebsch>: Sized {
         S::Momentum::origin()
     }
 
+    /// The violation of the constraint, as [`Clebsch::constraint_defect`].
+    #[doc(hidden)]
+    #[allow(unused_variables, reason = "provided methods take what others need")]
+    fn constraint_defect(
+        system: &S,
+        constants: &Self::Constants,
+        t: S::Scalar,
+        q: &S::Configuration,
+        mu: &S::Momentum,
+    ) -> Result<Violation<S::Scalar>, Error> {
+        Ok(Violation::none())
+    }
+
+    /// The momentum on the constraint, as [`Clebsch::constrained`].
+    #[doc(hidden)]
+    #[allow(unused_variables, reason = "provided methods take what others need")]
+    fn constrained(
+        system: &S,
+        constants: &Self::Constants,
+        t: S::Scalar,
+        q: &S::Configuration,
+        mu: &S::Momentum,
+    ) -> Result<S::Momentum, Error> {
+        Ok(*mu)
+    }
+
     /// The kinetic energy of a momentum, as [`Clebsch::kinetic_energy`].
     fn kinetic_energy(
         system: &S,
@@ -126,6 +153,28 @@ impl<S: Clebsch> Method<S> for Declared {
     #[inline]
     fn stagger(system: &S, h: S::Scalar, t: S::Scalar, q: &S::Configuration) -> S::Momentum {
         system.stagger(h, t, q)
+    }
+
+    #[inline]
+    fn constraint_defect(
+        system: &S,
+        constants: &S::Constants,
+        t: S::Scalar,
+        q: &S::Configuration,
+        mu: &S::Momentum,
+    ) -> Result<Violation<S::Scalar>, Error> {
+        system.constraint_defect(constants, t, q, mu)
+    }
+
+    #[inline]
+    fn constrained(
+        system: &S,
+        constants: &S::Constants,
+        t: S::Scalar,
+        q: &S::Configuration,
+        mu: &S::Momentum,
+    ) -> Result<S::Momentum, Error> {
+        system.constrained(constants, t, q, mu)
     }
 
     #[inline]

@@ -139,6 +139,18 @@ pub trait Substep<const K: usize, M: Method<Self> = Declared>: Parts<M> {
         None
     }
 
+    /// Aᵀλ, the force of the constraint at the solution x for the momentum μ.
+    #[inline(always)]
+    fn reaction(&self, c: &M::Constants, t: T<Self>, q: &Q<Self>, mu: &Mu<Self>, x: &X<Self, M>) -> Option<Mu<Self>> {
+        None
+    }
+
+    /// Aᵀμ with which the velocity of the momentum N at q⁺ obeys the constraint.
+    #[inline(always)]
+    fn projection(&self, c: &M::Constants, t: T<Self>, q: &Q<Self>, mu: &Mu<Self>) -> Option<Mu<Self>> {
+        None
+    }
+
     /// The impulse of the force at the end, at q⁺.
     #[inline(always)]
     fn end_force(&self, c: &M::Constants, t: T<Self>, q: &Q<Self>, x: &X<Self, M>, u: &U<Self>) -> Option<Mu<Self>> {

@@ -12,7 +12,9 @@ mod symmetric;
 use crate::fields::{debug_fields, getters};
 use crate::parameters::check_finite;
 use crate::scheme::{At, Constants, Scheme};
-use crate::{Clebsch, Clock, Conserves, CotangentState, Declared, Error, Mask, Method, Scalar, Space, State, Time};
+use crate::{
+    Clebsch, Clock, Conserves, Constrained, CotangentState, Declared, Error, Mask, Method, Scalar, Space, State, Time,
+};
 use core::fmt::Debug;
 use num_traits::Zero;
 
@@ -84,7 +86,8 @@ impl<S: Clebsch, M: Method<S>> Stepper<S, M> {
     /// (q, N) is a state at the time t.
     pub(crate) fn check_state(&self, t: S::Scalar, q: &S::Configuration, mu: &S::Momentum) -> Result<(), Error> {
         check_momentum(&self.system, q, mu)?;
-        self.system.check_kinetic_energy(t, q)
+        self.system.check_kinetic_energy(t, q)?;
+        M::constraint_defect(&self.system, M::Scheme::whole(&self.constants), t, q, mu)?.check()
     }
 
     /// Kinetic energy plus potential, at the time of the state.
@@ -116,14 +119,22 @@ impl<S: Clebsch, M: Method<S>> Stepper<S, M> {
 
     /// The momentum nearest to `mu` that motions of q can have: the orthogonal projection of its components to 𝔤_q^⊥.
     ///
-    /// `mu` itself where the action is free or the declaration says `isotropy = free`.
+    /// With a constraint, nearest in the kinetic energy: μ + Aᵀκ whose velocity obeys the constraint, at the time 0.
+    ///
+    /// `mu` itself where there is no constraint, and the action is free or the declaration says `isotropy = free`.
     ///
     /// # Errors
-    /// [`Error::NotFinite`] or [`Error::OffOrbit`].
+    /// [`Error::NotFinite`], [`Error::OffOrbit`] or [`Error::DependentConstraints`].
     pub fn project(&self, q: &S::Configuration, mu: &S::Momentum) -> Result<S::Momentum, Error> {
+        self.projected_at(Zero::zero(), q, mu)
+    }
+
+    fn projected_at(&self, t: S::Scalar, q: &S::Configuration, mu: &S::Momentum) -> Result<S::Momentum, Error> {
         self.check_configuration(q)?;
         let projected = self.system.project_momentum(q, mu);
         check_finite("the momentum", &(*mu, projected))?;
+        let projected = M::constrained(&self.system, M::Scheme::whole(&self.constants), t, q, &projected)?;
+        check_finite("the momentum", &projected)?;
         Ok(projected)
     }
 }
@@ -142,6 +153,41 @@ impl<S: Clebsch, M: Method<S>> Stepper<S, M> {
     }
 }
 
+/// Where the declaration has a constraint.
+impl<S: Constrained, M: Method<S>> Stepper<S, M> {
+    /// The state at q with the velocity ξ, in the components of all factors: N is the momentum ∂ℓ/∂ξ. Where the time
+    /// matters it starts at 0.
+    ///
+    /// ```
+    /// # use clebsch::{Clebsch, Error};
+    /// # #[derive(Clebsch, Clone, Debug)]
+    /// # #[clebsch(
+    /// #     action     = |a: Translation<2>, x: Vector2| x + a,
+    /// #     lagrangian = |v| self.mass * v.norm_squared() / 2,
+    /// #     constraint = |x, v| [v.x == x.x * v.y],
+    /// # )]
+    /// # struct Particle { mass: f64 }
+    /// # use nalgebra::Vector2;
+    /// let stepper = Particle { mass: 2.0 }.into_stepper(0.1)?;
+    /// let place = Vector2::new(0.5, 0.0);
+    /// let start = stepper.state_moving(place, Vector2::new(0.5, 1.0))?;
+    /// assert_eq!(start.momentum(), Vector2::new(1.0, 2.0));
+    ///
+    /// let refused = stepper.state_moving(place, Vector2::new(1.0, 1.0));
+    /// assert!(matches!(refused, Err(Error::ConstraintViolated { violation: 0.5, .. })));
+    /// # Ok::<(), clebsch::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// As [`state`](Self::state); [`Error::NotFinite`] for the velocity too.
+    pub fn state_moving(&self, q: S::Configuration, velocity: S::Momentum) -> Result<State<S, M>, Error> {
+        check_finite("the velocity", &velocity)?;
+        let t = Zero::zero();
+        let mu = self.system.momentum_of_velocity(t, &q, &velocity);
+        self.checked_state(t, q, mu)
+    }
+}
+
 /// Where the cost or the potential depends on the time.
 impl<S: Clebsch<Time = Clock<<S as Clebsch>::Scalar>>, M: Method<S>> Stepper<S, M> {
     /// The state (q, N) at the time t, checked as by [`state`](Self::state).
@@ -151,6 +197,15 @@ impl<S: Clebsch<Time = Clock<<S as Clebsch>::Scalar>>, M: Method<S>> Stepper<S, 
     pub fn state_at(&self, t: S::Scalar, q: S::Configuration, mu: S::Momentum) -> Result<State<S, M>, Error> {
         check_finite("the time", &t)?;
         self.checked_state(t, q, mu)
+    }
+
+    /// The momentum nearest to `mu` at the time t, as [`project`](Self::project).
+    ///
+    /// # Errors
+    /// As [`project`](Self::project); [`Error::NotFinite`] for the time too.
+    pub fn project_at(&self, t: S::Scalar, q: &S::Configuration, mu: &S::Momentum) -> Result<S::Momentum, Error> {
+        check_finite("the time", &t)?;
+        self.projected_at(t, q, mu)
     }
 
     /// The state at the time t, made as by [`staggered_state`](Self::staggered_state).

@@ -1,5 +1,6 @@
 //! The trait that the derive macro implements.
 
+use crate::constraint::Violation;
 use crate::scheme::Scheme;
 use crate::{Error, Method, Scalar, Space, Stepper, Time};
 use core::fmt::Debug;
@@ -177,6 +178,36 @@ pub trait Clebsch: Sized {
     #[inline]
     fn project_momentum(&self, q: &Self::Configuration, mu: &Self::Momentum) -> Self::Momentum {
         *mu
+    }
+
+    /// By how much the velocity of the momentum μ violates the constraint of the declaration: a Σ⁻¹μ − b. None as provided.
+    ///
+    /// # Errors
+    /// [`Error::DependentConstraints`] where its rows depend on each other.
+    #[doc(hidden)]
+    fn constraint_defect(
+        &self,
+        constants: &Self::Constants,
+        t: Self::Scalar,
+        q: &Self::Configuration,
+        mu: &Self::Momentum,
+    ) -> Result<Violation<Self::Scalar>, Error> {
+        Ok(Violation::none())
+    }
+
+    /// The momentum μ + Aᵀκ whose velocity obeys the constraint of the declaration; μ as provided.
+    ///
+    /// # Errors
+    /// [`Error::DependentConstraints`] where its rows depend on each other.
+    #[doc(hidden)]
+    fn constrained(
+        &self,
+        constants: &Self::Constants,
+        t: Self::Scalar,
+        q: &Self::Configuration,
+        mu: &Self::Momentum,
+    ) -> Result<Self::Momentum, Error> {
+        Ok(*mu)
     }
 
     /// A stepper of step size `h`, on a copy of this system.

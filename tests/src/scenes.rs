@@ -56,6 +56,16 @@ pub fn placed() -> Matrix4<f64> {
     placed
 }
 
+/// The inertia of a rattleback.
+pub fn rocker() -> Matrix3<f64> {
+    Matrix3::new(1.6e-3, -2e-4, 0.0, -2e-4, 2e-3, 0.0, 0.0, 0.0, 2.2e-3)
+}
+
+/// A body whose centre is 2 cm above the plane.
+pub fn resting() -> Matrix4<f64> {
+    Matrix4::new_translation(&Vector3::new(0.0, 0.0, 0.02))
+}
+
 /// Calls the macro `$scenes` with a line for one fixture of each kind. The line has a name, the system with its
 /// parameters, a configuration on its orbit and a step size. Lines behind `$scenes` are added to these.
 ///
@@ -86,6 +96,7 @@ macro_rules! scenes_of_each_kind {
             a_spherical_pendulum: spherical_pendulum::SphericalPendulum { mass: 0.7, length: 1.3, gravity: 9.81 }, unit(), 0.05;
             a_spin_chain: spin_chain::SpinChain<3> { exchange: 0.7, field: centre() }, [unit(), Vector3::x(), -unit()], 0.05;
             a_split_top: split_top::SplitTop { inertia: inertia(), weight: 1.3, center: centre() }, turned(), 0.1;
+            a_rolling_ball: rolling_ball::RollingBall { mass: 1.3, inertia: 0.7, radius: 0.5, table_rate: 0.9 }, Vector2::new(0.3, -0.2), 0.05;
             a_steered_bob: steered_bob::SteeredBob { mass: 1.2, gravity: 9.81, drag: 0.2 }, unit(), 0.05;
             a_tolerant_top: tolerant_top::TolerantTop { mass_matrix: inertia(), weight: 1.3, center: centre() }, turned(), 0.05;
             a_momentum_that_tumbles: tumbling_momentum::TumblingMomentum { inertia: inertia() }, (), 0.1;
@@ -134,6 +145,12 @@ macro_rules! every_scene {
             a_driven_chain: driven_chain::DrivenChain<3> { inertia: 1.2, stiffness: 0.7, friction: [0.1, 0.0, 0.2] },
                 [Vector2::new(0.6, -0.8), Vector2::x(), -Vector2::y()], 0.05;
             a_body_in_seven_dimensions: rigid_body7::RigidBody7 { j_d: many() }, SMatrix::identity(), 0.1;
+            a_sleigh: chaplygin_sleigh::ChaplyginSleigh { mass: 1.5, inertia: 0.4, offset: 0.6 }, Matrix3::identity(), 0.05;
+            a_snakeboard: snakeboard::Snakeboard { mass: 1.2, length: 0.8, rotor: 0.3, wheel: 0.15 },
+                (Matrix3::identity(), Vector1::new(0.0), Vector1::new(0.6)), 0.02;
+            a_rattleback: rattleback::Rattleback { inertia: rocker(), mass: 1.0, gravity: 9.81, axes: Vector3::new(0.2, 0.03, 0.02), height: 0.0 },
+                resting(), 0.002;
+            suslovs_body: suslov::Suslov { inertia: inertia() }, turned(), 0.1;
             a_sided_pair: sided_pair::SidedPair { }, (turned(), unit()), 0.1;
             a_top_of_eighth_order: eighth_order_top::EighthOrderTop { moments: principal(), weight: 1.3, center: centre() }, turned(), 0.05;
             a_top_of_sixth_order: sixth_order_top::SixthOrderTop { inertia: inertia(), weight: 1.3, center: centre() }, turned(), 0.05;

@@ -94,11 +94,13 @@ impl Others<'_> {
         let declaration = self.declaration;
         let potential = declaration.potential.as_ref().and_then(Potential::closure);
         const METHODS: &str = "write a shorter potential, or methods for its value and gradient: `potential = opaque(Self::value, Self::gradient)`";
-        let rows: [(Option<&Closure>, Change, &str, &str); 4] = [
+        const CONSTRAINT: &str = "write a shorter constraint, with parts of it as fields";
+        let rows: [(Option<&Closure>, Change, &str, &str); 5] = [
             (declaration.endpoint.as_ref(), |rest| rest.endpoint = None, "price", "write a shorter price of the end"),
             (potential, |rest| rest.potential = None, "potential", METHODS),
             (declaration.force.as_ref(), |rest| rest.force = None, "force", SHORTER_FORCE),
             (declaration.force_on.as_ref(), |rest| rest.force_on = None, "force", SHORTER_FORCE),
+            (declaration.constraint.as_ref(), |rest| rest.constraint = None, "constraint", CONSTRAINT),
         ];
         rows.into_iter().find_map(|(closure, without, what, instead)| {
             let closure = closure.filter(|_| self.is_small(without))?;

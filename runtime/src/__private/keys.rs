@@ -37,6 +37,11 @@ pub mod force {}
 /// Example: `force_on = |x, thrust: Vector3| thrust`
 pub mod force_on {}
 
+/// Equations that the velocity obeys at every configuration, such as rolling without slipping. Both sides are affine in the velocity ξ, the last argument, a new name. The list may have vectors on both sides, and a block with `let` ends in it.
+///
+/// Example: `constraint = |xi| [xi.z == 0]`
+pub mod constraint {}
+
 /// The velocity that an input gives, in the basis of the group. It moves the configuration directly, without mass or momentum.
 ///
 /// Example: `controls = |u: Vector2| vector![u.x, u.y, 0]`

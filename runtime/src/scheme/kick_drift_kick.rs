@@ -12,7 +12,7 @@ use core::marker::PhantomData;
 /// ```text
 /// M = N + J(q, ∂U₀),    r(F) = M,    q⁺ = Φ_F(q),    N⁺ = Ad* M + J(q⁺, ∂U₁)
 /// ```
-/// A step of first order has no U₀.
+/// A step of first order has no U₀. A constraint adds its force Aᵀλ to M, and N⁺ is brought to the constraint at q⁺.
 pub type KickDriftKick<C, const W: usize = 0> = InSequence<Order<C, W>>;
 
 /// The order of a [`KickDriftKick`].
@@ -30,6 +30,8 @@ impl<S: Substep<0, M> + Substep<W, M>, M: Method<S>, C: CarryKick<S, M>, const W
         let mut state = substep::<S, M, 0>(at, (q, mu), rests, kick, u)?;
         let kick = Substep::<0, M>::end_kick(at.system, at.constants, at.t, &state.q);
         state.push(kick);
+        let projection = Substep::<0, M>::projection(at.system, at.constants, at.t, &state.q, &state.mu);
+        state.push(projection);
         state.on_space();
         Ok(state.end::<C>(C::impulse(kick)))
     }

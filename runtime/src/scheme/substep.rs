@@ -77,12 +77,15 @@ pub(super) fn substep<S: Substep<K, M>, M: Method<S>, const K: usize>(
     let mut forced = None;
     let mut at_rest = None;
     let mut moving = None;
+    let mut held_back = None;
     let mu = with(mu, kick, &mut kicked, |mu, kick| add(mu, kick, &mut rests.1));
     let force = system.start_force(constants, t, q, u);
     let mu = with(mu, force, &mut forced, |mu, kick| add(mu, kick, &mut rests.1));
     let target = with(mu, rest_apart::<S, M, K>(at, q), &mut at_rest, |mu, rest| plus(*mu, Some(*rest)));
     let x = system.solve(constants, t, q, target, u)?;
     let motion = system.motion(&x, || system.increment(&x));
+    let reaction = system.reaction(constants, t, q, target, &x);
+    let mu = with(mu, reaction, &mut held_back, |mu, push| add(mu, push, &mut rests.1));
     let force = system.moving_force(constants, t, q, &x, u);
     let mu = with(mu, force, &mut moving, |mu, kick| add(mu, kick, &mut rests.1));
     let next = S::Sums::made(q, &mut rests.0, system.advance(q, &motion));

@@ -2,6 +2,7 @@
 
 use crate::Scene;
 use clebsch::{Clebsch, Controlled, Error, F64x4, Guess, Scalar, SiteStorage, Target};
+use clebsch_tests::fixtures::chaplygin_sleigh::ChaplyginSleigh;
 use clebsch_tests::fixtures::collocated_top::CollocatedTop;
 use clebsch_tests::fixtures::damped_body::DampedBody;
 use clebsch_tests::fixtures::exact_body::ExactBody;
@@ -55,6 +56,15 @@ pub struct Trolley {
     /// m/s.
     pub speed: f64,
 }
+
+/// A particle whose two constraints are one on the line x = y.
+#[derive(Clebsch, Clone, Debug)]
+#[clebsch(
+    action     = |a: Translation<2>, x: Vector2| x + a,
+    lagrangian = |v| v.norm_squared() / 2,
+    constraint = |x, v| [v.x == v.y, x.x * v.x == x.y * v.y],
+)]
+pub struct Crossing;
 
 fn principal() -> Vector3<f64> {
     Vector3::new(1.0, 1.4, 1.9)
@@ -158,7 +168,17 @@ fn states() -> Vec<Scene> {
     let mut ensemble = stepper.clone().ensemble(bodies).expect("two tops");
     let damped = DampedBody { inertia: Matrix3::identity(), damping: 0.1 }.into_stepper(0.1).expect("a body");
     let covector = damped.cotangent_state(r, r).expect("a state");
+    let sleigh = ChaplyginSleigh { mass: 1.5, inertia: 0.4, offset: 0.6 }.into_stepper(0.1).expect("a sleigh");
+    let crossing = Crossing.into_stepper(0.1).expect("a crossing");
     vec![
+        scene(
+            refused(sleigh.state_moving(r, Vector3::new(1.0, 0.5, 0.25))),
+            &["the velocity violates the constraint by 2.500e-1", "project the momentum by `Stepper::project`"],
+        ),
+        scene(
+            refused(crossing.state(Vector2::new(1.0, 1.0), Vector2::zeros())),
+            &["the 2 rows of the constraint have rank 1 at this configuration", "leave out the equations"],
+        ),
         scene(refused(stepper.state(r * f64::NAN, mu)), &["the configuration is not finite"]),
         scene(
             refused(stepper.state(r * 1.01, mu)),

@@ -176,6 +176,12 @@ catalogue! {
     KineticEnergyOfMomentum = unlisted("kinetic energy", Cold).by(MechanicsAndSymmetry);
     /// The force in 𝔤*.
     Force = listed("force", Hot);
+    /// A and b of a constraint A ξ = b; computed with Σ⁻¹(μ − A) and A Σ⁻¹Aᵀ.
+    Constraint = listed("constraint", Hot);
+    /// ψ(q, F).
+    DiscreteConstraint = listed("constraint of a step", Cold);
+    /// Σξ + A.
+    MomentumOfVelocity = unlisted("momentum of a velocity", Hot);
     /// K(h, F).
     DiscreteLagrangian = listed("discrete Lagrangian", Cold);
     /// W(h, q, F), or W(q, ξ).
@@ -214,6 +220,10 @@ catalogue! {
     StartForce(substep: usize) = unlisted("impulse of the force", Hot);
     /// The part of it that depends on the velocity.
     MovingForce(substep: usize) = unlisted("impulse of the force", Hot);
+    /// The force of the constraint, Aᵀλ.
+    Reaction(substep: usize) = listed("force of the constraint", Hot);
+    /// Aᵀμ after the move, which brings the momentum to the constraint.
+    Projection(substep: usize) = listed("projection", Hot);
     /// The impulse of the force after the move.
     EndForce(substep: usize) = unlisted("impulse of the force", Hot);
     /// ρ(x) = 0.

@@ -46,6 +46,7 @@ pub fn derivation(formulas: &MechanicsFormulas<'_>, lowered: &Lowered) -> String
         constant_in_space(formulas),
         vertical(formulas),
         conserved::forces(formulas),
+        conserved::constraint(formulas),
         conserved::conserved(formulas),
     ];
     let scheme = [step::scheme(formulas, lowered), form(formulas, lowered)];

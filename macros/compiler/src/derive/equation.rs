@@ -5,7 +5,7 @@ use std::ops::Deref;
 use clebsch_symbolic::{Chart, Elements, Expr, IntoElements, identity};
 
 use super::trivialisation::Covector;
-use super::{ChartBlock, Symbols, SystemFormulas};
+use super::{ChartBlock, ConstraintFormulas, Symbols, SystemFormulas};
 use crate::model::Mechanics;
 
 /// The momentum equation of coordinates that depend on each other.
@@ -101,7 +101,7 @@ pub(super) struct Sources<'a, 'g> {
 }
 
 /// The momentum r(F) = T* ∂_F K − J(q, ∂_q K) of a substep, which its equations solve for F.
-pub(super) struct Momentum<'g> {
+pub(super) struct Momentum<'a, 'g> {
     /// T* ∂_F K for each factor.
     pub(super) before: Vec<Covector<'g>>,
     /// The components that a coupled cost, −J(q, ∂_q K), and forces add for each factor.
@@ -112,6 +112,8 @@ pub(super) struct Momentum<'g> {
     pub(super) couples: bool,
     /// Whether a force that depends on the velocity joins the equations: then Σ alone gives no coordinate.
     pub(super) is_forced: bool,
+    /// The constraint whose force joins the equations.
+    pub(super) constraint: Option<&'a ConstraintFormulas<'g>>,
 }
 
 impl Sources<'_, '_> {

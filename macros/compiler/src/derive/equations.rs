@@ -7,10 +7,13 @@ use super::clearing;
 use super::closed_form::{closed_form, is_solved_by_predictor};
 use super::equation::{DISTRIBUTED, Form, Momentum, MomentumEquation, Solution, Sources, is_diagonal};
 use super::letters::Letters;
-use super::{ChartBlock, exact, structure, tangent};
+use super::{ChartBlock, ConstraintFormulas, exact, structure, tangent};
 
-/// The equations of a substep. Where the products of exponentials take much work, D(x) = F − I of these is substituted late.
-pub(super) fn equations<'g>(sources: &Sources<'_, 'g>, momentum: &Momentum<'g>) -> Vec<MomentumEquation<'g>> {
+/// Equations, and the force of a constraint for each factor.
+type WithReaction<'g> = (Vec<MomentumEquation<'g>>, Option<Vec<Expr<'g>>>);
+
+/// The equations of a substep, and the force of its constraint. Where the products of exponentials take much work, D(x) = F − I of these is substituted late.
+pub(super) fn equations<'g>(sources: &Sources<'_, 'g>, momentum: &Momentum<'_, 'g>) -> WithReaction<'g> {
     if !sources.symbols.charts.contains(&Chart::Exponential) {
         return in_charts(sources, momentum);
     }
@@ -21,39 +24,71 @@ pub(super) fn equations<'g>(sources: &Sources<'_, 'g>, momentum: &Momentum<'g>) 
 /// The work for the equations of a substep in the exponential chart, products distributed.
 const EXPONENTIALS: u64 = 2_000_000;
 
-fn in_charts<'g>(sources: &Sources<'_, 'g>, momentum: &Momentum<'g>) -> Vec<MomentumEquation<'g>> {
+fn in_charts<'g>(sources: &Sources<'_, 'g>, momentum: &Momentum<'_, 'g>) -> WithReaction<'g> {
     let (model, symbols) = (sources.model, &sources.symbols);
     let is_free_rotation = |block: &ChartBlock<'g>| exact::is_free_rotation(model, block.factor);
     let letters = Letters::new(sources, momentum);
-    let mut residuals: Vec<Residual<'g>> = Vec::new();
-    for k in 0..model.factors.len() {
-        let (residual, cleared) = if exact::is_free_rotation(model, k) {
-            (model.graph.zero(symbols.momenta[k].shape()), true)
-        } else {
-            residual(sources, momentum, (k, &letters))
-        };
-        residuals.extend(symbols.blocks.iter().filter(|block| block.factor == k).map(|block| {
-            let start = block.offset - model.offset(k);
-            let is_near = momentum.couples && letters.occur_in(residual);
-            let rows = residual.block(start, 0, block.coordinates.shape());
-            let slope = if is_near { tangent::directional(sources, &letters, rows) } else { None };
-            Residual { rows: letters.replaced(rows), slope, cleared, is_near }
-        }));
-    }
+    let (mut residuals, reaction) = match momentum.constraint {
+        Some(constraint) => constrained(sources, momentum, (constraint, &letters)),
+        None => (unconstrained(sources, momentum, &letters), None),
+    };
     if !momentum.is_forced {
         substitute_explicit(sources, &mut residuals);
     }
-    for (residual, block) in residuals.iter_mut().zip(&symbols.blocks).filter(|(_, block)| !is_free_rotation(block)) {
+    let may_clear = |block: &ChartBlock<'g>| momentum.constraint.is_none() && !is_free_rotation(block);
+    for (residual, block) in residuals.iter_mut().zip(&symbols.blocks).filter(|(_, block)| may_clear(block)) {
         if let Some(rows) = clearing::of_rotation(sources, block, residual.rows) {
             *residual = Residual { rows, slope: None, cleared: true, ..*residual };
         }
     }
     let depends = |i: usize, j: usize| residuals[i].rows.depends_on(symbols.blocks[j].coordinates);
-    structure::connected(residuals.len(), |i, j| depends(i, j) || depends(j, i))
+    let equations = structure::connected(residuals.len(), |i, j| depends(i, j) || depends(j, i))
         .into_iter()
         .map(|group| equation(sources, momentum, &residuals, group))
-        .flat_map(|equation| structure::specialised(sources, equation))
-        .into_list()
+        .flat_map(|equation| structure::specialised(sources, equation));
+    (equations.into_list(), reaction)
+}
+
+/// The residuals of all blocks where every velocity is allowed.
+fn unconstrained<'g>(
+    sources: &Sources<'_, 'g>,
+    momentum: &Momentum<'_, 'g>,
+    letters: &Letters<'_, 'g>,
+) -> Vec<Residual<'g>> {
+    let (model, symbols) = (sources.model, &sources.symbols);
+    let mut residuals: Vec<Residual<'g>> = Vec::new();
+    for k in 0..model.factors.len() {
+        let (residual, cleared) = if exact::is_free_rotation(model, k) {
+            (model.graph.zero(symbols.momenta[k].shape()), true)
+        } else {
+            residual(sources, momentum, (k, letters))
+        };
+        residuals.extend(symbols.blocks.iter().filter(|block| block.factor == k).map(|block| {
+            let start = block.offset - model.offset(k);
+            let is_near = momentum.couples && letters.occur_in(residual);
+            let rows = residual.block(start, 0, block.coordinates.shape());
+            let slope = if is_near { tangent::directional(sources, letters, rows) } else { None };
+            Residual { rows: letters.replaced(rows), slope, cleared, is_near }
+        }));
+    }
+    residuals
+}
+
+/// The residuals of all blocks with a constraint, and its force for each factor. Products are not distributed, so that
+/// S⁻¹ is computed once in a step.
+fn constrained<'g>(
+    sources: &Sources<'_, 'g>,
+    momentum: &Momentum<'_, 'g>,
+    (constraint, letters): (&ConstraintFormulas<'g>, &Letters<'_, 'g>),
+) -> (Vec<Residual<'g>>, Option<Vec<Expr<'g>>>) {
+    let factors = (0..sources.model.factors.len()).map(|k| residual(sources, momentum, (k, letters)).0);
+    let difference = letters.replaced(sources.model.graph.below(&factors.into_list()));
+    let between = letters.replaced(constraint.between.substitute(&letters.elements).expand());
+    let whole = constraint.residual(difference, between);
+    let rows = |block: &ChartBlock<'g>| whole.block(block.offset, 0, block.coordinates.shape());
+    let residual = |block: &ChartBlock<'g>| Residual { rows: rows(block), slope: None, cleared: false, is_near: true };
+    let reaction = sources.parted(constraint.reaction(difference));
+    (sources.symbols.blocks.each(residual), Some(reaction))
 }
 
 /// The residual of one block.
@@ -125,7 +160,7 @@ const SHORT: u64 = 50_000;
 /// substituted late are symbols in them.
 fn residual<'g>(
     sources: &Sources<'_, 'g>,
-    momentum: &Momentum<'g>,
+    momentum: &Momentum<'_, 'g>,
     (k, letters): (usize, &Letters<'_, 'g>),
 ) -> (Expr<'g>, bool) {
     let (model, symbols) = (sources.model, &sources.symbols);
@@ -146,6 +181,13 @@ fn residual<'g>(
     }
     if momentum.couples {
         plain = letters.near(plain);
+    }
+    if momentum.constraint.is_some() {
+        // the residual itself, not a multiple that is free of denominators
+        let logarithmic = before[k]
+            .logarithmic
+            .map(|(gradient, slope)| (slope.transpose().inverse() * gradient).substitute(elements));
+        return (logarithmic.map_or(plain, |part| part + plain), false);
     }
     if let Some((gradient, slope)) = before[k].logarithmic {
         // dexp_y^T leaves ∂K/∂y as it is where ad_y^T does: ∂K/∂y = μ, for bi-invariant energies
@@ -179,7 +221,7 @@ fn factors_keep(sources: &Sources<'_, '_>, blocks: &[usize]) -> bool {
 
 fn equation<'g>(
     sources: &Sources<'_, 'g>,
-    momentum: &Momentum<'g>,
+    momentum: &Momentum<'_, 'g>,
     residuals: &[Residual<'g>],
     blocks: Vec<usize>,
 ) -> MomentumEquation<'g> {

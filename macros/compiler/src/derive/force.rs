@@ -3,7 +3,7 @@
 //! r(F) = N + h/2 f(t, q, ξ) and N⁺ = r⁺(F) + h/2 f(t + h, q⁺, ξ), with the velocity ξ = ξ(F)/h of the step at both
 //! ends. The part of f at ξ = 0 is a kick. The other part joins the momentum equation as the coupling of a cost does.
 
-use clebsch_symbolic::{Elements, Expr, IntoList, identity};
+use clebsch_symbolic::{Elements, Expr, IntoList, identity, indexed};
 
 use super::symbols::at_zero;
 use super::{SystemFormulas, velocity};
@@ -67,7 +67,14 @@ fn velocities<'a, 'g>(model: &'a Mechanics<'g>) -> &'a [Expr<'g>] {
 /// factor. It is the projection if the declaration asks for it, and else Cayley's map. Both ends see the same velocity,
 /// so it has to be odd: ξ(F⁻¹) = −ξ(F).
 fn moving<'g>(model: &Mechanics<'g>, part: Expr<'g>) -> Vec<(Expr<'g>, Expr<'g>)> {
-    let chosen = model.kinetic.discretization().unwrap_or(Discretization::Cayley);
+    let velocities = velocities(model).iter().copied();
+    velocities.zip(velocities_of_step(model, part)).into_list()
+}
+
+/// ξ(F)/h of a step or of a part of it, for each factor.
+pub(super) fn velocities_of_step<'g>(model: &Mechanics<'g>, part: Expr<'g>) -> Vec<Expr<'g>> {
+    let of_constraint = || model.constraint.as_ref()?.discretization;
+    let chosen = model.kinetic.discretization().or_else(of_constraint).unwrap_or(Discretization::Cayley);
     let has_cayley =
         model.factors.iter().all(|factor| factor.group.is_translation() || factor.group.has_cayley_chart(model.graph));
     let discretization = match chosen {
@@ -75,6 +82,5 @@ fn moving<'g>(model: &Mechanics<'g>, part: Expr<'g>) -> Vec<(Expr<'g>, Expr<'g>)
         _ if has_cayley => Discretization::Cayley,
         _ => Discretization::Exponential,
     };
-    let velocity = |(k, xi): (usize, &Expr<'g>)| (*xi, velocity::of_element(model, k, part, discretization));
-    velocities(model).iter().enumerate().map(velocity).into_list()
+    indexed(model.factors.len(), |k| velocity::of_element(model, k, part, discretization))
 }

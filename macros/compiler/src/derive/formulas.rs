@@ -7,8 +7,8 @@ use clebsch_symbolic::{Chart, Expr, Group, IntoList};
 
 use super::energy::is_multiple_of_identity;
 use super::{
-    Collocation, DiscreteLagrangian, Energy, FormulaTable, InputStep, MomentumEquation, Quantity, SiteTerm, Splitting,
-    Substep, SymmetricParts, Symmetries, SystemFormulas, Vertical, exact, signature,
+    Collocation, ConstraintFormulas, DiscreteLagrangian, Energy, FormulaTable, InputStep, MomentumEquation, Quantity,
+    SiteTerm, Splitting, Substep, SymmetricParts, Symmetries, SystemFormulas, Vertical, exact, signature,
 };
 use crate::model::{Isotropy, LeafSpace, Mechanics, Signature, Steered};
 
@@ -89,6 +89,8 @@ pub struct MechanicsFormulas<'g> {
     pub is_exact: bool,
     /// The force in 𝔤* for each factor, a function of t, q, ξ and u; `None` if the potential is the only force.
     pub covector: Option<Vec<Expr<'g>>>,
+    /// The constraint; `None` where every velocity is allowed.
+    pub constraint: Option<ConstraintFormulas<'g>>,
 }
 
 impl<'g> Deref for MechanicsFormulas<'g> {
@@ -177,6 +179,7 @@ impl MechanicsFormulas<'_> {
             && substep.unchanged[0]
             && substep.rest.is_none()
             && substep.force.is_none()
+            && substep.reaction.is_none()
             && substep.coupling.is_none()
             && !self.is_timed()
             && !self.is_compensated()
@@ -210,5 +213,6 @@ pub(super) fn is_timed(model: &Mechanics<'_>, lagrangian: &DiscreteLagrangian<'_
     let forces = model.force.iter().flat_map(|force| force.of_group.iter().chain(&force.on_configuration).flatten());
     let energies = [lagrangian.kinetic, lagrangian.start, lagrangian.end];
     let terms = model.power.iter().flat_map(|power| power.terms.iter().map(|term| &term.value));
-    energies.iter().chain(forces).chain(terms).any(|part| part.depends_on(model.time))
+    let constraint = model.constraint.iter().flat_map(|constraint| [&constraint.rows, &constraint.values]);
+    energies.iter().chain(forces).chain(terms).chain(constraint).any(|part| part.depends_on(model.time))
 }

@@ -23,7 +23,7 @@ pub(super) struct Letters<'a, 'g> {
 }
 
 impl<'a, 'g> Letters<'a, 'g> {
-    pub(super) fn new(sources: &'a Sources<'a, 'g>, momentum: &Momentum<'g>) -> Letters<'a, 'g> {
+    pub(super) fn new(sources: &'a Sources<'a, 'g>, momentum: &Momentum<'_, 'g>) -> Letters<'a, 'g> {
         let (model, symbols) = (sources.model, &sources.symbols);
         let increments = late(sources, momentum);
         let is_late = |j: &usize| increments.iter().any(|(d, _)| *d == symbols.increments[*j]);
@@ -97,7 +97,7 @@ impl<'a, 'g> Letters<'a, 'g> {
 ///
 /// They belong to charts with roots and to exponentials. If the cost couples, they belong to Cayley's chart too, unless a denominator
 /// depends on F.
-fn late<'g>(sources: &Sources<'_, 'g>, momentum: &Momentum<'g>) -> Vec<(Expr<'g>, Expr<'g>)> {
+fn late<'g>(sources: &Sources<'_, 'g>, momentum: &Momentum<'_, 'g>) -> Vec<(Expr<'g>, Expr<'g>)> {
     let (model, symbols) = (sources.model, &sources.symbols);
     let parts = || momentum.before.iter().map(|before| before.array).chain(momentum.coupling.iter().flatten().copied());
     let is_polynomial = |k: usize| !parts().any(|part| part.has_poles_in(&[model.factors[k].symbol]));

@@ -11,6 +11,7 @@ mod choice;
 mod clearing;
 mod closed_form;
 mod collocation;
+mod constraint;
 mod control;
 mod cross;
 mod degenerate;
@@ -56,6 +57,7 @@ use crate::model::{Discretization, Kinetic, Mechanics, Model, Order, Steered, Sy
 pub use catalogue::{Entry, Heat, Id, Reference};
 pub use choice::{Choice, Endpoint, Jet, Steering, StepOfChoice};
 pub use collocation::Collocation;
+pub use constraint::ConstraintFormulas;
 pub use control::{Bend, InputStep};
 pub use derivation::{Iteration, Lowered, derivation, derivation_of_control};
 use discrete_lagrangian::Cost;
@@ -102,26 +104,30 @@ fn mechanics(mut model: Mechanics<'_>) -> Result<MechanicsFormulas<'_>, Diagnost
     let declared = if declared == cost { lagrangian } else { discrete_lagrangian::separate(&model, declared) };
     substep::check_unmoved(&model, &lagrangian)?;
     let potential_energy = energy::potential(&model, &declared)?;
+    let constraint = ConstraintFormulas::of(&model, &system, (&energy, inertia))?;
     let is_timed = is_timed(&model, &lagrangian);
     let quantities = if model.emit.tangent { variation::quantities(&model, is_timed) } else { Vec::new() };
     let variations = variation::Source { system: &system, quantities: &quantities };
     let sources = |divisor| Sources { model: &model, system: &system, inertia, divisor, keeps_exponentials: false };
     let covector = force::covector(&model, &system);
     let mut edges = discrete_lagrangian::substeps(&model, &lagrangian, &declared);
+    constraint::check_adjoint(&model, &edges)?;
     let stepped = if edges.len() == 1 { 1 } else { 2 };
     if let Some(control) = model.control.as_ref().filter(|_| stepped == 2) {
         let price = (Feature::Effort, Found::at(control.written.place));
         return Err(features::refusal(price, (Feature::AdjointPair, Found::somewhere())).into());
     }
     let forces = |divisor| covector.as_ref().map(|covector| force::on_edge(&model, covector, divisor));
-    if edges.len() == 1 && forces(1).is_some_and(|force| force.start_moving.is_some()) {
+    let is_pushed = constraint.is_some() || forces(1).is_some_and(|force| force.start_moving.is_some());
+    if edges.len() == 1 && is_pushed {
         // the Legendre transform of ℓd, without the force, is to be inverted
         edges.push((1, lagrangian));
     }
     let substep = |(index, (divisor, lagrangian))| {
         let begins = if index == 1 { model.step_size / divisor } else { model.graph.integer(0) };
-        let force = if index < stepped { forces(divisor) } else { None };
-        Substep::new(sources(divisor), &variations, lagrangian, begins, force)
+        let of_step = index < stepped;
+        let pushes = (forces(divisor).filter(|_| of_step), constraint.as_ref().filter(|_| of_step));
+        Substep::new(sources(divisor), &variations, lagrangian, begins, pushes)
     };
     let mut substeps: Vec<Substep<'_>> = edges.into_iter().enumerate().map(substep).into_list();
     let legendre_kick = system.impulse(lagrangian.end);
@@ -130,7 +136,8 @@ fn mechanics(mut model: Mechanics<'_>) -> Result<MechanicsFormulas<'_>, Diagnost
     let stagger = if is_first { system.impulse((lagrangian.end - lagrangian.start) / 2) } else { None };
     let is_staggered = stagger.is_some() && model.force.is_none() && declared.balanced().is_time_symmetric(&model);
     let links = power::links(&model);
-    let symmetries = symmetry::find(&sources(1), &declared, (covector.as_deref(), &links));
+    let pushes = force::total(covector.clone(), constraint.as_ref().map(|constraint| constraint.any_force(&system)));
+    let symmetries = symmetry::find(&sources(1), &declared, (pushes.as_deref(), &links));
     check_offers(&model, &symmetries)?;
     let splitting = splitting::splitting(&sources(1), &lagrangian, &substeps);
     let is_exact = potential_energy.is_zero() && splitting::drifts_exactly(&model, &system.symbols, &substeps);
@@ -169,6 +176,7 @@ fn mechanics(mut model: Mechanics<'_>) -> Result<MechanicsFormulas<'_>, Diagnost
         collocation,
         is_exact,
         covector,
+        constraint,
         vertical,
     };
     summation::check(&formulas)?;
@@ -226,7 +234,12 @@ fn steered(model: Steered<'_>) -> SteeredFormulas<'_> {
 fn check_offers(model: &Mechanics<'_>, symmetries: &Symmetries<'_>) -> Result<(), Diagnostics> {
     let Some(&index) = symmetries.refused.first() else { return Ok(()) };
     let offered = &model.symmetries[index];
-    let (what, unchanged) = if model.force.is_some() {
+    let (what, unchanged) = if model.constraint.is_some() {
+        (
+            "the cost, the potential and the constraint",
+            "leaves cost and potential unchanged and is allowed by the constraint",
+        )
+    } else if model.force.is_some() {
         ("the cost, the potential and the force", "leaves all of them unchanged")
     } else {
         ("the cost and the potential", "leaves both unchanged")

@@ -131,6 +131,7 @@ impl<'g> MechanicsFormulas<'g> {
         let mut rows = Vec::from(self.rows_of_action(&names));
         rows.extend(self.rows_of_momenta(&names));
         rows.extend(self.rows_of_energy(&names));
+        rows.extend(self.rows_of_constraint(&names));
         rows.extend(self.rows_of_lagrangian(&names));
         rows.extend(self.rows_of_terms(&names));
         rows.extend(self.rows_of_choice(&names));

@@ -7,7 +7,8 @@ use super::force::total;
 use super::symbols::{at_zero, identities, images};
 use super::trivialisation::{self, Covector};
 use super::{
-    DiscreteLagrangian, EdgeDerivatives, EdgeForce, Symbols, SystemFormulas, cayley, equations, exact, variation,
+    ConstraintFormulas, DiscreteLagrangian, EdgeDerivatives, EdgeForce, Symbols, SystemFormulas, cayley, equations,
+    exact, variation,
 };
 use crate::diagnostic::{Diagnostics, bail};
 use crate::model::features::{self, Feature, Found};
@@ -38,6 +39,10 @@ pub struct Substep<'g> {
     pub coupling: Option<Coupling<'g>>,
     /// The force in addition to the potential; `None` if there is none.
     pub force: Option<EdgeForce<'g>>,
+    /// The force Aᵀλ of the constraint, a function of q, x and the momentum μ to be solved for; `None` if there is none.
+    pub reaction: Option<Vec<Expr<'g>>>,
+    /// Aᵀμ, which brings the momentum after the step to the constraint at q⁺; `None` if there is none.
+    pub projection: Option<Vec<Expr<'g>>>,
     /// Second derivatives of the discrete Lagrangian, where they are asked for.
     pub variation: Option<EdgeDerivatives<'g>>,
 }
@@ -71,7 +76,7 @@ impl<'g> Substep<'g> {
         variations: &variation::Source<'_, 'g>,
         lagrangian: DiscreteLagrangian<'g>,
         begins: Expr<'g>,
-        force: Option<EdgeForce<'g>>,
+        (force, constraint): (Option<EdgeForce<'g>>, Option<&ConstraintFormulas<'g>>),
     ) -> Substep<'g> {
         let model = sources.model;
         // no congruence clears the denominators of coupled costs: their Cayley coordinates are letters
@@ -84,11 +89,13 @@ impl<'g> Substep<'g> {
             .as_ref()
             .and_then(|force| force.start_moving.as_ref())
             .map(|moving| -> Vec<Expr<'g>> { moving.each(|part| -sources.later(*part, begins)) });
-        let is_forced = moving.is_some();
+        let is_forced = moving.is_some() || constraint.is_some();
         let coupling = total(coupling, moving);
         let rest = at_rest(model, &before, coupling.as_deref());
         let unchanged: Vec<bool> = indexed(model.factors.len(), |k| agree(model, (&before, &after), k));
-        let momentum = Momentum { before, coupling, rest: rest.clone(), couples: lagrangian.couples, is_forced };
+        let momentum =
+            Momentum { before, coupling, rest: rest.clone(), couples: lagrangian.couples, is_forced, constraint };
+        let (equations, reaction) = equations::equations(&sources, &momentum);
         // impulses are functions of the time of the configuration, K of the time at which the step starts
         let earlier = |rest: &Vec<Expr<'g>>| rest.each(|part| sources.later(*part, -begins));
         let ends = begins + model.step_size / sources.divisor;
@@ -108,7 +115,9 @@ impl<'g> Substep<'g> {
                 total(sources.impulse(lagrangian.start), rest.as_ref().map(earlier))
             },
             end: sources.impulse(lagrangian.end),
-            equations: equations::equations(&sources, &momentum),
+            equations,
+            reaction,
+            projection: constraint.map(|constraint| sources.parted(constraint.projection())),
             rest,
             force,
             lagrangian,

@@ -90,6 +90,12 @@ impl<'g> SystemFormulas<'g> {
             || self.model.reads_configuration(expression)
     }
 
+    /// A vector of the components of all factors, factor by factor.
+    pub(super) fn parted(&self, vector: Expr<'g>) -> Vec<Expr<'g>> {
+        let part = |k: usize| vector.block(self.model.offset(k), 0, self.symbols.algebra[k].shape());
+        indexed(self.model.factors.len(), part)
+    }
+
     /// J(q, p) of these covectors p.
     pub(super) fn momenta_of(&self, covectors: impl IntoIterator<Item = Expr<'g>>) -> Vec<Expr<'g>> {
         let covectors: Vec<_> = self.symbols.covectors.iter().copied().zip(covectors).into_list();

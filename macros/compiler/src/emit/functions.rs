@@ -80,6 +80,22 @@ functions! {
         fn orbit_defect(&self, q: &Q) -> T { Id::Membership }
         fn isotropy_defect(&self, q: &Q, mu: &Mu) -> T { Id::Isotropy }
         fn project_momentum(&self, q: &Q, mu: &Mu) -> Mu { Id::Isotropy }
+        /// By how much the velocity of a momentum violates the constraint.
+        fn constraint_defect(Receiver, c: &C, t: T, q: &Q, mu: &Mu) -> Result<runtime::Violation<T>, Error> { Id::Constraint } = {
+            Locals
+            runtime::violation(mu, &Matrix0, &Value2, &Value1, &Matrix3)
+        }
+        /// The momentum whose velocity obeys the constraint, next to a momentum.
+        fn constrained(Receiver, c: &C, t: T, q: &Q, mu: &Mu) -> Result<Mu, Error> { Id::Constraint => } = {
+            Locals
+            runtime::constrained(mu, &Matrix0, &Value2, &Value1, &Matrix3)
+        }
+    }
+
+    /// `Constrained`.
+    CONSTRAINED(false) {
+        /// The momentum of a velocity.
+        fn momentum_of_velocity(&self, t: T, q: &Q, x: &Mu) -> Mu { Id::MomentumOfVelocity }
     }
 
     /// `Conserves`.
@@ -128,6 +144,10 @@ functions! {
         fn start_force(&self, c: &C, t: T, q: &Q, u: &U) -> Option<Mu> { Id::StartForce(0) => Id::Force }
         /// The part of the impulse at the start of a step that depends on the velocity.
         fn moving_force(&self, c: &C, t: T, q: &Q, x: &X, u: &U) -> Option<Mu> { Id::MovingForce(0) => Id::Force }
+        /// The force of the constraint, from the momentum that was solved for.
+        fn reaction(&self, c: &C, t: T, q: &Q, mu: &Mu, x: &X) -> Option<Mu> { Id::Reaction(0) }
+        /// The change of the momentum after the move that brings it to the constraint at q⁺.
+        fn projection(&self, c: &C, t: T, q: &Q, mu: &Mu) -> Option<Mu> { Id::Projection(0) }
         /// The impulse of the force at the end of a step.
         fn end_force(&self, c: &C, t: T, q: &Q, x: &X, u: &U) -> Option<Mu> { Id::EndForce(0) => Id::Force }
         /// ∂U₀(q), the kick of the covector at the start of a step.

@@ -244,6 +244,11 @@ impl Scope<'_, '_> {
         self.grid(&kernel.outputs[index], false)
     }
 
+    /// An output of a kernel, a matrix even where it has one row, column or entry.
+    pub fn whole_matrix(&self, kernel: &Kernel, index: usize) -> TokenStream {
+        self.matrix(&kernel.outputs[index])
+    }
+
     /// An output of a kernel that is a scalar.
     pub fn scalar(&self, kernel: &Kernel, index: usize) -> TokenStream {
         self.code(&kernel.outputs[index].1[0], false)

@@ -6,7 +6,7 @@ use quote::{format_ident, quote};
 
 use super::block::{Target, matrix, time_type, types_of_system};
 use super::function::{Body, Function, no_words};
-use super::functions::{CONSERVES, SYSTEM, VELOCITY};
+use super::functions::{CONSERVES, CONSTRAINED, SYSTEM, VELOCITY};
 use super::scope::size;
 use super::{Emitter, SystemEmitter, flag};
 use crate::derive::{Id, Solution};
@@ -81,6 +81,13 @@ impl<'g> Emitter<'_, 'g> {
                 Body::new(kernel?, quote!(runtime::check_definite_at(&{ #inertia })))
             }
             "check_kinetic_energy" => return None,
+            "constraint_defect" | "constrained" => {
+                let scope = self.scope(self.receiver(), Some(quote!(c)));
+                function.written(&scope, kernel, &|word| {
+                    let number = word.strip_prefix("Matrix")?.parse().ok()?;
+                    Some(scope.whole_matrix(kernel?, number))
+                })?
+            }
             _ => function.computes(&scope, kernel?),
         })
     }
@@ -126,6 +133,15 @@ impl<'g> Emitter<'_, 'g> {
             Some(quote!(runtime::Conserves)),
             quote!(type Conserved = runtime::Conserved<T, #count>; #functions),
         )
+    }
+
+    /// The implementation of `Constrained`, where there is a constraint.
+    pub(super) fn constrained(&self) -> TokenStream {
+        if self.formulas.constraint.is_none() {
+            return TokenStream::new();
+        }
+        let functions = self.written(CONSTRAINED, &self.scope_of_system(), &no_words);
+        self.declared().derived(Some(quote!(runtime::Constrained)), functions)
     }
 
     /// The momenta of the free motions that make F, for the Legendre transforms of free motions.

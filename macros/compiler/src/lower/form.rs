@@ -159,6 +159,7 @@ pub(super) fn without_matrices(formulas: &MechanicsFormulas<'_>) -> Option<Featu
     let is_quaternion = has_quaternions(model);
     let has = |feature: &Feature| match feature {
         Feature::Inputs => model.control.is_some(),
+        Feature::Constraint => model.constraint.is_some(),
         Feature::Power => model.power.is_some(),
         Feature::Quaternions => is_quaternion,
         Feature::ExactDrifts => formulas.splitting.is_some() || formulas.turns_whole(),

@@ -91,7 +91,15 @@ fn is_stacked(id: Id) -> bool {
     use Id::*;
     let is_of_step = matches!(
         id,
-        StartKick(_) | EndKick(_) | RestKick(_) | StartForce(_) | MovingForce(_) | EndForce(_) | MomentumAfter(_)
+        StartKick(_)
+            | EndKick(_)
+            | RestKick(_)
+            | StartForce(_)
+            | MovingForce(_)
+            | EndForce(_)
+            | Reaction(_)
+            | Projection(_)
+            | MomentumAfter(_)
     );
     let is_momentum = matches!(id, MomentumMap | Coadjoint | Legendre | LegendreNext | MomentumComponents | Inertia);
     let is_of_scheme = matches!(id, SynchronizedMomentum | Gyroscopic | SplittingKick | Guess);

@@ -73,6 +73,8 @@ const OF_SYSTEM: Names<Id> = &[
     ("velocity", Id::Lagrangian),
     ("gyroscopic", Id::Gyroscopic),
     ("conserved", Id::ConservedMomenta),
+    ("constraint", Id::Constraint),
+    ("momentum_of_velocity", Id::MomentumOfVelocity),
     ("stagger", Id::SynchronizedMomentum),
     ("membership", Id::Membership),
     ("generator", Id::Isotropy),
@@ -137,6 +139,8 @@ const OF_SUBSTEP: Names<fn(usize) -> Id> = &[
     ("update", Id::MomentumAfter),
     ("moving_force", Id::MovingForce),
     ("end_force", Id::EndForce),
+    ("reaction", Id::Reaction),
+    ("projection", Id::Projection),
     ("end_kick", Id::EndKick),
 ];
 

@@ -63,6 +63,7 @@ impl<'g> Maker<'_, 'g> {
         self.known_rows(
             [Id::StartForce, Id::MovingForce, Id::EndForce, Id::StartKick, Id::EndKick].map(|id| id(index)),
         );
+        self.known_rows([Id::Reaction, Id::Projection].map(|id| id(index)));
         self.known_rows([Id::StartGradient, Id::EndGradient, Id::RestKick, Id::CoupledGradient].map(|id| id(index)));
         // where F − I and the next momentum are found at once, none is made of the other
         if index == 0 {

@@ -4,6 +4,7 @@ mod action_errors;
 mod action_laws;
 mod arguments;
 mod closures;
+mod constraint;
 mod control;
 mod declared;
 mod elaborate;
@@ -162,6 +163,7 @@ pub fn model<'g>(graph: &'g Graph, declaration: &Declaration) -> Result<Model<'g
         potential: formulas.potential,
         opaque: declaration.potential.as_ref().and_then(Potential::opaque).cloned(),
         force,
+        constraint: formulas.constraint,
         power,
         symmetries: formulas.symmetries,
         isotropy: if dials.emit.momentum { Isotropy::Free } else { isotropy },
@@ -186,6 +188,7 @@ struct ClosureValues<'g> {
     terms: Vec<Term<'g>>,
     symmetries: Vec<OfferedSymmetry<'g>>,
     force: Option<Force<'g>>,
+    constraint: Option<Constraint<'g>>,
     input: Space<'g>,
     control: Option<InputChoice<'g>>,
     endpoint: Option<Expr<'g>>,
@@ -215,6 +218,8 @@ impl<'g> ClosureValues<'g> {
         forces::check_dials(declaration, diagnostics);
         let endpoint = optional(declaration.endpoint.as_ref(), |closure| system.endpoint(closure));
         let forces = system.forces(declaration);
+        let constraint =
+            optional(declaration.constraint.as_ref(), |closure| system.constraint(closure, &declaration.dials));
         let (mover, (force, input)) = match system.motion(declaration) {
             Some((motion, input)) => (Some(Mover::Inputs(motion)), (None, input)),
             // the moving closure has an error, and without it nothing is known of the input
@@ -230,6 +235,7 @@ impl<'g> ClosureValues<'g> {
             terms,
             symmetries,
             force,
+            constraint: constraint?,
             input,
             control,
             endpoint: endpoint?,

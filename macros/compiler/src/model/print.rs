@@ -6,8 +6,8 @@ use clebsch_symbolic::Group;
 
 use super::scalar::spell_scalar;
 use super::{
-    Isotropy, Kinetic, LeafSpace, Mechanics, Model, Motion, OfferedSymmetry, Order, Parameter, Side, Signature,
-    Steered, System,
+    Constraint, Isotropy, Kinetic, LeafSpace, Mechanics, Model, Motion, OfferedSymmetry, Order, Parameter, Side,
+    Signature, Steered, System,
 };
 use crate::parse::joined;
 
@@ -50,6 +50,9 @@ impl fmt::Display for Mechanics<'_> {
         if let Some(force) = &self.force {
             force.of_group.iter().flatten().try_for_each(|part| writeln!(f, "  force      {part}"))?;
             force.on_configuration.iter().flatten().try_for_each(|part| writeln!(f, "  force on   {part}"))?;
+        }
+        if let Some(Constraint { rows, values, .. }) = &self.constraint {
+            writeln!(f, "  constraint {rows} * xi = {values}")?;
         }
         self.system.print_inputs(f)?;
         if self.power.as_ref().is_some_and(|power| power.has_own_inputs) {

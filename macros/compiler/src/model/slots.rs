@@ -28,6 +28,7 @@ pub(super) const COST: &[Slot] = &[Slot::Time, Slot::Step, Slot::Configuration, 
 pub(super) const LAGRANGIAN: &[Slot] = &[Slot::Time, Slot::Configuration, Slot::Velocity];
 pub(super) const POTENTIAL: &[Slot] = &[Slot::Time, Slot::Configuration];
 pub(super) const FORCE: &[Slot] = &[Slot::Time, Slot::Configuration, Slot::Velocity, Slot::Input];
+pub(super) const CONSTRAINT: &[Slot] = &[Slot::Time, Slot::Configuration, Slot::Velocity];
 pub(super) const CONTROLS: &[Slot] = &[Slot::Time, Slot::Configuration, Slot::Input];
 pub(super) const DYNAMICS: &[Slot] = &[Slot::Time, Slot::Step, Slot::Configuration, Slot::Input];
 pub(super) const PRICE: &[Slot] = &[Slot::Time, Slot::Step, Slot::Configuration, Slot::Chosen];
@@ -35,13 +36,14 @@ pub(super) const BOUNDS: &[Slot] = &[Slot::Time, Slot::Configuration, Slot::Chos
 pub(super) const SYMMETRY: &[Slot] = &[Slot::Offered, Slot::Configuration, Slot::Element];
 
 /// The arguments of the closure of each key.
-const ARGUMENTS: [(&str, &[Slot]); 11] = [
+const ARGUMENTS: [(&str, &[Slot]); 12] = [
     ("cost", COST),
     ("lagrangian", LAGRANGIAN),
     ("potential", POTENTIAL),
     ("symmetry", SYMMETRY),
     ("force", FORCE),
     ("force_on", FORCE),
+    ("constraint", CONSTRAINT),
     ("controls", CONTROLS),
     ("dynamics", DYNAMICS),
     ("effort", PRICE),
@@ -99,7 +101,7 @@ impl<'d> TypedArguments<'d> {
         slots.iter().copied().find(|&slot| match (slot, pattern) {
             (Slot::Time, Pattern::Name(ident)) => ident == "t",
             (Slot::Step, Pattern::Name(ident)) => ident == "h",
-            _ => self.pattern(slot).is_some_and(|known| known.matches(pattern)),
+            _ => self.pattern(slot).is_some_and(|known| known.holds(pattern)),
         })
     }
 
@@ -153,7 +155,7 @@ impl<'d> Matched<'d> {
         let matched = Matched { closure, names, slots, taken };
         (0..arguments.len()).for_each(|position| matched.check_argument(position));
         matched.check_order();
-        if slots == LAGRANGIAN && !matched.has(Slot::Velocity) && !matched.has_error() {
+        if closure.key == "lagrangian" && !matched.has(Slot::Velocity) && !matched.has_error() {
             report!(names.diagnostics, closure.head, "the lagrangian has no velocity";
                 help "write `{} …`", matched.head(Some(Slot::Velocity)));
         }
@@ -201,7 +203,7 @@ impl<'d> Matched<'d> {
                 note "types stand in the action, which introduces the spaces");
         }
         match slot {
-            Some(slot) if self.taken[..position].contains(&Some(slot)) => {
+            Some(slot) if self.is_taken_before(position, slot) => {
                 report!(diagnostics, place, "`{name}` is given twice"; help "remove one of the two");
             }
             Some(Slot::Velocity) => self.check_new(argument, "the velocity"),
@@ -210,6 +212,16 @@ impl<'d> Matched<'d> {
             Some(_) => {}
             None => diagnostics.push(self.unknown(position)),
         }
+    }
+
+    /// Whether an argument before this one has the same slot. Parts of a tuple are given one by one.
+    fn is_taken_before(&self, position: usize, slot: Slot) -> bool {
+        let pattern = &self.closure.arguments[position].pattern;
+        let before = self.arguments().take(position).filter(|(_, taken)| *taken == Some(slot));
+        let is_part = |other: &Pattern| self.names.pattern(slot).is_some_and(|whole| !whole.matches(other));
+        let is_other =
+            |other: &Pattern| is_part(other) && is_part(pattern) && !other.holds(pattern) && !pattern.holds(other);
+        before.into_iter().any(|(argument, _)| !is_other(&argument.pattern))
     }
 
     /// A name that a closure introduces is no name of the action.
@@ -315,12 +327,15 @@ impl<'d> Matched<'d> {
     /// The arguments as they should be.
     pub fn head(&self, meant: Option<Slot>) -> String {
         let wanted = self.slots.iter().copied().filter(|slot| self.has(*slot) || Some(*slot) == meant);
-        let name = |slot: Slot| match (self.argument(slot), slot) {
-            (Some(argument), Slot::Offered | Slot::Input) => argument.spell(),
-            (Some(argument), _) => argument.pattern.spell(),
-            (None, _) => self.names.names(slot).0,
+        let given = |slot: Slot| -> Vec<String> {
+            let arguments = self.arguments().filter(|(_, taken)| *taken == Some(slot));
+            let is_typed = matches!(slot, Slot::Offered | Slot::Input);
+            let spelled =
+                |(argument, _): (&Argument, _)| if is_typed { argument.spell() } else { argument.pattern.spell() };
+            arguments.map(spelled).into_list()
         };
-        format!("|{}|", joined(wanted.map(name)))
+        let names = |slot: Slot| if self.has(slot) { given(slot) } else { vec![self.names.names(slot).0] };
+        format!("|{}|", joined(wanted.flat_map(names)))
     }
 
     fn check_order(&self) {

@@ -116,14 +116,27 @@ impl<'d, 'g> Arguments<'d, 'g> {
             let value = slot.and_then(|slot| match slot {
                 Slot::Time => Some(Value::Matrix(self.time)),
                 Slot::Step => Some(Value::Matrix(self.step_size)),
-                Slot::Configuration => self.configuration_value.clone(),
-                Slot::Element => self.element_value.clone(),
+                Slot::Configuration => {
+                    part(self.names.configuration, self.configuration_value.as_ref()?, &argument.pattern)
+                }
+                Slot::Element => part(self.names.element, self.element_value.as_ref()?, &argument.pattern),
                 new => introduced.iter().find(|(slot, _)| *slot == new).and_then(|(_, value)| value.clone()),
             });
             scope.add_argument(&argument.pattern, value, self.names.diagnostics);
         }
         scope.missing = matched.missing();
         scope
+    }
+}
+
+/// The value of a pattern, or of a part of it.
+fn part<'g>(whole: &Pattern, value: &Value<'g>, wanted: &Pattern) -> Option<Value<'g>> {
+    match (whole, value) {
+        _ if whole.matches(wanted) => Some(value.clone()),
+        (Pattern::Tuple(patterns, _), Value::Tuple(values)) => {
+            patterns.iter().zip(values).find_map(|(pattern, value)| part(pattern, value, wanted))
+        }
+        _ => None,
     }
 }
 

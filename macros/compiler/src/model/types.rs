@@ -70,6 +70,8 @@ pub struct Mechanics<'g> {
     pub opaque: Option<Opaque>,
     /// The forces; `None` where nothing but the potential acts.
     pub force: Option<Force<'g>>,
+    /// The constraint; `None` where every velocity is allowed.
+    pub constraint: Option<Constraint<'g>>,
     /// The terms that tie sites to each other, if the declaration is a power and this is the model of a site.
     pub power: Option<Power<'g>>,
     /// The symmetries that the user offers; whether cost and potential have them is still open.
@@ -128,9 +130,10 @@ impl Mechanics<'_> {
         self.power.as_ref().map_or(self.order, |power| power.order)
     }
 
-    /// Whether there are covectors to step: not under forces, which are in 𝔤*, and not without a configuration.
+    /// Whether there are covectors to step: not under forces and constraints, which act in 𝔤*, and not without a
+    /// configuration.
     pub fn has_covectors(&self) -> bool {
-        self.force.is_none() && !self.configurations.is_empty()
+        self.force.is_none() && self.constraint.is_none() && !self.configurations.is_empty()
     }
 }
 
@@ -339,6 +342,20 @@ pub struct Force<'g> {
     pub velocities: Vec<Expr<'g>>,
     /// The closures' bodies as written.
     pub written: Vec<Written>,
+}
+
+/// Equations a(t, q) ξ = b(t, q) that the velocity obeys.
+pub struct Constraint<'g> {
+    /// a, one row for each equation of scalars, in the components of all factors.
+    pub rows: Expr<'g>,
+    /// b.
+    pub values: Expr<'g>,
+    /// How the velocity of a step is made from F and h, if the declaration says so.
+    pub discretization: Option<Discretization>,
+    /// The equations as written.
+    pub texts: Vec<String>,
+    /// The closure's body as written.
+    pub written: Written,
 }
 
 /// The choice of inputs.

@@ -159,6 +159,11 @@ impl Pattern {
         }
     }
 
+    /// Whether another pattern is this one, or a part of this tuple.
+    pub fn holds(&self, other: &Pattern) -> bool {
+        self.matches(other) || matches!(self, Pattern::Tuple(parts, _) if parts.iter().any(|part| part.holds(other)))
+    }
+
     pub(crate) fn spell(&self) -> String {
         match self {
             Pattern::Name(ident) => ident.to_string(),

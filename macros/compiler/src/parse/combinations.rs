@@ -3,7 +3,7 @@
 use proc_macro2::Span;
 
 use super::keys::{KEYS, Keys};
-use super::{Closure, Order};
+use super::{Closure, Order, Signature};
 use crate::model::features::{self, Feature, Found};
 
 /// Reports all combinations of keys that the table of features refuses.
@@ -44,11 +44,18 @@ fn place(keys: &Keys, of_steps: &Keys, feature: Feature) -> Option<Span> {
         // where inputs move the configuration it is their price
         Feature::Cost if readable("controls").or_else(|| readable("dynamics")).is_some() => None,
         Feature::Cost => readable("cost"),
+        Feature::IndefiniteSignature => {
+            let signature = keys.dials.signature.as_ref()?;
+            (signature.value == Signature::Indefinite).then_some(signature.span)
+        }
+        Feature::FirstOrder => order(|order| order == Order::First),
         Feature::Composition => order(|order| order.stages().is_some()),
         Feature::Sixteenth => order(|order| order == Order::Sixteenth),
         Feature::Tangent => emitted(emit.tangent),
         Feature::Boundary => emitted(emit.boundary),
         Feature::Momentum => emitted(emit.momentum),
+        // it discretises the velocity of a constraint too
+        Feature::Discretization if readable("constraint").is_some() => None,
         Feature::Discretization => dials.discretization.as_ref().map(|discretization| discretization.span),
         Feature::Method => keys.place_of("method"),
         _ => {

@@ -71,7 +71,7 @@ const ITERATED: &str = "an implicit momentum equation";
 
 /// All keys: the name, how the value is read, an example, the default, the needs, and the meaning.
 #[rustfmt::skip]
-pub(super) const KEYS: [Key; 28] = [
+pub(super) const KEYS: [Key; 27] = [
     key("action", Kind::Closure, "|F: SO<3>, R: SO<3>| …", "required, or `dynamics`", "",
         "The type of the first argument is the group, that of the second the space of configurations. The value is the moved configuration. Whether the action is left or right is found."),
     key("cost", Kind::Closure, "|h, F| …", "required, or `lagrangian`", "",
@@ -86,6 +86,8 @@ pub(super) const KEYS: [Key; 28] = [
         "A force that is no gradient, in the components of the momentum. A last argument with a type is an input, which each step is given or which `effort` chooses."),
     key("force_on", Kind::Closure, "|x, thrust: Vector3| thrust", "none", MECHANICS,
         "A force as a covector of the configuration, in its shape. It takes the same arguments as `force`."),
+    key("constraint", Kind::Closure, "|xi| [xi.z == 0]", "none", MECHANICS,
+        "Equations that the velocity obeys at every configuration, such as rolling without slipping. Both sides are affine in the velocity ξ, the last argument, a new name. The list may have vectors on both sides, and a block with `let` ends in it."),
     key("controls", Kind::Closure, "|u: Vector2| vector![u.x, u.y, 0]", "", PRICE,
         "The velocity that an input gives, in the basis of the group. It moves the configuration directly, without mass or momentum."),
     key("dynamics", Kind::Closure, "|h, x: Vector2, u: Vector1| x + h * vector![x.y, u.x]", "", PRICE,
@@ -122,8 +124,6 @@ pub(super) const KEYS: [Key; 28] = [
         "The scalar type: `f64`, `f32` or a type parameter of the struct. Fields and spaces that name a scalar decide it otherwise."),
     key("crate", Dial(|dials, value| value.path(&mut dials.krate), |dials| dials.krate.as_ref().map(super::spelling::tokens).map(somewhere), Vec::new), "::clebsch", "`::clebsch`", "",
         "The path of this crate, for a dependency that is renamed or re-exported."),
-    later("constraint"),
-    later("discrete_constraint"),
     later("space"),
 ];
 

@@ -4,6 +4,7 @@
 
 mod arbitrary;
 mod bodies;
+mod constraints;
 mod derivatives;
 mod ensembles;
 mod equations;

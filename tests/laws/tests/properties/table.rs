@@ -33,6 +33,11 @@ pub const PROPERTIES: &[(&str, &[Property])] = &[
     ("runtime/src/lanes/tests.rs", &[
         ("operations_are_those_of_single_numbers", &["Scalar::select", "Scalar::sqrt", "Scalar::from_lanes"]),
     ]),
+    ("tests/laws/tests/properties/constraints.rs", &[
+        ("momenta_come_to_constraints",      &["constrained", "violation", "Violation::none"]),
+        ("velocities_obey_constraints",      &["Stepper::state_moving", "Stepper::project_at", "Constrained::momentum_of_velocity", "Clebsch::constrained", "Clebsch::constraint_defect", "Method::constrained", "Method::constraint_defect"]),
+        ("constraints_push_along_their_rows", &["Substep::reaction", "Substep::projection"]),
+    ]),
     ("tests/laws/tests/properties/derivatives.rs", &[
         ("tangent_maps_are_linear",      &["Tangent::apply", "Tangent::apply_transposed", "Tangent::then", "Tangent::identity", "Sensitivity::zero", "Sensitivity::after"]),
         ("tangent_maps_are_differences", &["Stepper::step_tangent", "Stepper::step_tangent_with", "Stepper::infinitesimal_motion"]),

@@ -1,6 +1,8 @@
 //! The forces, the conserved quantities, and the parts that a problem does not need.
 
 use super::{bounds, inputs};
+use clebsch_symbolic::Elements;
+
 use crate::derive::{MOST_LISTED, MechanicsFormulas, Substep};
 use crate::model::{Isotropy, Order};
 pub(super) fn forces(formulas: &MechanicsFormulas<'_>) -> String {
@@ -27,6 +29,28 @@ pub(super) fn forces(formulas: &MechanicsFormulas<'_>) -> String {
         );
     }
     text
+}
+
+/// The constraint, how a step obeys it, and the properties that it leaves.
+pub(super) fn constraint(formulas: &MechanicsFormulas<'_>) -> String {
+    let (Some(constraint), Some(known)) = (&formulas.model.constraint, &formulas.constraint) else {
+        return String::new();
+    };
+    let q = formulas.model.configurations.each(|leaf| leaf.name.clone()).join(", ");
+    let mean = if known.is_mean_of_rows {
+        format!("the rows are the mean of those at {q} and {q}⁺")
+    } else {
+        format!("{q} is the mean of both ends")
+    };
+    let is_steady = !formulas.is_moving(known.rows) && !formulas.is_moving(known.values);
+    let mean = if is_steady { String::new() } else { format!(", where {mean}") };
+    format!(
+        "Constraint: {}. Its force Aᵀλ acts along its rows at both ends of the step (Lagrange–d'Alembert). The velocity ξ(F)/h of the step obeys it{mean}. \
+         So does that of N⁺: A·Σ⁻¹·N⁺ = b at the end of the step.\n\
+         The multipliers λ are no unknowns of the momentum equation: they are found from its residual. The step is time-symmetric, and obeys the constraint to rounding. \
+         It is not symplectic. Momenta are conserved along motions that the constraint allows at every configuration.\n",
+        constraint.texts.join(", "),
+    )
 }
 
 /// The conserved quantities, and those that are not known to be conserved.

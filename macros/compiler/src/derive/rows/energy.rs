@@ -5,7 +5,7 @@ use clebsch_symbolic::{Elements, Expr, IntoList, Property, Role, Shape, identity
 use super::{Names, tuple};
 use crate::derive::formula::Wording;
 use crate::derive::symbols::moved_on;
-use crate::derive::{Formula, Id, MechanicsFormulas, exact};
+use crate::derive::{ConstraintFormulas, Formula, Id, MechanicsFormulas, exact};
 use crate::model::Kinetic;
 
 impl<'g> MechanicsFormulas<'g> {
@@ -33,6 +33,18 @@ impl<'g> MechanicsFormulas<'g> {
             self.row_of_energy(names, Id::Hamiltonian, format!("H({q}, {mu})"), self.potential_energy),
             self.row_of_energy(names, Id::KineticEnergyOfMomentum, kinetic, self.model.graph.integer(0)),
             Formula::new(Id::Force, "f", self.covector.clone().unwrap_or_default()),
+        ]
+    }
+
+    /// The constraint, and that of a step; the momentum of a velocity.
+    pub(super) fn rows_of_constraint(&self, Names { q, f, xi, .. }: &Names) -> Vec<Formula<'g>> {
+        let Some(constraint) = &self.constraint else { return Vec::new() };
+        let ConstraintFormulas { rows, values, velocity, metric, between, momentum, .. } = *constraint;
+        let row = Formula::new(Id::Constraint, format!("(A, b)({q}), A {xi} = b"), [rows, values]);
+        vec![
+            row.computed_as(vec![rows, values, velocity, metric]),
+            Formula::new(Id::DiscreteConstraint, format!("ψ({q}, {f})"), [between]),
+            Formula::new(Id::MomentumOfVelocity, format!("Σ{xi} + A"), [momentum]),
         ]
     }
 

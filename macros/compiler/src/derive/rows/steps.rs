@@ -46,6 +46,27 @@ impl<'g> MechanicsFormulas<'g> {
                 Formula::shorter(Id::EndForce(index), format!("N⁺ − M⁺ by f, at {q}⁺"), end),
             ]);
         }
+        rows.extend(self.rows_of_reaction(names, index));
+        rows
+    }
+
+    /// The force of the constraint, and the projection after the move.
+    fn rows_of_reaction(&self, Names { q, f, mu, .. }: &Names, index: usize) -> Vec<Formula<'g>> {
+        let substep = &self.substeps[index];
+        let mut rows = Vec::new();
+        rows.extend(substep.reaction.clone().map(|reaction| {
+            Formula::new(Id::Reaction(index), "Aᵀλ", reaction).in_words(
+                format!("Aᵀ·S⁻¹·A·Σ⁻¹·(r({f}) − {mu}), S = A·Σ⁻¹·Aᵀ"),
+                format!("A^T S^{{-1}} A \\Sigma^{{-1}} (r({f}) - {mu}),\\quad S = A \\Sigma^{{-1}} A^T"),
+            )
+        }));
+        rows.extend(substep.projection.as_deref().map(|projection| {
+            let row = Formula::new(Id::Projection(index), "N⁺ − N", self.as_of_start(substep.ends, projection));
+            row.in_words(
+                format!("Aᵀ·S⁻¹·(b − A·Σ⁻¹·N), at {q}⁺"),
+                format!("A^T S^{{-1}} (b - A \\Sigma^{{-1}} N),\\quad \\text{{at }} {q}^+"),
+            )
+        }));
         rows
     }
 
@@ -63,14 +84,25 @@ impl<'g> MechanicsFormulas<'g> {
     }
 
     /// An equation with its Jacobian, its solution if there is a formula for it, and the start of iterations.
-    fn rows_of_equation(&self, Names { x, delta, .. }: &Names, index: usize, number: usize) -> Vec<Formula<'g>> {
+    fn rows_of_equation(&self, Names { x, delta, mu, .. }: &Names, index: usize, number: usize) -> Vec<Formula<'g>> {
         let (substep, equation) = (&self.substeps[index], &self.substeps[index].equations[number]);
         let symbol = format!("Dρ({x})·{delta}");
         let mut row = Formula::new(Id::Equation(index, number), format!("0 = ρ({x})"), [equation.residual]);
         if equation.solution == Solution::Explicit {
             row.title = "equation (explicit)";
         }
-        let mut rows = vec![row, Formula::new(Id::Jacobian(index, number), &symbol, [equation.directional])];
+        let mut jacobian = Formula::new(Id::Jacobian(index, number), &symbol, [equation.directional]);
+        if substep.reaction.is_some() {
+            row = row.in_words(
+                format!("y − Aᵀ·S⁻¹·(A·Σ⁻¹·y − ψ), y = r({x}) − {mu}"),
+                format!("y - A^T S^{{-1}} (A \\Sigma^{{-1}} y - \\psi),\\quad y = r({x}) - {mu}"),
+            );
+            jacobian = jacobian.in_words(
+                format!("Dr·{delta} − Aᵀ·S⁻¹·(A·Σ⁻¹·Dr·{delta} − Dψ·{delta})"),
+                format!("Dr\\,{delta} - A^T S^{{-1}} (A \\Sigma^{{-1}} Dr\\,{delta} - D\\psi\\,{delta})"),
+            );
+        }
+        let mut rows = vec![row, jacobian];
         rows.extend(equation.large_jacobian_factor(self).map(|factor| {
             let symbol = format!("{symbol} = ⟨{delta}^·B, E⟩ with B({x})");
             Formula::new(Id::JacobianFactor(index, number), symbol, [factor])

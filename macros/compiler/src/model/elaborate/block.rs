@@ -85,6 +85,22 @@ impl<'g> Elaborator<'_, '_, 'g> {
         }
     }
 
+    /// Does something with the names of the `let`s of a body that is a block.
+    pub fn in_block<T>(&mut self, syntax: &Syntax, work: impl FnOnce(&mut Self) -> Option<T>) -> Option<T> {
+        match syntax {
+            Syntax::Paren(inner) => self.in_block(&inner.expr, work),
+            Syntax::Group(inner) => self.in_block(&inner.expr, work),
+            Syntax::Block(block) if block.label.is_none() => {
+                let Some((Stmt::Expr(last, None), before)) = block.block.stmts.split_last() else { return work(self) };
+                self.with_names(|this| {
+                    before.iter().for_each(|statement| this.statement(statement));
+                    this.in_block(last, work)
+                })
+            }
+            _ => work(self),
+        }
+    }
+
     /// Both sides of the equation that a body ends with.
     pub fn equation(&mut self, syntax: &Syntax) -> Option<(Value<'g>, Value<'g>)> {
         match syntax {

@@ -45,6 +45,7 @@ features! {
     Potential "`potential`",
     Force "`force`",
     ForceOn "`force_on`",
+    Constraint "`constraint`",
     Symmetry "`symmetry`",
     Controls "`controls`",
     Dynamics "`dynamics`",
@@ -63,6 +64,8 @@ features! {
     // values of keys
     OpaquePotential "an opaque potential",
     FreeIsotropy "`isotropy = free`",
+    IndefiniteSignature "`signature = indefinite`",
+    FirstOrder "`order = 1`",
     Composition "`order = 4`, `6` or `8`",
     Sixteenth "`order = 16`",
     ExactDiscretization "`discretization = exact`",
@@ -85,6 +88,7 @@ features! {
     RotationsOfFourSpace "`SO<4>` with a potential or another factor",
     FreeMotionOfFourSpace "`discretization = exact` on `SO<4>`",
     UnmovedFactor "a factor that moves nothing",
+    FixedConfigurations "an action with motions that fix a configuration",
     // the action
     BentAction "an action that is not affine in the configuration",
     UnliftedMomentum "an action for which no covector of a momentum is known",
@@ -95,6 +99,7 @@ features! {
     CoupledVelocities "a Lagrangian that is no quadratic form of the velocity of each factor",
     MovingInertia "an inertia that is not constant",
     VaryingEnergy "a kinetic energy that is no constant quadratic form of the velocity of each factor",
+    OddVelocity "a velocity that is not odd in the group element",
     NoMassMatrix "a Lagrangian without a Moser–Veselov form",
     NoDistributionOfMass "a kinetic energy on `SO<4>` that no distribution of mass has",
     AdjointPair "a step that is composed of two",

@@ -11,16 +11,16 @@ const ORDER_8: &str = "write `order = 8`";
 const ORDER_2: &str = "write `order = 2`";
 const UNROLLED: &str = "leave out `code`, or write `code = unrolled`";
 const WITHOUT_MATRICES: &[Feature] =
-    &[Inputs, Power, Quaternions, ExactDrifts, FreeRotation, Collocation, GeneralLagrangian];
+    &[Inputs, Constraint, Power, Quaternions, ExactDrifts, FreeRotation, Collocation, GeneralLagrangian];
 
 /// The refused features, the others, the message, the reason, and the replacement.
 #[rustfmt::skip]
-pub(super) const ROWS: [Row; 52] = [
+pub(super) const ROWS: [Row; 62] = [
     // inputs move the configuration
     row(&[Dynamics], &[Controls],
         "there are `controls` and `dynamics`, but one thing moves a configuration", "",
         "keep `controls` for motions of a group, `dynamics` for any map of a vector space"),
-    row(&[Lagrangian, Potential, Force, ForceOn, Symmetry, Order, Tolerance, Iterations, Summation, Isotropy, Signature, Chart, Method], &[Controls, Dynamics],
+    row(&[Lagrangian, Potential, Force, ForceOn, Constraint, Symmetry, Order, Tolerance, Iterations, Summation, Isotropy, Signature, Chart, Method], &[Controls, Dynamics],
         "a system with {beside} has no {refused}",
         "the inputs move the configuration directly, without mass, momentum or force",
         "leave it out, or leave out {beside}"),
@@ -72,6 +72,36 @@ pub(super) const ROWS: [Row; 52] = [
         "{beside} needs a potential that is a formula",
         "it differentiates forces, and an opaque potential gives a value and a gradient, no second derivatives",
         "write the potential as a closure, or leave out the word"),
+    // constraints
+    row(&[Constraint], &[Effort],
+        "the inputs of a system with a constraint cannot be chosen yet", LATER,
+        "leave out `effort`, or the constraint"),
+    row(&[Tangent, Boundary], &[Constraint],
+        "{refused} is not for a system with a constraint yet", LATER,
+        "leave out the word; a struct that is generic over its scalar can be stepped with dual numbers"),
+    row(&[FirstOrder, Sixteenth], &[Constraint],
+        "a step with a constraint has order 2, 4, 6 or 8, not {name}",
+        "its equation takes the configuration between both ends, which is time-symmetric and of order 2",
+        ORDER_2),
+    row(&[IndefiniteSignature], &[Constraint],
+        "a constraint needs a kinetic energy that is positive",
+        "its forces are those that change the kinetic energy least, and only a positive one has a least change",
+        "leave out `signature`, or the constraint"),
+    row(&[ExactDiscretization, AdjointPair], &[Constraint],
+        "a constraint needs a discrete Lagrangian that is a formula and its own adjoint",
+        "its force acts at both ends of a step that is the same forwards and backwards",
+        "write a `lagrangian`, with `discretization = moser_veselov` or without `discretization`"),
+    row(&[GeneralLagrangian, MovingInertia], &[Constraint],
+        "a constraint needs a kinetic energy with a constant inertia for now", LATER,
+        "write a kinetic energy that is a constant quadratic form of the velocity"),
+    row(&[FixedConfigurations], &[Constraint],
+        "a constraint needs an action in which only the identity fixes a configuration",
+        "the forces of a constraint would leave the momenta that motions of the configuration can have",
+        "declare the full attitude, as in `|F: SO<3>, R: SO<3>| R * F`"),
+    row(&[OddVelocity], &[Constraint],
+        "the velocity of this discretization is not the same forwards and backwards on `{name}`",
+        "`projection` gives (F - I)/h, and the projected F⁻¹ is not minus the projected F where turns and translations are coupled",
+        "write `discretization = moser_veselov`, or leave `discretization` out"),
     // momenta alone
     row(&[Potential, ForceOn, Symmetry, Isotropy, Endpoint, Effort, Controls, Dynamics, Bounds], &[Momentum],
         "{beside} steps the momentum alone, without {refused}",
@@ -81,6 +111,9 @@ pub(super) const ROWS: [Row; 52] = [
         "`momentum` and `tangent` do not go together",
         "`tangent` is about motions of the configuration, and none is stepped",
         "leave out one of the two"),
+    row(&[Constraint], &[Momentum],
+        "a constraint cannot be stepped with the momentum alone yet", LATER,
+        "leave out the word `momentum`"),
     row(&[Boundary], &[Momentum],
         "`momentum` and `boundary` do not go together",
         "`boundary` is about motions of the configuration, and none is stepped",
@@ -117,6 +150,7 @@ pub(super) const ROWS: [Row; 52] = [
         "a power has no {refused}",
         "sites without configurations do not act on each other",
         "declare one site, and step an array of its states"),
+    row(&[Constraint], &[Power], "a power has no {refused} yet", LATER, ALL_SITES),
     row(&[Method], &[Power], "a power has no other methods yet", LATER, ALL_SITES),
     // groups
     row(&[Symmetry], &[LargeGroup],

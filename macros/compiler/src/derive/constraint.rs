@@ -1,0 +1,199 @@
+//! Constraints a(t, q) ξ = b(t, q) on the velocity, by the discrete principle of Lagrange and d'Alembert.
+//!
+//! The rows A of a step are those at q, and ψ(q, F) = A ξ(F)/h − b is taken between both ends. A step solves r(F) = N +
+//! Aᵀλ with ψ(q, F) = 0. After the move, N⁺ = F⁺ℓd + A(q⁺)ᵀμ with A Σ⁻¹N⁺ = b at q⁺, a linear system for μ.
+//!
+//! The multipliers λ are no unknowns of the equation. With y = r(F) − N and S = A Σ⁻¹Aᵀ, the residual is
+//!
+//! ```text
+//! ρ = y − Aᵀλ,    λ = S⁻¹(A Σ⁻¹y − ψ)
+//! ```
+//! A Σ⁻¹ρ = ψ, so ρ = 0 says that ψ vanishes and that y = Aᵀλ. At F = I the slope of ρ is that without a constraint,
+//! as A Σ⁻¹ Dr = Dψ there.
+
+use clebsch_symbolic::{Expr, IntoList, Property, Role, Shape, identity};
+
+use super::energy::Energy;
+use super::exact::{self, inertia_inverse};
+use super::symbols::{logarithm, moved};
+use super::{DiscreteLagrangian, SystemFormulas, force, structure};
+use crate::diagnostic::Diagnostics;
+use crate::model::features::{self, Feature, Found};
+use crate::model::{Configuration, Constraint, Isotropy, LeafSpace, Mechanics};
+
+/// The formulas of a constraint.
+pub struct ConstraintFormulas<'g> {
+    /// A(t, q).
+    pub rows: Expr<'g>,
+    /// b(t, q).
+    pub values: Expr<'g>,
+    /// ψ(t, q, F), with the time t at which a step starts.
+    pub between: Expr<'g>,
+    /// A Σ⁻¹.
+    pub by_inertia: Expr<'g>,
+    /// S = A Σ⁻¹Aᵀ.
+    pub metric: Expr<'g>,
+    /// The velocity Σ⁻¹(μ − A_g) of a momentum, with the momentum A_g of velocity zero.
+    pub velocity: Expr<'g>,
+    /// The momentum Σξ + A_g of a velocity.
+    pub momentum: Expr<'g>,
+    /// The rows between both ends of a step are the mean of those at the ends, not those at the mean of the ends.
+    pub is_mean_of_rows: bool,
+}
+
+impl<'g> ConstraintFormulas<'g> {
+    /// The formulas of the constraint of a model; `None` if it has none.
+    ///
+    /// # Errors
+    /// A kinetic energy, a discretization or an action that does not go with it.
+    pub(super) fn of(
+        model: &Mechanics<'g>,
+        system: &SystemFormulas<'g>,
+        (energy, inertia): (&Energy<'g>, Expr<'g>),
+    ) -> Result<Option<ConstraintFormulas<'g>>, Diagnostics> {
+        let Some(constraint) = &model.constraint else { return Ok(None) };
+        check(model, system, (energy, inertia))?;
+        let graph = model.graph;
+        let inverse = inverse(inertia);
+        let by_inertia = product(constraint.rows, inverse);
+        let gyroscopic = system.symbols.slope(energy.gyroscopic);
+        let momenta = graph.below(&system.symbols.momenta);
+        let is_mean_of_rows = is_mean_of_rows(model, constraint);
+        Ok(Some(ConstraintFormulas {
+            rows: constraint.rows,
+            values: constraint.values,
+            between: between(model, constraint, is_mean_of_rows),
+            by_inertia,
+            metric: product(by_inertia, constraint.rows.transpose()),
+            velocity: inverse * (momenta - gyroscopic),
+            momentum: system.symbols.slope(energy.kinetic) + gyroscopic,
+            is_mean_of_rows,
+        }))
+    }
+
+    /// y − Aᵀ S⁻¹(A Σ⁻¹y − ψ).
+    pub(super) fn residual(&self, difference: Expr<'g>, between: Expr<'g>) -> Expr<'g> {
+        difference - self.pushed(self.by_inertia * difference - between)
+    }
+
+    /// Aᵀλ = Aᵀ S⁻¹A Σ⁻¹y, the force of the constraint at a solution.
+    pub(super) fn reaction(&self, difference: Expr<'g>) -> Expr<'g> {
+        self.pushed(self.by_inertia * difference)
+    }
+
+    /// Aᵀμ with A Σ⁻¹(N + Aᵀμ − A_g) = b.
+    pub(super) fn projection(&self) -> Expr<'g> {
+        self.pushed(self.values - self.rows * self.velocity)
+    }
+
+    /// Aᵀλ for each factor, with any λ: a momentum along a motion is conserved where this does no work.
+    pub(super) fn any_force(&self, system: &SystemFormulas<'g>) -> Vec<Expr<'g>> {
+        let graph = self.rows.graph();
+        let shape = Shape::vector(self.rows.shape().rows);
+        let multipliers = graph.symbol("λ", shape, Role::Letter, Property::General);
+        system.parted(self.rows.transpose() * multipliers)
+    }
+
+    /// Aᵀ S⁻¹ν.
+    fn pushed(&self, along: Expr<'g>) -> Expr<'g> {
+        let solved = if self.metric.shape().is_scalar() { along / self.metric } else { self.metric.inverse() * along };
+        self.rows.transpose() * solved
+    }
+}
+
+/// A product, entry by entry: zeros of both factors are left out.
+fn product<'g>(left: Expr<'g>, right: Expr<'g>) -> Expr<'g> {
+    let shape = Shape::new(left.shape().rows, right.shape().columns);
+    let entry = |(i, j): (usize, usize)| {
+        let terms = (0..left.shape().columns).map(|k| left.entry(i, k) * right.entry(k, j));
+        left.graph().total(Shape::scalar(), terms)
+    };
+    left.graph().stack(shape, shape.positions().map(entry).into_list())
+}
+
+/// Σ⁻¹, with the zeros that it has because coordinates uncouple.
+fn inverse(inertia: Expr<'_>) -> Expr<'_> {
+    let (graph, shape) = (inertia.graph(), inertia.shape());
+    let whole = inertia_inverse(graph, shape);
+    let couples = |i: usize, j: usize| !identity::vanishes(inertia.entry(i, j));
+    let sets = structure::connected(shape.rows, |i, j| couples(i, j) || couples(j, i));
+    let set = |i: usize| sets.iter().find(|set| set.contains(&i));
+    let entry = |(i, j): (usize, usize)| match set(i) {
+        Some(set) if !set.contains(&j) => graph.integer(0),
+        Some(set) if set.len() == 1 => graph.integer(1) / inertia.entry(i, i).expand(),
+        _ => whole.entry(i, j),
+    };
+    graph.stack(shape, shape.positions().map(entry).into_list())
+}
+
+/// ψ(t, q, F): the constraint on the velocity ξ(F)/h of a step, at the mean of both ends.
+fn between<'g>(model: &Mechanics<'g>, constraint: &Constraint<'g>, is_mean_of_rows: bool) -> Expr<'g> {
+    let (graph, h) = (model.graph, model.step_size);
+    let velocity = graph.below(&force::velocities_of_step(model, h));
+    let at = |places: &[(Expr<'g>, Expr<'g>)]| {
+        constraint.rows.substitute(places) * velocity - constraint.values.substitute(places)
+    };
+    let at_time = |later: Expr<'g>| (model.time, model.time + later);
+    if is_mean_of_rows {
+        let arrived: Vec<_> = moved(model).into_iter().chain([at_time(h)]).into_list();
+        return (at(&[]) + at(&arrived)) / 2;
+    }
+    let mean = moved(model).into_iter().map(|(q, image)| (q, (q + image) / 2));
+    at(&mean.chain([at_time(h / 2)]).into_list())
+}
+
+/// Whether the rows are no polynomial of a configuration that lies on a group or a sphere: the mean of two such
+/// configurations does not.
+fn is_mean_of_rows<'g>(model: &Mechanics<'g>, constraint: &Constraint<'g>) -> bool {
+    let parts = [constraint.rows, constraint.values];
+    let is_bent = |leaf: &Configuration<'g>| {
+        let mut parts = parts.iter().filter(|part| part.depends_on(leaf.symbol));
+        leaf.space != LeafSpace::Vectors && parts.any(|part| part.has_functions() || part.has_poles_in(&[leaf.symbol]))
+    };
+    model.configurations.iter().any(is_bent)
+}
+
+/// The features of the kinetic energy and of the action that do not go with a constraint.
+fn check<'g>(
+    model: &Mechanics<'g>,
+    system: &SystemFormulas<'g>,
+    (energy, inertia): (&Energy<'g>, Expr<'g>),
+) -> Result<(), Diagnostics> {
+    let spans = &model.spans;
+    let of_kinetic = |found: bool| found.then(|| Found::at(spans.kinetic.place));
+    features::check((Feature::Constraint, Found::somewhere()), |feature| match feature {
+        Feature::ExactDiscretization => of_kinetic(exact::is_exact(model)),
+        Feature::GeneralLagrangian => of_kinetic(energy.general.is_some()),
+        Feature::MovingInertia => of_kinetic(system.is_moving(inertia)),
+        Feature::FixedConfigurations => {
+            let is_fixed = model.isotropy == Isotropy::Fixed && !system.is_free();
+            is_fixed.then(|| Found::at(spans.action.place))
+        }
+        Feature::OddVelocity => {
+            let factor = model.factors.get(uneven(model)?)?;
+            Some(Found::at(spans.kinetic.place).named(factor.group.name(model.graph)))
+        }
+        _ => None,
+    })
+}
+
+/// A step with a constraint is the same forwards and backwards.
+pub(super) fn check_adjoint<'g>(
+    model: &Mechanics<'g>,
+    substeps: &[(i64, DiscreteLagrangian<'g>)],
+) -> Result<(), Diagnostics> {
+    let is_pair = model.constraint.is_some() && substeps.len() > 1;
+    features::check((Feature::Constraint, Found::somewhere()), |feature| {
+        (is_pair && feature == Feature::AdjointPair).then(|| Found::at(model.spans.kinetic.place))
+    })
+}
+
+/// The first factor whose velocity is not odd, ξ(F⁻¹) ≠ −ξ(F): a step back then obeys another constraint.
+fn uneven(model: &Mechanics<'_>) -> Option<usize> {
+    let velocities = force::velocities_of_step(model, model.step_size);
+    (0..model.factors.len()).find(|&k| {
+        let (factor, y) = (&model.factors[k], logarithm(model, k));
+        let back = velocities[k].substitute(&[(factor.symbol, factor.group.inverse(factor.symbol)), (y, -y)]);
+        !identity::equal(&[back], &[-velocities[k]])
+    })
+}

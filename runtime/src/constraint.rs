@@ -1,0 +1,168 @@
+//! Constraints A ξ = b on the velocity: violations, the momenta that obey them, and states from velocities.
+
+use crate::linear::entry;
+use crate::space::larger;
+use crate::{Clebsch, Error, Scalar};
+use nalgebra::{SMatrix, SVector};
+
+/// A system whose velocities obey a constraint A ξ = b.
+///
+/// Implemented by `#[derive(Clebsch)]` where the declaration has the key `constraint`. See
+/// [`Stepper::state_moving`](crate::Stepper::state_moving).
+///
+/// ```
+/// use clebsch::{Clebsch, Constrained};
+/// use nalgebra::Vector2;
+///
+/// /// A particle that a wheel guides: it moves along (1, x).
+/// #[derive(Clebsch, Clone, Debug)]
+/// #[clebsch(
+///     action     = |a: Translation<2>, x: Vector2| x + a,
+///     lagrangian = |v| self.mass * v.norm_squared() / 2,
+///     constraint = |x, v| [v.y == x.x * v.x],
+/// )]
+/// struct Guided { mass: f64 }
+///
+/// let guided = Guided { mass: 2.0 };
+/// let momentum = guided.momentum_of_velocity(0.0, &Vector2::zeros(), &Vector2::new(3.0, 0.0));
+/// assert_eq!(momentum, Vector2::new(6.0, 0.0));
+/// ```
+#[diagnostic::on_unimplemented(message = "`{Self}` has no constraint")]
+pub trait Constrained: Clebsch {
+    /// The momentum of a velocity: ∂ℓ/∂ξ at (t, q, ξ), in the components of all factors.
+    fn momentum_of_velocity(
+        &self,
+        t: Self::Scalar,
+        q: &Self::Configuration,
+        velocity: &Self::Momentum,
+    ) -> Self::Momentum;
+}
+
+/// The violation of a constraint by a velocity.
+#[derive(Clone, Copy, Debug)]
+pub struct Violation<T> {
+    /// The largest |A ξ − b|.
+    pub largest: T,
+    /// The largest √(S_ii N·ξ) + |b|, which A ξ and b can have for this kinetic energy.
+    pub size: T,
+}
+
+impl<T: Scalar> Violation<T> {
+    /// That of a system without a constraint.
+    #[inline]
+    pub fn none() -> Self {
+        Self { largest: T::zero(), size: T::zero() }
+    }
+
+    /// Refuses a violation of more than √ε of that size.
+    pub(crate) fn check(self) -> Result<(), Error> {
+        let tolerance = T::EPSILON.sqrt() * self.size;
+        (0..T::LANES).try_for_each(|lane| {
+            let (violation, tolerance) = (self.largest.lane(lane), tolerance.lane(lane));
+            // written so that NaN is a violation
+            if violation <= tolerance {
+                return Ok(());
+            }
+            Err(Error::ConstraintViolated {
+                violation: violation.to_f64().min(f64::MAX),
+                tolerance: tolerance.to_f64().min(f64::MAX),
+            })
+        })
+    }
+}
+
+/// The violation of A ξ = b by the velocity ξ of the momentum μ.
+///
+/// # Errors
+/// [`Error::DependentConstraints`] where S = A Σ⁻¹Aᵀ is singular.
+pub fn violation<T: Scalar, const R: usize, const M: usize>(
+    mu: &SVector<T, M>,
+    a: &SMatrix<T, R, M>,
+    velocity: &SVector<T, M>,
+    b: &SVector<T, R>,
+    metric: &SMatrix<T, R, R>,
+) -> Result<Violation<T>, Error> {
+    check_rank(metric)?;
+    let twice_energy = mu.dot(velocity).abs();
+    let moved = a * velocity;
+    let mut violation = Violation::none();
+    for i in 0..R {
+        let size = (metric[(i, i)] * twice_energy).sqrt() + b[i].abs();
+        violation.largest = larger(violation.largest, (moved[i] - b[i]).abs());
+        violation.size = larger(violation.size, size);
+    }
+    Ok(violation)
+}
+
+/// μ + Aᵀκ with S κ = b − A ξ, where ξ is the velocity of μ.
+///
+/// # Errors
+/// [`Error::DependentConstraints`] where S = A Σ⁻¹Aᵀ is singular.
+pub fn constrained<T: Scalar, const R: usize, const M: usize>(
+    mu: &SVector<T, M>,
+    a: &SMatrix<T, R, M>,
+    velocity: &SVector<T, M>,
+    b: &SVector<T, R>,
+    metric: &SMatrix<T, R, R>,
+) -> Result<SVector<T, M>, Error> {
+    check_rank(metric)?;
+    let missing = b - a * velocity;
+    // by construction: its rank was checked
+    let Some(kappa) = crate::linear::solve_linear(metric, &missing) else { return Ok(*mu) };
+    Ok(mu + a.transpose() * kappa)
+}
+
+/// The rank of a symmetric positive S, by pivots relative to its diagonal: √ε is zero.
+///
+/// # Errors
+/// [`Error::DependentConstraints`] where it is not full in some lane.
+fn check_rank<T: Scalar, const R: usize>(metric: &SMatrix<T, R, R>) -> Result<(), Error> {
+    (0..T::LANES).try_for_each(|lane| {
+        let rank = rank(metric.map(|entry| entry.lane(lane)));
+        if rank == R { Ok(()) } else { Err(Error::DependentConstraints { rank, rows: R }) }
+    })
+}
+
+/// The number of pivots of a symmetric positive matrix, scaled to ones on its diagonal, that are above √ε.
+fn rank<T: Scalar, const R: usize>(metric: SMatrix<T, R, R>) -> usize {
+    let root = |i: usize| metric[(i, i)].to_f64().max(0.0).sqrt();
+    let mut scaled = [[0.0; R]; R];
+    for (i, row) in scaled.iter_mut().enumerate() {
+        for (j, entry) in row.iter_mut().enumerate() {
+            let size = root(i) * root(j);
+            *entry = if size > 0.0 { metric[(i, j)].to_f64() / size } else { 0.0 };
+        }
+    }
+    let tolerance = T::EPSILON.to_f64().sqrt();
+    let mut rank = 0;
+    for _ in 0..R {
+        let mut pivot = 0;
+        for k in 0..R {
+            if entry(&scaled, k, k) > entry(&scaled, pivot, pivot) {
+                pivot = k;
+            }
+        }
+        let largest = entry(&scaled, pivot, pivot);
+        if largest.partial_cmp(&tolerance) != Some(core::cmp::Ordering::Greater) {
+            break;
+        }
+        rank += 1;
+        let mut row = [0.0; R];
+        for (j, part) in row.iter_mut().enumerate() {
+            *part = entry(&scaled, pivot, j) / largest;
+        }
+        for (i, line) in scaled.iter_mut().enumerate() {
+            let factor = line.get(pivot).copied().unwrap_or(0.0);
+            for (part, of_pivot) in line.iter_mut().zip(&row) {
+                *part -= factor * of_pivot;
+            }
+            if i == pivot {
+                line.fill(0.0);
+            }
+        }
+    }
+    rank
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,96 @@
+//! Constraints: momenta that are brought to them, states from velocities, and the forces of a step.
+
+use crate::arbitrary::{cases, definite, matrix, vector};
+use crate::bodies::H;
+use clebsch::__private::{Parts, Substep, Violation, constrained, violation};
+use clebsch::{Clebsch, Constrained, Declared, Error, Method};
+use clebsch_tests::oracle::near::assert_near;
+use nalgebra::{Matrix2x3, Matrix3, Vector3};
+use proptest::prelude::*;
+
+const NEAR: f64 = 1e-12;
+
+/// A particle with a row that turns with the place, and a value that grows with the time.
+#[derive(Clebsch, Clone, Debug)]
+#[clebsch(
+    action     = |a: Translation<3>, x: Vector3| x + a,
+    lagrangian = |v| v.dot(&(self.mass * v)) / 2,
+    potential  = |x| self.pull.dot(&x),
+    constraint = |t, x, v| [v.z == x.y * v.x + self.rate * t],
+)]
+pub struct Guided {
+    #[clebsch(symmetric)]
+    pub mass: Matrix3<f64>,
+    pub pull: Vector3<f64>,
+    pub rate: f64,
+}
+
+proptest! {
+    #![proptest_config(cases(64))]
+
+    /// A ξ = b afterwards, and the change of the momentum is a combination of the rows.
+    #[test]
+    fn momenta_come_to_constraints(mass in definite::<3>(), a in matrix::<2, 3>(1.0), mu in vector::<3>(1.0), b in vector::<2>(1.0)) {
+        let (a, inverse) = (Matrix2x3::from(a), mass.try_inverse().expect("a regular matrix"));
+        let metric = a * inverse * a.transpose();
+        prop_assume!(metric.determinant() > 1e-3 * metric.trace().powi(2));
+        let found = constrained(&mu, &a, &(inverse * mu), &b, &metric)?;
+        assert_near(&(a * inverse * found), &b, NEAR, "the constraint");
+        let normal = a.row(0).transpose().cross(&a.row(1).transpose());
+        prop_assert!((found - mu).dot(&normal).abs() < NEAR);
+        let left = violation(&found, &a, &(inverse * found), &b, &metric)?;
+        prop_assert!(left.largest < NEAR && left.size >= 0.0);
+        prop_assert_eq!(Violation::<f64>::none().largest, 0.0);
+    }
+
+    /// A state from a velocity has the momentum of it, at any time.
+    #[test]
+    fn velocities_obey_constraints(mass in definite::<3>(), pull in vector::<3>(1.0), x in vector::<3>(1.0), v in vector::<2>(1.0), t in -1.0_f64..1.0) {
+        let system = Guided { mass, pull, rate: 0.7 };
+        let (stepper, constants) = (system.stepper(H)?, system.constants(H)?);
+        let velocity = Vector3::new(v.x, v.y, x.y * v.x);
+        let start = stepper.state_moving(x, velocity)?;
+        prop_assert_eq!(start.momentum(), system.momentum_of_velocity(0.0, &x, &velocity));
+        assert_near(&start.momentum(), &(mass * velocity), NEAR, "the momentum");
+        let beyond = stepper.state_moving(x, velocity + Vector3::z());
+        let is_refused = matches!(beyond, Err(Error::ConstraintViolated { violation, .. }) if (violation - 1.0).abs() < NEAR);
+        prop_assert!(is_refused);
+        // at another time
+        let mu = stepper.project_at(t, &x, &(mass * velocity))?;
+        let inverse = mass.try_inverse().expect("a regular matrix");
+        let reached = inverse * mu;
+        prop_assert!((reached.z - x.y * reached.x - 0.7 * t).abs() < NEAR);
+        prop_assert_eq!(stepper.project(&x, &mu)?, stepper.project_at(0.0, &x, &mu)?);
+        // the same by the system and by its method
+        prop_assert_eq!(system.constrained(&constants, t, &x, &(mass * velocity))?, mu);
+        prop_assert_eq!(<Declared as Method<Guided>>::constrained(&system, &constants, t, &x, &(mass * velocity))?, mu);
+        prop_assert!(system.constraint_defect(&constants, t, &x, &mu)?.largest < NEAR);
+        let defect = <Declared as Method<Guided>>::constraint_defect(&system, &constants, 0.0, &x, &mu)?;
+        prop_assert!((defect.largest - (0.7 * t).abs()).abs() < NEAR);
+    }
+
+    /// A step: kick, solve, the force of the constraint along its rows, move, kick, projection. The velocity of the step obeys the
+    /// constraint between both ends, and that of the momentum after it at the end.
+    #[test]
+    fn constraints_push_along_their_rows(mass in definite::<3>(), pull in vector::<3>(1.0), x in vector::<3>(1.0), v in vector::<2>(1.0)) {
+        let system = Guided { mass, pull, rate: 0.7 };
+        let (stepper, constants) = (system.stepper(H)?, system.constants(H)?);
+        let start = stepper.state_moving(x, Vector3::new(v.x, v.y, x.y * v.x))?;
+        let kicked = start.momentum() + Substep::<0>::start_kick(&system, &constants, 0.0, &x).expect("a kick");
+        let moved = Substep::<0>::solve(&system, &constants, 0.0, &x, &kicked, &())?;
+        let push = Substep::<0>::reaction(&system, &constants, 0.0, &x, &kicked, &moved).expect("a force");
+        let row = |x: &Vector3<f64>| Vector3::new(-x.y, 0.0, 1.0);
+        prop_assert!(push.cross(&row(&x)).norm() < NEAR);
+        assert_near(&(kicked + push), &(mass * moved / H), NEAR, "the momentum of the step");
+        let mean = x + moved / 2.0;
+        prop_assert!((row(&mean).dot(&moved) / H - 0.7 * H / 2.0).abs() < NEAR);
+        let next = Parts::advance(&system, &x, &system.motion(&moved, || system.increment(&moved)));
+        let reached = kicked + push + Substep::<0>::end_kick(&system, &constants, 0.0, &next).expect("a kick");
+        let repair = Substep::<0>::projection(&system, &constants, 0.0, &next, &reached).expect("a projection");
+        prop_assert!(repair.cross(&row(&next)).norm() < NEAR);
+        let end = stepper.step(&start)?;
+        assert_near(&(reached + repair), &end.momentum(), NEAR, "the step");
+        let velocity = mass.try_inverse().expect("a regular matrix") * end.momentum();
+        prop_assert!((row(end.configuration()).dot(&velocity) - 0.7 * H).abs() < NEAR);
+    }
+}

@@ -1,0 +1,9 @@
+//! Constraints on the velocity: steps against 60-digit integrations of their equations, and against the continuous
+//! equations. Constraints and energies over many steps, and the errors of states that violate them.
+
+#![allow(missing_docs)]
+
+mod invariants;
+mod order;
+mod reference;
+mod refused;

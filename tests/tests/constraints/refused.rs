@@ -1,0 +1,58 @@
+//! States that violate a constraint, rows that depend on each other, and the repair of momenta.
+
+use clebsch::{Clebsch, Error};
+use clebsch_tests::fixtures::{chaplygin_sleigh::ChaplyginSleigh, suslov::Suslov};
+use nalgebra::{Matrix3, Vector2, Vector3};
+
+#[test]
+fn a_velocity_off_the_constraint_is_refused_with_its_size() -> Result<(), Error> {
+    let stepper = ChaplyginSleigh { mass: 1.5, inertia: 0.4, offset: 0.6 }.into_stepper(0.1)?;
+    let refused = stepper.state_moving(Matrix3::identity(), Vector3::new(1.0, 0.5, 0.25));
+    let Err(Error::ConstraintViolated { violation, tolerance }) = refused else { panic!("{refused:?}") };
+    assert!((violation - 0.25).abs() < 1e-15 && tolerance < 1e-6, "{violation} {tolerance}");
+    // rest obeys a linear constraint
+    assert!(stepper.state(Matrix3::identity(), Vector3::zeros()).is_ok());
+    Ok(())
+}
+
+/// The repair changes the kinetic energy least: Σ⁻¹(N⁺ − N) is Σ⁻¹Aᵀκ, perpendicular to allowed velocities in Σ.
+#[test]
+fn projection_repairs_momenta() -> Result<(), Error> {
+    let inertia = Matrix3::new(1.0, 0.1, 0.3, 0.1, 1.4, -0.2, 0.3, -0.2, 0.9);
+    let stepper = Suslov { inertia }.into_stepper(0.1)?;
+    let momentum = Vector3::new(0.4, -0.6, 0.9);
+    assert!(matches!(stepper.state(Matrix3::identity(), momentum), Err(Error::ConstraintViolated { .. })));
+    let repaired = stepper.project(&Matrix3::identity(), &momentum)?;
+    assert!(stepper.state(Matrix3::identity(), repaired).is_ok());
+    let change = repaired - momentum;
+    assert!(change.x.abs() < 1e-15 && change.y.abs() < 1e-15, "{change}");
+    let omega = inertia.try_inverse().unwrap() * repaired;
+    assert!(omega.z.abs() < 1e-15, "{omega}");
+    Ok(())
+}
+
+mod crossing {
+    use clebsch::Clebsch;
+
+    /// Two equations that are one on the line x = y.
+    #[derive(Clebsch, Clone, Debug)]
+    #[clebsch(
+        action     = |a: Translation<2>, x: Vector2| x + a,
+        lagrangian = |v| self.mass * v.norm_squared() / 2,
+        constraint = |x, v| [v.x == v.y, x.x * v.x == x.y * v.y],
+    )]
+    pub struct Crossing {
+        pub mass: f64,
+    }
+}
+
+#[test]
+fn rows_that_depend_on_each_other_are_refused_with_their_rank() -> Result<(), Error> {
+    let stepper = crossing::Crossing { mass: 2.0 }.into_stepper(0.1)?;
+    assert!(stepper.state(Vector2::new(1.0, 2.0), Vector2::zeros()).is_ok());
+    let refused = Error::DependentConstraints { rank: 1, rows: 2 };
+    assert_eq!(stepper.state(Vector2::new(1.0, 1.0), Vector2::zeros()).err(), Some(refused));
+    assert_eq!(stepper.project(&Vector2::new(1.0, 1.0), &Vector2::zeros()).err(), Some(refused));
+    assert!(refused.to_string().starts_with("the 2 rows of the constraint have rank 1"));
+    Ok(())
+}
