@@ -12,9 +12,9 @@ use syn::{Expr, Type};
 use crate::diagnostic::{Diagnostic, Diagnostics, Location, error};
 use crate::parse::{ChartChoice, Closure, CodeForm, Declaration, Discretization, Kinetic, Located, Order, Potential};
 
-/// The work of one expansion, for each of its methods. A unit is about a tenth of a microsecond in the profile of the tests. It is twice that
-/// where nothing is optimised, as in a crate of a user. Fixtures of the tests take up to a tenth of the budget, and the largest scenes a third.
-pub const WORK: u64 = 11_500_000;
+/// The work of one expansion, for each of its methods: about a second where nothing is optimised, as in a crate of a user. A unit is up to a
+/// quarter of a microsecond there. Fixtures of the tests take up to a seventh of the budget, and the largest scenes two thirds.
+pub const WORK: u64 = 3_300_000;
 
 /// The stages behind the first one.
 #[derive(Copy, Clone, PartialEq, Eq)]
@@ -45,7 +45,7 @@ pub(crate) fn within<T>(
 /// The error for a declaration on which the budget was used up.
 fn too_large(declaration: &Declaration, stage: CompilerStage) -> Diagnostic {
     let kinetic = &declaration.kinetic.closure().body;
-    let others = Others { declaration, left: Cell::new(WORK / 5) };
+    let others = Others { declaration, left: Cell::new(WORK / 6) };
     let (place, what, instead) = others.culprit().unwrap_or_else(|| {
         let (body, what) = match stage {
             CompilerStage::Model => (&declaration.action.body, "the laws of this action take"),

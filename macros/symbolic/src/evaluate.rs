@@ -11,16 +11,22 @@ pub trait Number: Copy + PartialEq {
     fn from_integer(value: i64) -> Self {
         Self::from_rational(&crate::integer(value))
     }
+    /// Whether nothing of it is left. Numbers with infinitesimal parts may be equal to zero and have such parts.
+    fn vanishes(self) -> bool {
+        self == zero()
+    }
     /// The sum.
     fn add(self, other: Self) -> Self;
     /// The product.
     fn multiply(self, other: Self) -> Self;
-    /// The sum of the products of the numbers in a row with those of a column.
-    fn dot<'a>(row: &[Self], column: impl Iterator<Item = &'a Self>) -> Self
-    where
-        Self: 'a,
-    {
-        row.iter().zip(column).fold(zero(), |sum: Self, (a, b)| sum.add(a.multiply(*b)))
+    /// The sum of the products of the numbers in a row with those of a column, which stand so far apart.
+    fn dot(row: &[Self], column: &[Self], apart: usize) -> Self {
+        let (mut sum, mut k): (Self, usize) = (zero(), 0);
+        while k < row.len() {
+            sum = sum.add(row[k].multiply(column[k * apart]));
+            k += 1;
+        }
+        sum
     }
     /// The reciprocal.
     fn reciprocal(self) -> Self;
@@ -147,8 +153,10 @@ impl<K: Number> Matrix<K> {
     }
 
     pub(crate) fn add_scaled(&mut self, other: &Matrix<K>, factor: K) {
-        for (entry, other) in self.entries.iter_mut().zip(&other.entries) {
-            *entry = entry.add(other.multiply(factor));
+        let (sum, other, mut k) = (self.entries.as_mut_slice(), other.entries.as_slice(), 0);
+        while k < sum.len() {
+            sum[k] = sum[k].add(other[k].multiply(factor));
+            k += 1;
         }
     }
 
@@ -174,7 +182,9 @@ impl<K: Number> Matrix<K> {
         work::spend(10 + self.shape.len() * columns / 16 + shape.len() / 4);
         let mut entries = Vec::with_capacity(shape.len());
         for row in self.entries.chunks(self.shape.columns) {
-            entries.extend((0..columns).map(|j| K::dot(row, other.entries[j..].iter().step_by(columns))));
+            for j in 0..columns {
+                entries.push(K::dot(row, &other.entries[j..], columns));
+            }
         }
         Matrix::new(shape, entries)
     }
@@ -222,10 +232,15 @@ impl<K: Number> Matrix<K> {
             let pivot = &mut self.entries[rank * width..][..width];
             pivot.iter_mut().for_each(|entry| *entry = entry.multiply(reciprocal));
             let pivot = pivot.to_vec();
+            let pivot = pivot.as_slice();
             for (_, row) in self.entries.chunks_mut(width).enumerate().filter(|(row, _)| *row != rank) {
-                let factor = negative(row[column]);
-                for (entry, other) in row.iter_mut().zip(&pivot).skip(column) {
-                    *entry = entry.add(other.multiply(factor));
+                if row[column].vanishes() {
+                    continue;
+                }
+                let (factor, mut k) = (negative(row[column]), column);
+                while k < width {
+                    row[k] = row[k].add(pivot[k].multiply(factor));
+                    k += 1;
                 }
             }
             pivots.push(column);

@@ -61,8 +61,8 @@ impl<'g> Expr<'g> {
 
     /// The value, if it is a rational number.
     pub fn as_number(self) -> Option<Rational> {
-        let node = self.node();
-        let ExprNode::Sum(terms) = &*node else { return None };
+        let nodes = self.graph.nodes.borrow();
+        let ExprNode::Sum(terms) = &*nodes.value(self.id.0 as usize).0 else { return None };
         match terms.as_slice() {
             _ if !self.shape().is_scalar() => None,
             [] => Some(Rational::zero()),
@@ -73,7 +73,8 @@ impl<'g> Expr<'g> {
 
     /// Whether it is the zero of its shape.
     pub fn is_zero(self) -> bool {
-        matches!(&*self.node(), ExprNode::Sum(terms) if terms.is_empty())
+        let nodes = self.graph.nodes.borrow();
+        matches!(&*nodes.value(self.id.0 as usize).0, ExprNode::Sum(terms) if terms.is_empty())
     }
 
     /// Whether it is the identity matrix, or the number one.

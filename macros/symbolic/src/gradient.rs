@@ -2,7 +2,7 @@
 
 use crate::memory::{self, Images, Map};
 use crate::node::{Analytic, Exponent, ExprNode, Function, Id, Operation, Term};
-use crate::{Elements, Expr, Graph, IntoList, Rational, Shape, Table, indexed};
+use crate::{Elements, Expr, Graph, IntoList, Rational, Shape, Table, indexed, work};
 
 impl<'g> Expr<'g> {
     /// The gradient of a scalar with respect to a symbol: the matrix G of the symbol's shape with df = ⟨G, dx⟩ = tr(GᵀdX).
@@ -154,6 +154,7 @@ impl<'g> Expr<'g> {
 
     fn push_forward_term(self, term: &Term, tangents: &Images) -> Expr<'g> {
         let graph = self.graph;
+        work::spend(8 * (term.scalars.len() + term.word.len()));
         let mut sum = graph.zero(self.shape());
         for (base, exponent) in &term.scalars {
             sum = sum + tangents.of(graph, base) * self.slope_of_term(term, *base, *exponent);

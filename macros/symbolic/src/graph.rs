@@ -8,12 +8,13 @@ use crate::group::{Block, Definition};
 use crate::identity::Evaluated;
 use crate::memory::{Images, Maps};
 use crate::node::{ExprNode, Id, Term};
+use crate::table::mixed;
 use crate::{Elements, Expr, Group, Interner, Property, Rational, Role, Shape, Symbol, Table, integer, rational, work};
 
 /// Owns expressions. Nodes are only added, and children come before their parents.
 #[derive(Default)]
 pub struct Graph {
-    nodes: RefCell<Interner<(Rc<ExprNode>, Shape)>>,
+    pub(crate) nodes: RefCell<Interner<(Rc<ExprNode>, Shape)>>,
     pub(crate) bases: RefCell<Interner<Rc<Basis>>>,
     pub(crate) blocks: RefCell<Table<Group, Rc<[Block]>>>,
     pub(crate) definitions: RefCell<Vec<Rc<Definition>>>,
@@ -54,10 +55,17 @@ impl Graph {
 
     pub(crate) fn intern(&self, node: ExprNode, shape: Shape) -> Expr<'_> {
         work::spend(1 + node.size() / 2);
-        let (position, _) = self.nodes.borrow_mut().intern((Rc::new(node), shape));
-        self.expr(Id(position as u32))
+        let mut nodes = self.nodes.borrow_mut();
+        let hash = mixed(node.hashed(), (shape.rows as u64) << 32 | shape.columns as u64);
+        let found = nodes.find(hash, |(known, other)| *other == shape && known.is_same(&node));
+        let position = match found {
+            Ok(known) => known,
+            Err(slot) => nodes.insert(slot, hash, (Rc::new(node), shape)),
+        };
+        Expr { graph: self, id: Id(position as u32) }
     }
 
+    #[inline(always)]
     pub(crate) fn expr(&self, id: Id) -> Expr<'_> {
         Expr { graph: self, id }
     }

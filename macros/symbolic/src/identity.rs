@@ -22,6 +22,7 @@ pub struct Residue(u64);
 
 impl Residue {
     /// The residue of a value below 2¹²⁴: 2⁶¹ is one, so its upper and lower halves are added.
+    #[inline(always)]
     pub(crate) fn new(value: u128) -> Residue {
         let sum = (value as u64 & PRIME) + (value >> 61) as u64;
         let sum = (sum & PRIME) + (sum >> 61);
@@ -65,20 +66,22 @@ impl Number for Residue {
             _ => Residue(PRIME - value.unsigned_abs() % PRIME),
         }
     }
+    #[inline(always)]
     fn add(self, other: Residue) -> Residue {
         Residue::new(self.0 as u128 + other.0 as u128)
     }
+    #[inline(always)]
     fn multiply(self, other: Residue) -> Residue {
         Residue::new(self.0 as u128 * other.0 as u128)
     }
-    fn dot<'a>(row: &[Residue], column: impl Iterator<Item = &'a Residue>) -> Residue {
+    fn dot(row: &[Residue], column: &[Residue], apart: usize) -> Residue {
         // three products and a residue are below 2¹²⁴, whose halves still fit
-        let (mut sum, mut count) = (0_u128, 0);
-        for (a, b) in row.iter().zip(column) {
-            sum += a.0 as u128 * b.0 as u128;
-            count += 1;
-            if count == 3 {
-                (sum, count) = (u128::from(Residue::new(sum).0), 0);
+        let (mut sum, mut k) = (0_u128, 0);
+        while k < row.len() {
+            sum += row[k].0 as u128 * column[k * apart].0 as u128;
+            k += 1;
+            if k % 3 == 0 {
+                sum = Residue::new(sum).0 as u128;
             }
         }
         Residue::new(sum)
@@ -233,6 +236,13 @@ pub fn vanishes_where<'g>(expr: Expr<'g>, prepare: &dyn Fn(&mut Point<'g>)) -> b
 /// Whether the expression is zero for all values of its symbols that the properties allow.
 pub fn vanishes(expr: Expr<'_>) -> bool {
     equal(&[expr], &[expr.graph.zero(expr.shape())])
+}
+
+/// Whether the value of an expression changes with that of a symbol.
+pub fn varies_with<'g>(expr: Expr<'g>, symbol: Expr<'g>) -> bool {
+    let mut elsewhere = Point::new(0);
+    elsewhere.set(symbol, Point::new(1).sampled(symbol));
+    Point::new(0).evaluate(expr) != elsewhere.evaluate(expr)
 }
 
 /// The same sum without those of its terms that are zero for all values of their symbols.

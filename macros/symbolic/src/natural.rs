@@ -15,6 +15,11 @@ impl Natural {
         Natural(digits)
     }
 
+    /// Whether it is 1.
+    pub fn is_one(&self) -> bool {
+        self.0[..] == [1]
+    }
+
     /// The number, if it is a machine word with a sign.
     pub fn word(&self) -> Option<i64> {
         i64::try_from(self.wide()?).ok()
@@ -53,8 +58,11 @@ impl Natural {
     /// a·b.
     pub fn times(&self, other: &Natural) -> Natural {
         let mut digits = vec![0; self.0.len() + other.0.len()];
-        for (k, digit) in self.0.iter().enumerate() {
-            add_product(&mut digits[k..], *digit, &other.0);
+        let factors = self.0.as_slice();
+        let mut k = 0;
+        while k < factors.len() {
+            add_product(&mut digits[k..], factors[k], &other.0);
+            k += 1;
         }
         Natural::new(digits)
     }
@@ -116,8 +124,18 @@ impl Natural {
 
     /// The greatest common divisor, by Euclid's algorithm.
     pub fn common_divisor(&self, other: &Natural) -> Natural {
+        if self.is_one() || other.is_one() {
+            return Natural::from(1);
+        }
         let (mut a, mut b) = (self.clone(), other.clone());
         while !b.0.is_empty() {
+            if let (Some(a), Some(b)) = (a.wide(), b.wide()) {
+                let (mut a, mut b) = (a.unsigned_abs(), b.unsigned_abs());
+                while b != 0 {
+                    (a, b) = (b, a % b);
+                }
+                return Natural::from(a);
+            }
             let (_, remainder) = a.divided(&b);
             a = std::mem::replace(&mut b, remainder);
         }
@@ -180,25 +198,27 @@ impl fmt::Display for Natural {
 
 /// Adds factor·digits to a sum that has as many digits or more, and says whether its last digit overflows.
 fn add_product(sum: &mut [u64], factor: u64, digits: &[u64]) -> bool {
-    let mut carry = 0;
-    for (k, place) in sum.iter_mut().enumerate() {
-        let digit = digits.get(k).copied().unwrap_or(0);
-        let value = u128::from(factor) * u128::from(digit) + u128::from(*place) + carry;
-        *place = value as u64;
+    let (mut carry, mut k) = (0, 0);
+    while k < sum.len() && (k < digits.len() || carry != 0) {
+        let digit = if k < digits.len() { digits[k] } else { 0 };
+        let value = factor as u128 * digit as u128 + sum[k] as u128 + carry;
+        sum[k] = value as u64;
         carry = value >> 64;
+        k += 1;
     }
     carry != 0
 }
 
 /// Subtracts factor·digits from a number that has as many digits or more, and says whether the difference is negative.
 fn subtract_product(rest: &mut [u64], factor: u64, digits: &[u64]) -> bool {
-    let mut carry = 0;
-    for (k, place) in rest.iter_mut().enumerate() {
-        let digit = digits.get(k).copied().unwrap_or(0);
-        let value = u128::from(factor) * u128::from(digit) + carry;
-        let (difference, is_below) = place.overflowing_sub(value as u64);
-        *place = difference;
-        carry = (value >> 64) + u128::from(is_below);
+    let (mut carry, mut k) = (0, 0);
+    while k < rest.len() && (k < digits.len() || carry != 0) {
+        let digit = if k < digits.len() { digits[k] } else { 0 };
+        let value = factor as u128 * digit as u128 + carry;
+        let (difference, is_below) = rest[k].overflowing_sub(value as u64);
+        rest[k] = difference;
+        carry = (value >> 64) + is_below as u128;
+        k += 1;
     }
     carry != 0
 }

@@ -2,6 +2,7 @@
 //!
 //! They may have any size, but nearly all of them are fractions of machine words, and these take neither heap nor long arithmetic.
 
+use std::borrow::Cow;
 use std::cmp::Ordering;
 use std::fmt;
 use std::iter::Sum;
@@ -29,6 +30,9 @@ impl Fraction {
 
     /// The fraction `numerator / denominator`; the denominator is not zero.
     fn new(numerator: i64, denominator: i64) -> Fraction {
+        if denominator == 1 {
+            return Fraction { numerator, denominator };
+        }
         let (mut a, mut b) = (numerator, denominator);
         while b != 0 {
             (a, b) = (b, a % b);
@@ -38,21 +42,25 @@ impl Fraction {
     }
 
     /// Numerator and denominator, which is positive.
+    #[inline(always)]
     pub fn parts(self) -> (i64, i64) {
         (self.numerator, self.denominator)
     }
 
     /// Whether it is 0.
+    #[inline(always)]
     pub fn is_zero(self) -> bool {
         self.numerator == 0
     }
 
     /// Whether it is 1.
+    #[inline(always)]
     pub fn is_one(self) -> bool {
-        self == Fraction::ONE
+        self.numerator == 1 && self.denominator == 1
     }
 
     /// Whether it is an integer.
+    #[inline(always)]
     pub fn is_integer(self) -> bool {
         self.denominator == 1
     }
@@ -186,6 +194,9 @@ impl Rational {
     /// ±a/b, where b is not zero.
     fn of(is_negative: bool, numerator: Natural, denominator: Natural) -> Rational {
         let common = numerator.common_divisor(&denominator);
+        if common.is_one() {
+            return Rational::in_lowest_terms(Long { is_negative, numerator, denominator });
+        }
         let [numerator, denominator] = both([numerator, denominator], |part| part.divided(&common).0);
         Rational::in_lowest_terms(Long { is_negative, numerator, denominator })
     }
@@ -210,6 +221,7 @@ impl Rational {
     }
 
     /// The value as a fraction of machine words, if it is one.
+    #[inline(always)]
     pub(crate) fn as_fraction(&self) -> Option<Fraction> {
         match &self.0 {
             Size::Short(fraction) => Some(*fraction),
@@ -217,14 +229,14 @@ impl Rational {
         }
     }
 
-    fn long(&self) -> Long {
+    fn long(&self) -> Cow<'_, Long> {
         match &self.0 {
-            Size::Short(fraction) => Long {
+            Size::Short(fraction) => Cow::Owned(Long {
                 is_negative: fraction.is_negative(),
                 numerator: u128::from(fraction.numerator.unsigned_abs()).into(),
                 denominator: u128::from(fraction.denominator.unsigned_abs()).into(),
-            },
-            Size::Long(value) => (**value).clone(),
+            }),
+            Size::Long(value) => Cow::Borrowed(value),
         }
     }
 
@@ -235,23 +247,23 @@ impl Rational {
 
     /// Numerator and denominator, if they fit into two machine words each.
     pub fn wide_parts(&self) -> Option<(i128, i128)> {
-        let Long { is_negative, numerator, denominator } = self.long();
-        let numerator = numerator.wide()?;
-        Some((if is_negative { -numerator } else { numerator }, denominator.wide()?))
+        let value = self.long();
+        let numerator = value.numerator.wide()?;
+        Some((if value.is_negative { -numerator } else { numerator }, value.denominator.wide()?))
     }
 
     /// The remainders of numerator and denominator in the division by a number.
     pub(crate) fn remainders(&self, modulus: u64) -> [u64; 2] {
-        let Long { is_negative, numerator, denominator } = self.long();
-        let remainder = |part: Natural| part.divided(&u128::from(modulus).into()).1.wide().unwrap_or(0) as u64;
-        let above = remainder(numerator);
-        [if is_negative && above > 0 { modulus - above } else { above }, remainder(denominator)]
+        let value = self.long();
+        let remainder = |part: &Natural| part.divided(&u128::from(modulus).into()).1.wide().unwrap_or(0) as u64;
+        let above = remainder(&value.numerator);
+        [if value.is_negative && above > 0 { modulus - above } else { above }, remainder(&value.denominator)]
     }
 
     /// The number of binary digits of numerator and denominator.
     pub fn bits(&self) -> usize {
-        let Long { is_negative: _, numerator, denominator } = self.long();
-        numerator.bits() + denominator.bits()
+        let value = self.long();
+        value.numerator.bits() + value.denominator.bits()
     }
 
     /// The machine words that it takes in addition to one for each part.
@@ -261,22 +273,25 @@ impl Rational {
 
     /// The numerator in lowest terms.
     pub fn numer(&self) -> Rational {
-        Rational::fitted(Long { denominator: 1.into(), ..self.long() })
+        Rational::fitted(Long { denominator: 1.into(), ..self.long().into_owned() })
     }
 
     /// The denominator in lowest terms, positive.
     pub fn denom(&self) -> Rational {
-        Rational::fitted(Long { is_negative: false, numerator: self.long().denominator, denominator: 1.into() })
+        let numerator = self.long().into_owned().denominator;
+        Rational::fitted(Long { is_negative: false, numerator, denominator: 1.into() })
     }
 
     /// Whether it is 0.
+    #[inline(always)]
     pub fn is_zero(&self) -> bool {
-        self.as_fraction().is_some_and(Fraction::is_zero)
+        matches!(&self.0, Size::Short(fraction) if fraction.is_zero())
     }
 
     /// Whether it is 1.
+    #[inline(always)]
     pub fn is_one(&self) -> bool {
-        self.as_fraction().is_some_and(Fraction::is_one)
+        matches!(&self.0, Size::Short(fraction) if fraction.is_one())
     }
 
     /// Whether it is an integer.
@@ -305,7 +320,7 @@ impl Rational {
         match &self.0 {
             Size::Short(fraction) => Rational::short(fraction.recip()),
             Size::Long(_) => {
-                let Long { is_negative, numerator, denominator } = self.long();
+                let Long { is_negative, numerator, denominator } = self.long().into_owned();
                 Rational::in_lowest_terms(Long { is_negative, numerator: denominator, denominator: numerator })
             }
         }
@@ -330,7 +345,10 @@ impl Rational {
         if exponent == 1 {
             return self.clone();
         }
-        let Long { is_negative, numerator, denominator } = self.long();
+        if exponent == -1 {
+            return self.recip();
+        }
+        let Long { is_negative, numerator, denominator } = self.long().into_owned();
         let [numerator, denominator] = both([numerator, denominator], |part| part.power(exponent.unsigned_abs()));
         let is_negative = is_negative && exponent % 2 != 0;
         let power = Long { is_negative, numerator, denominator };
@@ -345,9 +363,9 @@ impl Rational {
                 numerator as f64 / denominator as f64
             }
             _ => {
-                let Long { is_negative, numerator, denominator } = self.long();
-                let magnitude = numerator.ratio(&denominator);
-                if is_negative { -magnitude } else { magnitude }
+                let value = self.long();
+                let magnitude = value.numerator.ratio(&value.denominator);
+                if value.is_negative { -magnitude } else { magnitude }
             }
         }
     }
@@ -409,6 +427,11 @@ impl Add for &Rational {
     type Output = Rational;
     fn add(self, other: &Rational) -> Rational {
         if let (Size::Short(a), Size::Short(b)) = (&self.0, &other.0) {
+            if let (1, 1, Some(sum)) = (a.denominator, b.denominator, a.numerator.checked_add(b.numerator))
+                && sum != i64::MIN
+            {
+                return Rational::short(Fraction::integer(sum));
+            }
             let crossed = |a: &Fraction, b: &Fraction| i128::from(a.numerator) * i128::from(b.denominator);
             // below 2¹²⁷
             return Rational::new(crossed(a, b) + crossed(b, a), i128::from(a.denominator) * i128::from(b.denominator));
@@ -428,6 +451,11 @@ impl Mul for &Rational {
     type Output = Rational;
     fn mul(self, other: &Rational) -> Rational {
         if let (Size::Short(a), Size::Short(b)) = (&self.0, &other.0) {
+            if let (1, 1, Some(product)) = (a.denominator, b.denominator, a.numerator.checked_mul(b.numerator))
+                && product != i64::MIN
+            {
+                return Rational::short(Fraction::integer(product));
+            }
             let numerator = i128::from(a.numerator) * i128::from(b.numerator);
             return Rational::new(numerator, i128::from(a.denominator) * i128::from(b.denominator));
         }

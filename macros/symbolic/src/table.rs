@@ -26,40 +26,56 @@ impl<K: Hash + Eq> Interner<K> {
         if self.is_empty() {
             return None;
         }
-        let taken = self.slots[self.slot(hash_of(value), value)];
-        (taken as usize).checked_sub(1)
+        let slot = self.slot(hash_of(value), |known| known == value);
+        (self.slots[slot] as usize).checked_sub(1)
     }
 
     /// The position of a value, and whether it is new.
     pub fn intern(&mut self, value: K) -> (usize, bool) {
-        if 2 * (self.len() + 1) > self.slots.len() {
-            self.grow();
-        }
         let hash = hash_of(&value);
-        let slot = self.slot(hash, &value);
-        if let Some(known) = (self.slots[slot] as usize).checked_sub(1) {
-            return (known, false);
+        match self.find(hash, |known| *known == value) {
+            Ok(known) => (known, false),
+            Err(slot) => (self.insert(slot, hash, value), true),
         }
-        self.values.push(value);
-        self.hashes.push(hash);
-        self.slots[slot] = self.values.len() as u32;
-        (self.values.len() - 1, true)
     }
 
     /// All values, in the order of their positions.
     pub fn into_values(self) -> Vec<K> {
         self.values
     }
+}
 
-    /// The slot where a value stands, or the one that it would take.
-    fn slot(&self, hash: u64, value: &K) -> usize {
+impl<K> Interner<K> {
+    /// The position of the value with a hash that passes a test, or the slot that it would take.
+    pub(crate) fn find(&mut self, hash: u64, is_same: impl Fn(&K) -> bool) -> Result<usize, usize> {
+        if 2 * (self.values.len() + 1) > self.slots.len() {
+            self.grow();
+        }
+        let slot = self.slot(hash, is_same);
+        match self.slots[slot] {
+            0 => Err(slot),
+            taken => Ok(taken as usize - 1),
+        }
+    }
+
+    /// Puts a new value into the slot that is said to be its own, and gives its position.
+    pub(crate) fn insert(&mut self, slot: usize, hash: u64, value: K) -> usize {
+        self.values.push(value);
+        self.hashes.push(hash);
+        self.slots[slot] = self.values.len() as u32;
+        self.values.len() - 1
+    }
+
+    /// The slot of the value that passes a test, or the one that it would take.
+    fn slot(&self, hash: u64, is_same: impl Fn(&K) -> bool) -> usize {
         // slices: without optimisation the index of a vector is five calls
         let (slots, hashes) = (self.slots.as_slice(), self.hashes.as_slice());
+        let values = self.values.as_slice();
         let mask = slots.len() - 1;
         let mut slot = hash as usize & mask;
         while slots[slot] != 0 {
             let position = slots[slot] as usize - 1;
-            if hashes[position] == hash && self.values[position] == *value {
+            if hashes[position] == hash && is_same(&values[position]) {
                 break;
             }
             slot = (slot + 1) & mask;
@@ -68,11 +84,19 @@ impl<K: Hash + Eq> Interner<K> {
     }
 
     fn grow(&mut self) {
-        self.slots = vec![0; (2 * self.slots.len()).max(16)];
-        for (position, value) in self.values.iter().enumerate() {
-            let slot = self.slot(self.hashes[position], value);
-            self.slots[slot] = position as u32 + 1;
+        let mut slots = vec![0; (2 * self.slots.len()).max(16)];
+        let (hashes, mask) = (self.hashes.as_slice(), slots.len() - 1);
+        let mut position = 0;
+        while position < hashes.len() {
+            // all values are distinct
+            let mut slot = hashes[position] as usize & mask;
+            while slots.as_slice()[slot] != 0 {
+                slot = (slot + 1) & mask;
+            }
+            position += 1;
+            slots.as_mut_slice()[slot] = position as u32;
         }
+        self.slots = slots;
     }
 
     /// The value at a position.
@@ -169,14 +193,23 @@ pub(crate) fn hash_of(value: &impl Hash) -> u64 {
 struct Mixer(u64);
 
 impl Mixer {
+    #[inline(always)]
     fn mix(&mut self, word: u64) {
-        self.0 = (self.0.rotate_left(5) ^ word).wrapping_mul(0x517c_c1b7_2722_0a95);
+        self.0 = mixed(self.0, word);
     }
+}
+
+/// A hash with one more word.
+#[allow(clippy::manual_rotate, reason = "without optimisation `rotate_left` is a call")]
+#[inline(always)]
+pub(crate) fn mixed(hash: u64, word: u64) -> u64 {
+    (((hash << 5) | (hash >> 59)) ^ word).wrapping_mul(0x517c_c1b7_2722_0a95)
 }
 
 /// Words are mixed in one piece.
 macro_rules! words {
     ($($write:ident: $word:ty),*) => {$(
+        #[inline(always)]
         fn $write(&mut self, word: $word) {
             self.mix(word as u64);
         }

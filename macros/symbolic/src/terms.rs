@@ -20,11 +20,32 @@ impl Term {
 
     /// The order of terms in sums: by their scalar powers, then by their words, like terms being equal.
     fn compare(&self, other: &Term) -> Ordering {
-        self.scalars.cmp(&other.scalars).then_with(|| self.word.cmp(&other.word))
+        let (left, right) = (self.scalars.as_slice(), other.scalars.as_slice());
+        let mut k = 0;
+        while k < left.len() && k < right.len() {
+            let (a, b) = (left[k], right[k]);
+            if a.0.0 != b.0.0 {
+                return if a.0.0 < b.0.0 { Ordering::Less } else { Ordering::Greater };
+            }
+            match if a.1 == b.1 { Ordering::Equal } else { a.1.cmp(&b.1) } {
+                Ordering::Equal => k += 1,
+                order => return order,
+            }
+        }
+        match left.len() {
+            length if length < right.len() => Ordering::Less,
+            length if length > right.len() => Ordering::Greater,
+            _ if self.word.is_empty() && other.word.is_empty() => Ordering::Equal,
+            _ => self.word.cmp(&other.word),
+        }
     }
 
     /// Multiplies by scalar powers, keeping them sorted and without zero exponents.
     pub(crate) fn multiply_scalars(&mut self, scalars: &[(Id, Exponent)]) {
+        if self.scalars.is_empty() {
+            self.scalars.extend_from_slice(scalars);
+            return;
+        }
         for &(base, exponent) in scalars {
             match self.scalars.binary_search_by_key(&base, |&(id, _)| id) {
                 Err(position) => self.scalars.insert(position, (base, exponent)),
@@ -40,13 +61,25 @@ impl Term {
     }
 }
 
+/// The place of a term in a sorted sum of distinct ones, or the one that it would take.
+fn place(sum: &[Term], term: &Term) -> Result<usize, usize> {
+    let (mut low, mut high) = (0, sum.len());
+    // most terms come last
+    let mut middle = high.wrapping_sub(1);
+    while low < high {
+        match sum[middle].compare(term) {
+            Ordering::Less => low = middle + 1,
+            Ordering::Equal => return Ok(middle),
+            Ordering::Greater => high = middle,
+        }
+        middle = low + (high - low) / 2;
+    }
+    Err(low)
+}
+
 /// Adds a term to a sorted sum of distinct ones, to a like term where there is one.
 fn add(sum: &mut Vec<Term>, term: Term) {
-    let place = match sum.last() {
-        Some(last) if last.compare(&term) != Ordering::Less => sum.binary_search_by(|other| other.compare(&term)),
-        _ => Err(sum.len()),
-    };
-    match place {
+    match place(sum, &term) {
         Ok(position) => sum[position].coefficient += term.coefficient,
         Err(position) => {
             // later terms move
@@ -60,7 +93,9 @@ impl Graph {
     /// The sum of terms of one shape, like terms collected; a single plain letter is that letter.
     pub(crate) fn collect(&self, shape: Shape, terms: impl IntoIterator<Item = Term>) -> Expr<'_> {
         let mut sum: Vec<Term> = Vec::new();
-        terms.into_iter().for_each(|term| add(&mut sum, term));
+        for term in terms {
+            add(&mut sum, term);
+        }
         self.settle(shape, sum)
     }
 
@@ -70,7 +105,9 @@ impl Graph {
         let mut sum: Vec<Term> = Vec::new();
         for part in parts {
             work::spend(4);
-            part.terms().into_iter().for_each(|term| add(&mut sum, term));
+            for term in part.terms() {
+                add(&mut sum, term);
+            }
         }
         self.settle(shape, sum)
     }
@@ -82,12 +119,19 @@ impl Graph {
 
     /// A term without its word.
     pub(crate) fn scale(&self, term: &Term) -> Expr<'_> {
-        self.scalar(Term { word: Vec::new(), ..term.clone() })
+        let Term { coefficient, scalars, word: _ } = term;
+        self.scalar(Term { coefficient: coefficient.clone(), scalars: scalars.clone(), word: Vec::new() })
     }
 
     /// The sum of terms that are sorted and distinct.
     fn settle(&self, shape: Shape, mut terms: Vec<Term>) -> Expr<'_> {
-        terms.retain(|term| !term.coefficient.is_zero());
+        let mut has_zeros = false;
+        for term in &terms {
+            has_zeros |= term.coefficient.is_zero();
+        }
+        if has_zeros {
+            terms.retain(|term| !term.coefficient.is_zero());
+        }
         if let [Term { coefficient, scalars, word }] = terms.as_slice()
             && coefficient.is_one()
         {
@@ -182,17 +226,30 @@ impl<'g> Expr<'g> {
         if let Some(number) = other.as_number() {
             return self.times(&number);
         }
-        self.graph.multiply(&self.factor(), &other.factor(), shape)
+        self.graph.multiplied(self.factor(), &other.factor(), shape)
     }
 }
 
 impl Graph {
     /// The product of two terms as an expression of the given shape.
     pub(crate) fn multiply(&self, left: &Term, right: &Term, shape: Shape) -> Expr<'_> {
-        let coefficient = product(&left.coefficient, &right.coefficient);
-        let mut term = Term { coefficient, scalars: left.scalars.clone(), word: Vec::new() };
+        self.multiplied(left.clone(), right, shape)
+    }
+
+    fn multiplied(&self, mut term: Term, right: &Term, shape: Shape) -> Expr<'_> {
+        if !right.coefficient.is_one() {
+            term.coefficient = product(&term.coefficient, &right.coefficient);
+        }
         term.multiply_scalars(&right.scalars);
-        self.with_word(term, &[&left.word[..], &right.word].concat(), shape)
+        let mut word = std::mem::take(&mut term.word);
+        if !right.word.is_empty() {
+            word.extend_from_slice(&right.word);
+        }
+        match word.is_empty() {
+            true if term.coefficient.is_zero() => self.zero(shape),
+            true => self.settle(shape, vec![term]),
+            false => self.with_word(term, &word, shape),
+        }
     }
 
     /// `term · word`, the word reduced.
@@ -219,7 +276,7 @@ impl Graph {
         }
         match term.word.as_slice() {
             [letter] if term.scalars.is_empty() => self.expr(*letter).times(&term.coefficient),
-            _ => self.collect(shape, [term]),
+            _ => self.settle(shape, vec![term]),
         }
     }
 

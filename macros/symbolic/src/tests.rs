@@ -257,7 +257,7 @@ mod identity {
         for count in 0..numbers.len() {
             let (row, column) = (&numbers[..count], &numbers[numbers.len() - count..]);
             let one_by_one = row.iter().zip(column).fold(zero(), |sum: Residue, (a, b)| sum.add(a.multiply(*b)));
-            assert_eq!(Residue::dot(row, column.iter()), one_by_one);
+            assert_eq!(Residue::dot(row, column, 1), one_by_one);
         }
     }
 }

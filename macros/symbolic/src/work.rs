@@ -43,6 +43,12 @@ pub fn give_up() -> ! {
     resume_unwind(Box::new(Exhausted));
 }
 
+/// The units that are left on this thread.
+pub fn left() -> u64 {
+    let Account { spent, limit } = ACCOUNT.get();
+    limit.saturating_sub(spent)
+}
+
 /// The count on this thread.
 pub fn spent() -> u64 {
     ACCOUNT.get().spent
@@ -66,9 +72,18 @@ pub fn within<T>(units: u64, work: impl FnOnce() -> T) -> Result<T, Exhausted> {
 ///
 /// # Errors
 /// Where it takes more.
-pub fn apart<T>(units: u64, work: impl FnOnce() -> T) -> Result<T, Exhausted> {
-    let around = ACCOUNT.replace(Account { spent: 0, limit: units });
+pub fn apart<T>(mut units: u64, work: impl FnOnce() -> T) -> Result<T, Exhausted> {
+    on(&mut units, work)
+}
+
+/// As [`apart`], on an allowance for several such works, from which it takes its units.
+///
+/// # Errors
+/// Where it takes more.
+pub fn on<T>(allowance: &mut u64, work: impl FnOnce() -> T) -> Result<T, Exhausted> {
+    let around = ACCOUNT.replace(Account { spent: 0, limit: *allowance });
     let result = catch_unwind(AssertUnwindSafe(work));
+    *allowance = left();
     ACCOUNT.set(around);
     ended(result)
 }

@@ -145,10 +145,10 @@ fn explicit<'g>(sources: &Sources<'_, 'g>, residuals: &[Residual<'g>], i: usize)
     Some(graph.stack(block.coordinates.shape(), indexed(block.dimension(), entry)))
 }
 
-/// Whether a slope may be the same everywhere. A long one is not expanded to find out: it is compared with itself elsewhere.
+/// Whether a slope may be the same everywhere. A long one is not expanded to find out: it is evaluated at two places.
 fn constant<'g>(slope: Expr<'g>, block: ChartBlock<'g>) -> bool {
     let is_short = work::within(SHORT, || slope.expand()).is_ok();
-    is_short || identity::equal(&[slope], &[slope.substitute(&[(block.coordinates, block.direction)])])
+    is_short || !identity::varies_with(slope, block.coordinates)
 }
 
 /// The work to expand a slope that is short.

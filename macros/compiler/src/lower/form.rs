@@ -43,7 +43,7 @@ pub struct Form {
     pub missing: Option<&'static str>,
     /// Whether it is matrix code because unrolled code is beyond a limit.
     pub is_beyond: bool,
-    /// Whether code is left as it is, as it takes too much work to shorten it.
+    /// Whether some code is left as it is, as it takes too much work to shorten it.
     pub is_plain: bool,
 }
 
@@ -53,31 +53,14 @@ impl Form {
         self.code == CodeForm::Matrices
     }
 
-    /// This form and simpler ones, in the order in which they are tried, with the work for each. A form may be long, or take long to
-    /// shorten. Matrix code stands in for large matrices, and code that is not shortened for long formulas.
+    /// This form and a simpler one, in the order in which they are tried, with the quarters for each of the work that is left. Matrix code
+    /// stands in for code that is too long.
     pub(super) fn simpler(self, has_matrices: bool) -> Vec<(Form, u64)> {
-        let plain = Form { is_plain: true, ..self.clone() };
-        let matrices = Form { code: CodeForm::Matrices, is_beyond: true, ..self.clone() };
-        let has_large_matrices = self.estimate > LARGEST_UNROLLED;
         let stands_in = has_matrices && !self.is_asked && !self.keeps_matrices();
-        let forms = [
-            (true, self, if stands_in { SHORTENED } else { SHORTENED_ALONE }),
-            (stands_in && has_large_matrices, matrices.clone(), IN_MATRICES),
-            (true, plain, u64::MAX),
-            (stands_in && !has_large_matrices, matrices, u64::MAX),
-        ];
-        forms.into_iter().filter_map(|(applies, form, most)| applies.then_some((form, most))).into_list()
+        let matrices = Form { code: CodeForm::Matrices, is_beyond: true, ..self.clone() };
+        if stands_in { vec![(self, 3), (matrices, 4)] } else { vec![(self, 4)] }
     }
 }
-
-/// The work to shorten the code of a step. A step that takes more is written in a simpler form.
-const SHORTENED: u64 = 5_000_000;
-
-/// The same of a system that has no matrix code.
-const SHORTENED_ALONE: u64 = 10_000_000;
-
-/// The work for matrix code in its place.
-const IN_MATRICES: u64 = 4_000_000;
 
 /// The form of a system. A declaration may ask for one; otherwise it is matrix code if unrolled code would exceed the
 /// budget.

@@ -37,11 +37,8 @@ pub fn kernel(scalars: &mut Scalars, outputs: &[Grid], hoisting: Hoisting<'_>) -
         let entry = builder.convert(*entry);
         builder.outputs.push(entry);
     }
-    if !builder.scalars.is_plain && !builder.is_beyond_limits() {
-        builder.share_pairs();
-        if !builder.scalars.keeps_sums {
-            builder.shorten();
-        }
+    if !builder.is_beyond_limits() {
+        builder.shorten();
     }
     let (locals, entries) = builder.code();
     let mut entries = entries.into_iter();
@@ -260,7 +257,8 @@ impl Builder<'_, '_> {
     fn share_pairs(&mut self) {
         let used = self.used();
         let divides = |id: &Id| matches!(self.operations.value(*id), Operation::Reciprocal(_));
-        let divisors = used.iter().copied().filter(divides).collect();
+        let mut divisors = vec![false; self.operations.len()];
+        used.iter().filter(|id| divides(id)).for_each(|id| divisors[*id] = true);
         let products = used.into_iter().filter_map(|id| match self.operations.value(id) {
             Operation::Product(factors) => Some((id, factors.clone())),
             _ => None,

@@ -1,10 +1,10 @@
 //! Kernels of given expressions: each by itself, one below the other in one vector, or as matrices.
 
-use clebsch_symbolic::{Elements, Expr, IntoList, Shape};
+use clebsch_symbolic::{Elements, Expr, IntoList, Shape, work};
 
 use super::form::has_quaternions;
 use super::kernel::kernel;
-use super::{Grid, Hoisted, Hoisting, Kernel, Scalar, Scalars, matrices};
+use super::{Grid, Hoisted, Hoisting, Kernel, SEARCHES, Scalar, Scalars, matrices};
 use crate::derive::{FormulaTable, Heat, Id, MatrixForm, SystemFormulas};
 
 /// Makes the kernels of formulas. Their order counts: it is that in which scalars are numbered.
@@ -21,7 +21,8 @@ pub(super) struct Maker<'a, 'g> {
 
 impl<'a, 'g> Maker<'a, 'g> {
     pub(super) fn new(system: &'a SystemFormulas<'g>, rows: &'a FormulaTable<'g>) -> Maker<'a, 'g> {
-        let (scalars, hoisted) = (Scalars::default(), Hoisted::default());
+        let (mut scalars, hoisted) = (Scalars::default(), Hoisted::default());
+        scalars.searches = SEARCHES.min(work::left());
         Maker { system, rows, of_steps: Vec::new(), scalars, hoisted, table: Vec::new() }
     }
 

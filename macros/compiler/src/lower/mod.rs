@@ -49,6 +49,9 @@ const LARGEST_PROGRAM: usize = 60_000;
 /// More operations than this in one function are refused: optimising compilers take minutes for them, or give up.
 const LARGEST_KERNEL: usize = 20_000;
 
+/// The work of all searches for fewer operations in one program, or as much as is left for its other work. It is not counted with that.
+const SEARCHES: u64 = 2_500_000;
+
 /// Lowers formulas to kernels.
 ///
 /// # Errors
@@ -78,7 +81,8 @@ fn steered(formulas: SteeredFormulas<'_>) -> Result<SteeredProgram<'_>, Diagnost
 fn mechanics(formulas: MechanicsFormulas<'_>) -> Result<MechanicsProgram<'_>, Diagnostics> {
     let form = form::choose(&formulas)?;
     let (form, kernels) = in_some_form(&formulas, form)?;
-    let Kernels { table, steps, gathered } = kernels;
+    let Kernels { table, steps, gathered, is_plain } = kernels;
+    let form = Form { is_plain, ..form };
     Ok(MechanicsProgram { formulas, form, table, steps, gathered, methods: Vec::new() })
 }
 
@@ -86,8 +90,8 @@ fn mechanics(formulas: MechanicsFormulas<'_>) -> Result<MechanicsProgram<'_>, Di
 fn in_some_form<'g>(formulas: &MechanicsFormulas<'g>, form: Form) -> Result<(Form, Kernels<'g>), Diagnostics> {
     let missing = form::without_matrices(formulas);
     let (is_asked, mut refused) = (form.is_asked, None);
-    for (form, most) in form.simpler(missing.is_none()) {
-        match work::within(most, || kernels(formulas, &form)) {
+    for (form, quarters) in form.simpler(missing.is_none()) {
+        match work::within(work::left() / 4 * quarters, || kernels(formulas, &form)) {
             Ok(Ok(kernels)) => return Ok((form, kernels)),
             Ok(Err(TooLong(size))) => refused = Some(written_out_too_large(&formulas.model, missing, is_asked, size)),
             Err(Exhausted) => refused = None,
@@ -102,6 +106,8 @@ struct Kernels<'g> {
     table: KernelTable,
     steps: Vec<Step>,
     gathered: Option<Stencil<'g>>,
+    /// Whether some of them are left as they are, as it takes too much work to shorten them.
+    is_plain: bool,
 }
 
 /// Unrolled code that is beyond a limit: the words for its size.
@@ -112,7 +118,6 @@ fn kernels<'g>(formulas: &MechanicsFormulas<'g>, form: &Form) -> Result<Kernels<
     let mut maker = Maker::new(formulas, formulas.table());
     maker.of_steps = of_steps(formulas);
     maker.scalars.keeps_matrices = form.keeps_matrices();
-    maker.scalars.is_plain = form.is_plain;
     let steps = maker.steps(formulas)?;
     maker.known_rows([Id::SplittingKick, Id::SplittingGradient]);
     maker.collocation(formulas);
@@ -125,7 +130,8 @@ fn kernels<'g>(formulas: &MechanicsFormulas<'g>, form: &Form) -> Result<Kernels<
     maker.membership();
     maker.isotropy(formulas);
     maker.check_length()?;
-    Ok(Kernels { table: KernelTable { kernels: maker.table, constant_names }, steps, gathered })
+    let is_plain = maker.scalars.is_plain;
+    Ok(Kernels { table: KernelTable { kernels: maker.table, constant_names }, steps, gathered, is_plain })
 }
 
 /// Steps of order 16 carry covectors along, those of sites map them, and the momentum after a step of a coupled cost is made anew.

@@ -229,7 +229,7 @@ impl Form {
             CodeForm::Unrolled => "Code is unrolled, entry by entry",
             CodeForm::Matrices => "Code is matrix code, in loops",
         };
-        let plain = if is_plain { " It is not shortened, as that takes too long." } else { "" };
+        let plain = if is_plain { " Some of it is not shortened, as that takes too long." } else { "" };
         let why = match (is_beyond, is_asked, code) {
             (true, ..) => "and unrolled code is too long".to_string(),
             (_, true, _) => "as the declaration asks".to_string(),

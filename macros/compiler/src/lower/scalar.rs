@@ -123,8 +123,10 @@ impl ScalarNode {
 pub struct Scalars {
     /// Whether kernels leave sums as they are written, sums within them too.
     pub keeps_sums: bool,
-    /// Whether kernels are left as they are: without a search for pairs of factors and for sums that others share.
-    pub is_plain: bool,
+    /// The work that is left for searches for fewer operations.
+    pub(super) searches: u64,
+    /// Whether there was too little of it, so that some code is left as it is.
+    pub(super) is_plain: bool,
     /// Whether kernels are matrix code, and not unrolled.
     pub keeps_matrices: bool,
     nodes: Interner<ScalarNode>,

@@ -32,6 +32,8 @@ const STEPS: usize = 5;
 pub struct Found {
     /// Whether it was stepped: other problems have no known vertical term, are too large, or are matrix code.
     pub stepped: bool,
+    /// Whether it is refused as too large, without a reason that is known.
+    pub is_large: bool,
     pub composed: bool,
     pub conserved: usize,
     pub couples: bool,
@@ -52,14 +54,14 @@ pub fn check(problem: &Declared, seed: u64) -> Result<Found, String> {
     let text = problem.text();
     let has_projector = problem.leaves.iter().any(|leaf| leaf.type_name.starts_with("Projector"));
     // known shortfall: costs of FPFᵀ with weights, or in the exponential chart, are longer than unrolled code may be
-    let is_too_large = |errors: &Diagnostics| has_projector && errors.to_string().contains("is too large");
+    let is_too_large = |errors: &Diagnostics| errors.to_string().contains("is too large");
     let run = || -> Result<Found, String> {
         let tokens: TokenStream = text.parse().map_err(|error| format!("no tokens: {error}"))?;
         let graph = Graph::new();
         let program = match mechanics(&graph, tokens) {
             Ok(program) => program,
             Err(errors) if errors.to_string().contains("no vertical term is known") => return Ok(Found::default()),
-            Err(errors) if is_too_large(&errors) => return Ok(Found::default()),
+            Err(errors) if is_too_large(&errors) => return Ok(Found { is_large: !has_projector, ..Found::default() }),
             Err(errors) => return Err(format!("refused:\n{errors}")),
         };
         // Matrix code stands in for unrolled code that is too long. `forms` compares the two.

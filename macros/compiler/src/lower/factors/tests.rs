@@ -22,9 +22,16 @@ fn operations(scalars: &mut Scalars, outputs: Vec<Scalar>) -> (usize, usize) {
     (cost.additions, cost.multiplications)
 }
 
+/// An arena with work for searches.
+fn scalars() -> Scalars {
+    let mut scalars = Scalars::default();
+    scalars.searches = 1_000_000;
+    scalars
+}
+
 #[test]
 fn a_common_factor_is_taken_out() {
-    let mut scalars = Scalars::default();
+    let mut scalars = scalars();
     let [a, b, c] = inputs(&mut scalars);
     let whole = sum(&mut scalars, &[(1, &[a, b]), (-1, &[a, c])]);
     assert_eq!(operations(&mut scalars, vec![whole]), (1, 1));
@@ -32,7 +39,7 @@ fn a_common_factor_is_taken_out() {
 
 #[test]
 fn what_is_at_hand_is_not_made_again() {
-    let mut scalars = Scalars::default();
+    let mut scalars = scalars();
     let [a, b, c] = inputs(&mut scalars);
     let [left, right] = [[a, b], [a, c]].map(|factors| scalars.product(factors));
     let whole = sum(&mut scalars, &[(1, &[a, b]), (1, &[a, c])]);
@@ -42,7 +49,7 @@ fn what_is_at_hand_is_not_made_again() {
 /// k (a b − c d) + k (a e + c f) = k (a (b + e) + c (f − d)).
 #[test]
 fn sums_that_stand_alone_are_opened() {
-    let mut scalars = Scalars::default();
+    let mut scalars = scalars();
     let [k, a, b, c, d, e, f] = inputs(&mut scalars);
     let first = sum(&mut scalars, &[(1, &[a, b]), (-1, &[c, d])]);
     let second = sum(&mut scalars, &[(1, &[a, e]), (1, &[c, f])]);
@@ -53,7 +60,7 @@ fn sums_that_stand_alone_are_opened() {
 /// (a b + a c)/2 − (a d − b c)/2 = (a (b + c − d) + b c)/2.
 #[test]
 fn numbers_are_factors() {
-    let mut scalars = Scalars::default();
+    let mut scalars = scalars();
     let [a, b, c, d] = inputs(&mut scalars);
     let first = sum(&mut scalars, &[(1, &[a, b]), (1, &[a, c])]);
     let second = sum(&mut scalars, &[(1, &[a, d]), (-1, &[b, c])]);
@@ -65,7 +72,7 @@ fn numbers_are_factors() {
 /// k (a b − a b) + k c: terms that cancel once the factor is out leave nothing.
 #[test]
 fn what_cancels_leaves_nothing() {
-    let mut scalars = Scalars::default();
+    let mut scalars = scalars();
     let [k, a, b, c] = inputs(&mut scalars);
     let [first, second] = [(1, c), (-1, a)].map(|(sign, other)| sum(&mut scalars, &[(1, &[a, b]), (sign, &[other])]));
     let whole = sum(&mut scalars, &[(1, &[k, first]), (-1, &[k, second])]);

@@ -24,8 +24,8 @@ pub(super) fn delay_of_term(delays: &[u32], (coefficient, term): &(Rational, Id)
 /// left less than a quarter.
 const BEYOND: usize = 8;
 
-/// The work of a search through sums within sums. It is apart from that of the form of the code, which does not depend on it.
-const JOINED: u64 = 400_000;
+/// The work of a search through sums within sums.
+const JOINED: u64 = 600_000;
 /// Further searches leave next to nothing.
 const JOINS: usize = 2;
 
@@ -35,8 +35,32 @@ impl Builder<'_, '_> {
         self.operations.len() > LARGEST_KERNEL && self.count_operations() > BEYOND * LARGEST_KERNEL
     }
 
-    /// Looks for fewer operations: by common factors and by sums within sums, and where numbers can be separated, with them and without.
+    /// Looks for fewer operations, within the allowance of the program for that. A search that does not end within it leaves no
+    /// trace, and no other one is begun.
     pub(super) fn shorten(&mut self) {
+        let is_complete = self.search(Self::share_pairs, u64::MAX)
+            && (self.scalars.keeps_sums || self.search(Self::share_terms, u64::MAX));
+        if !is_complete {
+            (self.scalars.is_plain, self.scalars.searches) = (true, 0);
+        } else if !self.scalars.keeps_sums {
+            self.search(Self::join_sums, JOINED);
+        }
+    }
+
+    /// Makes a search with this much work at most, and says whether it ended.
+    fn search(&mut self, search: fn(&mut Self), most: u64) -> bool {
+        let mut allowance = self.scalars.searches;
+        let found = (self.sums.clone(), self.products.clone());
+        let is_complete = work::on(&mut allowance, || work::within(most, || search(self))) == Ok(Ok(()));
+        if !is_complete {
+            (self.sums, self.products) = found;
+        }
+        self.scalars.searches = allowance;
+        is_complete
+    }
+
+    /// Common factors and sums within sums; where numbers can be separated, with them and without.
+    fn share_terms(&mut self) {
         let separated = self.separate_numbers();
         let products = (!separated.is_empty()).then(|| self.products.clone());
         self.factor_sums(false);
@@ -49,10 +73,6 @@ impl Builder<'_, '_> {
             if self.count_operations() >= before {
                 (self.sums, self.products) = plain;
             }
-        }
-        let found = (self.sums.clone(), self.products.clone());
-        if work::apart(JOINED, || self.join_sums()).is_err() {
-            (self.sums, self.products) = found;
         }
     }
 

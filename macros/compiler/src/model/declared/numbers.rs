@@ -94,6 +94,10 @@ impl<K: Number, const N: usize> Number for Series<K, N> {
         Series(std::array::from_fn(|k| self.0[k].add(other.0[k])))
     }
 
+    fn vanishes(self) -> bool {
+        self.0.iter().all(|coefficient| coefficient.vanishes())
+    }
+
     fn multiply(self, other: Self) -> Self {
         let zero = K::from_integer(0);
         Series(std::array::from_fn(|k| (0..=k).fold(zero, |sum, i| sum.add(self.0[i].multiply(other.0[k - i])))))
