@@ -2,7 +2,7 @@
 
 use crate::linear::entry;
 use crate::space::larger;
-use crate::{Clebsch, Error, Scalar};
+use crate::{Clebsch, Error, Scalar, Space};
 use nalgebra::{SMatrix, SVector};
 
 /// A system whose velocities obey a constraint A ξ = b.
@@ -69,6 +69,32 @@ impl<T: Scalar> Violation<T> {
             })
         })
     }
+}
+
+/// Whether φ(q) = 0. The rows are those of φ at q. The tolerance is √ε of the change of φ when q moves by 1 + |q|.
+///
+/// # Errors
+/// [`Error::OffConstraint`].
+pub fn check_place<T: Scalar, const R: usize, const M: usize>(
+    places: &SVector<T, R>,
+    rows: &SMatrix<T, R, M>,
+    q: &impl Space<T>,
+) -> Result<(), Error> {
+    let size = T::one() + q.max_abs();
+    for i in 0..R {
+        let row = rows.row(i).iter().fold(T::zero(), |sum, &entry| sum + entry.abs());
+        let tolerance = T::EPSILON.sqrt() * size * row;
+        for lane in 0..T::LANES {
+            let (violation, tolerance) = (places[i].abs().lane(lane), tolerance.lane(lane));
+            // written so that NaN is a violation
+            if violation <= tolerance {
+                continue;
+            }
+            let (violation, tolerance) = (violation.to_f64().min(f64::MAX), tolerance.to_f64().min(f64::MAX));
+            return Err(Error::OffConstraint { violation, tolerance });
+        }
+    }
+    Ok(())
 }
 
 /// The violation of A ξ = b by the velocity ξ of the momentum μ.

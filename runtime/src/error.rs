@@ -166,6 +166,15 @@ errors! {
             "the momentum has a component of {violation:.3e} along motions that leave the configuration unchanged, \
              where {tolerance:.1e} is accepted: project it by `Stepper::project` or compute it by `momentum_map`; \
              where such motions are motions of the body, declare `isotropy = free`";
+        /// The configuration does not obey the constraint of the declaration on places.
+        OffConstraint {
+            /// The size of one of its equations, left side less right side.
+            violation: f64,
+            /// The largest one that is accepted.
+            tolerance: f64,
+        } =>
+            "the configuration violates the constraint by {violation:.3e}, where {tolerance:.1e} is accepted: start \
+             from one that obeys every equation of the constraint";
         /// The velocity of the momentum does not obey the constraint of the declaration.
         ConstraintViolated {
             /// The largest |A ξ − b| of its equations, in the units of the velocity that they fix.

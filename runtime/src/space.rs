@@ -201,7 +201,10 @@ impl<T: Scalar, S: Space<T>, const N: usize> Space<T> for [S; N] {
     }
     #[inline]
     fn zip_map(&self, other: &Self, f: impl Fn(T, T) -> T + Copy) -> Self {
-        core::array::from_fn(|i| self[i].zip_map(&other[i], f))
+        // in place: an index of `from_fn` is checked where the parts are large
+        let mut parts = *self;
+        parts.iter_mut().zip(other).for_each(|(part, other)| *part = part.zip_map(other, f));
+        parts
     }
     #[inline]
     fn lane(&self, lane: usize) -> Self::Lane {

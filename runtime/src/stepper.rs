@@ -87,6 +87,7 @@ impl<S: Clebsch, M: Method<S>> Stepper<S, M> {
     pub(crate) fn check_state(&self, t: S::Scalar, q: &S::Configuration, mu: &S::Momentum) -> Result<(), Error> {
         check_momentum(&self.system, q, mu)?;
         self.system.check_kinetic_energy(t, q)?;
+        self.system.check_place(t, q)?;
         M::constraint_defect(&self.system, M::Scheme::whole(&self.constants), t, q, mu)?.check()
     }
 

@@ -180,6 +180,15 @@ pub trait Clebsch: Sized {
         *mu
     }
 
+    /// Whether q obeys the constraint of the declaration on places; accepted as provided.
+    ///
+    /// # Errors
+    /// [`Error::OffConstraint`].
+    #[doc(hidden)]
+    fn check_place(&self, t: Self::Scalar, q: &Self::Configuration) -> Result<(), Error> {
+        Ok(())
+    }
+
     /// By how much the velocity of the momentum μ violates the constraint of the declaration: a Σ⁻¹μ − b. None as provided.
     ///
     /// # Errors

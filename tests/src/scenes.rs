@@ -61,6 +61,11 @@ pub fn rocker() -> Matrix3<f64> {
     Matrix3::new(1.6e-3, -2e-4, 0.0, -2e-4, 2e-3, 0.0, 0.0, 0.0, 2.2e-3)
 }
 
+/// An upright body whose centre is so far below the origin.
+pub fn hanging(depth: f64) -> Matrix4<f64> {
+    Matrix4::new_translation(&Vector3::new(0.0, 0.0, -depth))
+}
+
 /// A body whose centre is 2 cm above the plane.
 pub fn resting() -> Matrix4<f64> {
     Matrix4::new_translation(&Vector3::new(0.0, 0.0, 0.02))
@@ -150,6 +155,9 @@ macro_rules! every_scene {
                 (Matrix3::identity(), Vector1::new(0.0), Vector1::new(0.6)), 0.02;
             a_rattleback: rattleback::Rattleback { inertia: rocker(), mass: 1.0, gravity: 9.81, axes: Vector3::new(0.2, 0.03, 0.02), height: 0.0 },
                 resting(), 0.002;
+            jointed_bodies: jointed_bodies::JointedBodies {
+                second_moments: [inertia(), inertia()], mass: [1.0, 0.7], gravity: 9.81, near: [Vector3::z(), Vector3::z()], far: -Vector3::z()
+            }, [hanging(1.0), hanging(3.0)], 0.02;
             suslovs_body: suslov::Suslov { inertia: inertia() }, turned(), 0.1;
             a_sided_pair: sided_pair::SidedPair { }, (turned(), unit()), 0.1;
             a_top_of_eighth_order: eighth_order_top::EighthOrderTop { moments: principal(), weight: 1.3, center: centre() }, turned(), 0.05;

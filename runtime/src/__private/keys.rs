@@ -37,7 +37,7 @@ pub mod force {}
 /// Example: `force_on = |x, thrust: Vector3| thrust`
 pub mod force_on {}
 
-/// Equations that the velocity obeys at every configuration, such as rolling without slipping. Both sides are affine in the velocity ξ, the last argument, a new name. The list may have vectors on both sides, and a block with `let` ends in it.
+/// Equations that the motion obeys. With the velocity ξ among the arguments, a new name, they are affine in ξ, as for rolling without slipping. Without it they are equations of the configuration, as for joints. Both sides may be vectors, and a block with `let` ends in the list.
 ///
 /// Example: `constraint = |xi| [xi.z == 0]`
 pub mod constraint {}

@@ -15,6 +15,7 @@ impl<S: Clebsch, M: Method<S>> Stepper<S, M> {
     ///
     /// # Errors
     /// [`Error::NotFinite`], [`Error::OffOrbit`], [`Error::OutsideMomentumSpace`], or [`Error::IndefiniteKineticEnergy`] where the inertia depends on q or on the time.
+    /// With a constraint also [`Error::OffConstraint`], [`Error::ConstraintViolated`] or [`Error::DependentConstraints`].
     pub fn state(&self, q: S::Configuration, mu: S::Momentum) -> Result<State<S, M>, Error> {
         self.checked_state(S::Scalar::zero(), q, mu)
     }

@@ -5,5 +5,6 @@
 
 mod invariants;
 mod order;
+mod places;
 mod reference;
 mod refused;

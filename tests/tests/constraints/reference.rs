@@ -1,7 +1,7 @@
 //! Steps against 60-digit integrations of the equations.
 
 use clebsch::{Clebsch, Error};
-use nalgebra::{Matrix3, SVector, Vector2, Vector3, Vector5};
+use nalgebra::{Matrix3, Matrix4, SVector, Vector2, Vector3, Vector5};
 
 mod cayley {
     use clebsch::Clebsch;
@@ -37,7 +37,7 @@ mod cayley {
     }
 }
 
-use clebsch_tests::fixtures::suslov::Suslov;
+use clebsch_tests::fixtures::{jointed_bodies::JointedBodies, suslov::Suslov};
 
 /// The largest difference of entries.
 fn apart<const N: usize>(found: SVector<f64, N>, expected: [f64; N]) -> f64 {
@@ -137,6 +137,151 @@ fn the_ball_is_that_of_60_digits() -> Result<(), Error> {
         let state = stepper.advance(&start, steps)?;
         assert!(apart(*state.configuration(), place) < 1e-14, "{steps} steps: {}", state.configuration());
         assert!(apart(state.momentum(), momentum) < 1e-14, "{steps} steps: {}", state.momentum());
+    }
+    Ok(())
+}
+
+fn placed(rows: [[f64; 3]; 3], place: [f64; 3]) -> Matrix4<f64> {
+    let mut placed = Matrix3::from_fn(|i, j| rows[i][j]).to_homogeneous();
+    placed.fixed_view_mut::<3, 1>(0, 3).copy_from(&Vector3::from(place));
+    placed
+}
+
+#[test]
+fn jointed_bodies_are_those_of_60_digits() -> Result<(), Error> {
+    // (step, places of the centres of mass, momenta)
+    let known = [
+        (
+            1,
+            [
+                [-0.09044313689534152, 0.3192959089879589, -0.37399219442667997],
+                [-0.4786715659743828, 0.4877976432633083, -0.9684045254829601],
+            ],
+            [
+                [
+                    -0.01579385390026974,
+                    -0.010063852929660742,
+                    0.010000898686446533,
+                    0.05919913488035731,
+                    -0.08774363277927634,
+                    -1.3177747429038154e-82,
+                ],
+                [
+                    0.009969350458114505,
+                    0.005453335442102435,
+                    0.010000806161179257,
+                    0.08338243039942968,
+                    -0.007160808968924603,
+                    -0.027745517346737247,
+                ],
+            ],
+        ),
+        (
+            10,
+            [
+                [-0.07580607095420472, 0.2485053309862423, -0.4271984785528903],
+                [-0.45179536857839053, 0.4573786581077149, -1.1157766324741258],
+            ],
+            [
+                [
+                    -0.1632730501007816,
+                    0.017110443403259467,
+                    0.01004069221095148,
+                    -0.10064966707799687,
+                    -0.9070725005598977,
+                    -5.271098971615262e-82,
+                ],
+                [
+                    0.1028192191566188,
+                    -0.0839131413649545,
+                    0.009464591821895185,
+                    0.7885784886020704,
+                    -0.4500698625466893,
+                    -0.4848409367228303,
+                ],
+            ],
+        ),
+        (
+            20,
+            [
+                [-0.12267878719967351, 0.024974215521431847, -0.4840725190819102],
+                [-0.24327439920676522, 0.2878805413344049, -1.2896788175297385],
+            ],
+            [
+                [
+                    -0.13289844961527825,
+                    0.11051145031543204,
+                    0.007716503583229539,
+                    -0.6500673547966591,
+                    -0.7383247200848791,
+                    2.635549485807631e-82,
+                ],
+                [
+                    -0.03541776982353938,
+                    -0.2156212654087432,
+                    0.006204010176718573,
+                    0.9288431585311087,
+                    -1.1434633197652422,
+                    0.811908830361333,
+                ],
+            ],
+        ),
+    ];
+    let bodies = JointedBodies {
+        second_moments: [Vector3::new(0.09, 0.085, 0.01), Vector3::new(0.04, 0.038, 0.005)]
+            .map(|moments| Matrix3::from_diagonal(&(-moments).add_scalar(moments.sum() / 2.0))),
+        mass: [1.0, 0.7],
+        gravity: 9.81,
+        near: [Vector3::z() * 0.5, Vector3::z() * 0.4],
+        far: Vector3::z() * -0.5,
+    };
+    let stepper = bodies.into_stepper(0.02)?;
+    let places = [
+        placed(
+            [
+                [0.9808678746069344, 0.06696243887572978, 0.18279563546181693],
+                [0.06696243887572978, 0.7656314639349457, -0.6397847241163593],
+                [-0.18279563546181693, 0.6397847241163593, 0.7464993385418801],
+            ],
+            [-0.09139781773090846, 0.31989236205817967, -0.37324966927094005],
+        ),
+        placed(
+            [
+                [0.6224084788615689, -0.25022046481420857, 0.741618098774153],
+                [-0.08132330984392601, 0.921718830983496, 0.37923728177283195],
+                [-0.7784562959583902, -0.29635133810829833, 0.5533368591411242],
+            ],
+            [-0.47944287497147814, 0.4880898114072265, -0.9678340821983298],
+        ),
+    ];
+    let momentum = [
+        [
+            -2.7198019883473563e-05,
+            -0.007160397918177117,
+            0.01,
+            0.04211998775398304,
+            -0.00015110011046374204,
+            -1.3177747429038154e-82,
+        ],
+        [
+            -0.0012900632946632616,
+            0.008327535532983254,
+            0.01,
+            -0.017181161167541866,
+            -0.016774841763341847,
+            0.03828123039857194,
+        ],
+    ]
+    .concat();
+    let start = stepper.state(places, SVector::<f64, 12>::from_column_slice(&momentum))?;
+    for (steps, places, momenta) in known {
+        let state = stepper.advance(&start, steps)?;
+        for i in 0..2 {
+            let place = state.configuration()[i].fixed_view::<3, 1>(0, 3).into_owned();
+            assert!(apart(place, places[i]) < 2e-14, "{steps} steps: {place}");
+            let momentum = state.momentum().fixed_rows::<6>(6 * i).into_owned();
+            assert!(apart(momentum, momenta[i]) < 2e-13, "{steps} steps: {momentum}");
+        }
     }
     Ok(())
 }

@@ -66,6 +66,15 @@ pub struct Trolley {
 )]
 pub struct Crossing;
 
+/// A mass on a rod of length one.
+#[derive(Clebsch, Clone, Debug)]
+#[clebsch(
+    action     = |a: Translation<2>, x: Vector2| x + a,
+    lagrangian = |v| v.norm_squared() / 2,
+    constraint = |x| [x.norm_squared() == 1],
+)]
+pub struct Rod;
+
 fn principal() -> Vector3<f64> {
     Vector3::new(1.0, 1.4, 1.9)
 }
@@ -174,6 +183,10 @@ fn states() -> Vec<Scene> {
         scene(
             refused(sleigh.state_moving(r, Vector3::new(1.0, 0.5, 0.25))),
             &["the velocity violates the constraint by 2.500e-1", "project the momentum by `Stepper::project`"],
+        ),
+        scene(
+            refused(Rod.into_stepper(0.1).expect("a rod").state(Vector2::new(1.0, 1.0), Vector2::zeros())),
+            &["the configuration violates the constraint by 1.000e0", "start from one that obeys every equation"],
         ),
         scene(
             refused(crossing.state(Vector2::new(1.0, 1.0), Vector2::zeros())),

@@ -176,6 +176,8 @@ catalogue! {
     KineticEnergyOfMomentum = unlisted("kinetic energy", Cold).by(MechanicsAndSymmetry);
     /// The force in 𝔤*.
     Force = listed("force", Hot);
+    /// φ of a constraint φ = 0 on places; computed with its rows.
+    Places = listed("constraint", Hot);
     /// A and b of a constraint A ξ = b; computed with Σ⁻¹(μ − A) and A Σ⁻¹Aᵀ.
     Constraint = listed("constraint", Hot);
     /// ψ(q, F).

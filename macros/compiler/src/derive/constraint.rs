@@ -1,7 +1,8 @@
-//! Constraints a(t, q) ξ = b(t, q) on the velocity, by the discrete principle of Lagrange and d'Alembert.
+//! Constraints, by the discrete principle of Lagrange and d'Alembert: a(t, q) ξ = b(t, q) on the velocity, or φ(t, q) = 0.
 //!
-//! The rows A of a step are those at q, and ψ(q, F) = A ξ(F)/h − b is taken between both ends. A step solves r(F) = N +
-//! Aᵀλ with ψ(q, F) = 0. After the move, N⁺ = F⁺ℓd + A(q⁺)ᵀμ with A Σ⁻¹N⁺ = b at q⁺, a linear system for μ.
+//! The rows A of a step are those at q: a itself, or J(q, ∂φ). A step solves r(F) = N + Aᵀλ with ψ(q, F) = 0. For
+//! velocities ψ = A ξ(F)/h − b is taken between both ends. For places it is φ(t + h, Φ_F q)/h, and b is −∂φ/∂t. After
+//! the move, N⁺ = F⁺ℓd + A(q⁺)ᵀμ with A Σ⁻¹N⁺ = b at q⁺, a linear system for μ.
 //!
 //! The multipliers λ are no unknowns of the equation. With y = r(F) − N and S = A Σ⁻¹Aᵀ, the residual is
 //!
@@ -15,11 +16,11 @@ use clebsch_symbolic::{Expr, IntoList, Property, Role, Shape, identity};
 
 use super::energy::Energy;
 use super::exact::{self, inertia_inverse};
-use super::symbols::{logarithm, moved};
+use super::symbols::{logarithm, moved, moved_on};
 use super::{DiscreteLagrangian, SystemFormulas, force, structure};
-use crate::diagnostic::Diagnostics;
+use crate::diagnostic::{Diagnostics, bail};
 use crate::model::features::{self, Feature, Found};
-use crate::model::{Configuration, Constraint, Isotropy, LeafSpace, Mechanics};
+use crate::model::{Configuration, Constraint, Equation, Isotropy, LeafSpace, Mechanics, Restriction};
 
 /// The formulas of a constraint.
 pub struct ConstraintFormulas<'g> {
@@ -37,6 +38,8 @@ pub struct ConstraintFormulas<'g> {
     pub velocity: Expr<'g>,
     /// The momentum Σξ + A_g of a velocity.
     pub momentum: Expr<'g>,
+    /// φ(t, q), of a constraint on places.
+    pub places: Option<Expr<'g>>,
     /// The rows between both ends of a step are the mean of those at the ends, not those at the mean of the ends.
     pub is_mean_of_rows: bool,
 }
@@ -53,20 +56,31 @@ impl<'g> ConstraintFormulas<'g> {
     ) -> Result<Option<ConstraintFormulas<'g>>, Diagnostics> {
         let Some(constraint) = &model.constraint else { return Ok(None) };
         check(model, system, (energy, inertia))?;
-        let graph = model.graph;
+        let (rows, values, places) = match constraint.kind {
+            Restriction::Velocities { rows, values } => (rows, values, None),
+            Restriction::Places(places) => {
+                let later = (model.time, model.graph.integer(1));
+                (rows_of_places(system, places), -places.differential(&[later]), Some(places))
+            }
+        };
+        check_rows(constraint, rows)?;
         let inverse = inverse(inertia);
-        let by_inertia = product(constraint.rows, inverse);
+        let by_inertia = product(rows, inverse);
         let gyroscopic = system.symbols.slope(energy.gyroscopic);
-        let momenta = graph.below(&system.symbols.momenta);
-        let is_mean_of_rows = is_mean_of_rows(model, constraint);
+        let momenta = model.graph.below(&system.symbols.momenta);
+        let is_mean_of_rows = places.is_none() && is_mean_of_rows(model, [rows, values]);
         Ok(Some(ConstraintFormulas {
-            rows: constraint.rows,
-            values: constraint.values,
-            between: between(model, constraint, is_mean_of_rows),
+            rows,
+            values,
+            between: match places {
+                Some(places) => places.substitute(&moved_on(model)) / model.step_size,
+                None => between(model, (rows, values), is_mean_of_rows),
+            },
             by_inertia,
-            metric: product(by_inertia, constraint.rows.transpose()),
+            metric: product(by_inertia, rows.transpose()),
             velocity: inverse * (momenta - gyroscopic),
             momentum: system.symbols.slope(energy.kinetic) + gyroscopic,
+            places,
             is_mean_of_rows,
         }))
     }
@@ -101,6 +115,11 @@ impl<'g> ConstraintFormulas<'g> {
     }
 }
 
+/// J(q, ∂φ): the change of φ along a motion of q, a row for each entry.
+fn rows_of_places<'g>(system: &SystemFormulas<'g>, places: Expr<'g>) -> Expr<'g> {
+    system.symbols.slopes(places.differential(&system.leaves_by_generator())).expand()
+}
+
 /// A product, entry by entry: zeros of both factors are left out.
 fn product<'g>(left: Expr<'g>, right: Expr<'g>) -> Expr<'g> {
     let shape = Shape::new(left.shape().rows, right.shape().columns);
@@ -127,30 +146,55 @@ fn inverse(inertia: Expr<'_>) -> Expr<'_> {
 }
 
 /// ψ(t, q, F): the constraint on the velocity ξ(F)/h of a step, at the mean of both ends.
-fn between<'g>(model: &Mechanics<'g>, constraint: &Constraint<'g>, is_mean_of_rows: bool) -> Expr<'g> {
+fn between<'g>(model: &Mechanics<'g>, (rows, values): (Expr<'g>, Expr<'g>), is_mean_of_rows: bool) -> Expr<'g> {
     let (graph, h) = (model.graph, model.step_size);
     let velocity = graph.below(&force::velocities_of_step(model, h));
-    let at = |places: &[(Expr<'g>, Expr<'g>)]| {
-        constraint.rows.substitute(places) * velocity - constraint.values.substitute(places)
-    };
-    let at_time = |later: Expr<'g>| (model.time, model.time + later);
+    let at = |places: &[(Expr<'g>, Expr<'g>)]| rows.substitute(places) * velocity - values.substitute(places);
     if is_mean_of_rows {
-        let arrived: Vec<_> = moved(model).into_iter().chain([at_time(h)]).into_list();
-        return (at(&[]) + at(&arrived)) / 2;
+        return (at(&[]) + at(&moved_on(model))) / 2;
     }
     let mean = moved(model).into_iter().map(|(q, image)| (q, (q + image) / 2));
-    at(&mean.chain([at_time(h / 2)]).into_list())
+    at(&mean.chain([(model.time, model.time + h / 2)]).into_list())
 }
 
 /// Whether the rows are no polynomial of a configuration that lies on a group or a sphere: the mean of two such
 /// configurations does not.
-fn is_mean_of_rows<'g>(model: &Mechanics<'g>, constraint: &Constraint<'g>) -> bool {
-    let parts = [constraint.rows, constraint.values];
+fn is_mean_of_rows<'g>(model: &Mechanics<'g>, parts: [Expr<'g>; 2]) -> bool {
     let is_bent = |leaf: &Configuration<'g>| {
         let mut parts = parts.iter().filter(|part| part.depends_on(leaf.symbol));
         leaf.space != LeafSpace::Vectors && parts.any(|part| part.has_functions() || part.has_poles_in(&[leaf.symbol]))
     };
     model.configurations.iter().any(is_bent)
+}
+
+/// Every equation has a row, no row follows from others, and there are no more of them than components of the velocity.
+fn check_rows<'g>(constraint: &Constraint<'g>, all: Expr<'g>) -> Result<(), Diagnostics> {
+    let Shape { rows, columns } = all.shape();
+    let variable = if constraint.is_of_velocities() { "velocity" } else { "configuration" };
+    let (mut first, mut known) = (0, 0);
+    for Equation { written, count } in &constraint.equations {
+        let (place, text, last) = (written.place, &written.text, first + count);
+        let is_zero = |i: &usize| identity::vanishes(all.block(*i, 0, Shape::new(1, columns)));
+        if let Some(i) = (first..last).find(is_zero) {
+            let which = if *count > 1 { format!("component {} of ", i - first) } else { String::new() };
+            bail!(place, "{which}`{text}` does not depend on the {variable}";
+                help "leave it out, or write the {variable} that it fixes";
+                note "an equation that fixes nothing has no force")
+        }
+        if rows > columns {
+            let places = constraint.equations.first().map_or(place, |first| first.written.place);
+            bail!(places, "there are {rows} equations for a velocity of {columns} components";
+                help "leave out those that follow from others")
+        }
+        let rank = identity::rank(all.block(0, 0, Shape::new(last, columns)));
+        if rank < known + count {
+            bail!(place, "`{text}` follows from the other equations, or contradicts them";
+                help "leave it out";
+                note "the rows of the constraint have rank {rank}, and there are {last} of them: their forces are not determined")
+        }
+        (first, known) = (last, rank);
+    }
+    Ok(())
 }
 
 /// The features of the kinetic energy and of the action that do not go with a constraint.
@@ -169,7 +213,7 @@ fn check<'g>(
             let is_fixed = model.isotropy == Isotropy::Fixed && !system.is_free();
             is_fixed.then(|| Found::at(spans.action.place))
         }
-        Feature::OddVelocity => {
+        Feature::OddVelocity if model.constraint.as_ref().is_some_and(Constraint::is_of_velocities) => {
             let factor = model.factors.get(uneven(model)?)?;
             Some(Found::at(spans.kinetic.place).named(factor.group.name(model.graph)))
         }

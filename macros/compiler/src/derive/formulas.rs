@@ -213,6 +213,7 @@ pub(super) fn is_timed(model: &Mechanics<'_>, lagrangian: &DiscreteLagrangian<'_
     let forces = model.force.iter().flat_map(|force| force.of_group.iter().chain(&force.on_configuration).flatten());
     let energies = [lagrangian.kinetic, lagrangian.start, lagrangian.end];
     let terms = model.power.iter().flat_map(|power| power.terms.iter().map(|term| &term.value));
-    let constraint = model.constraint.iter().flat_map(|constraint| [&constraint.rows, &constraint.values]);
-    energies.iter().chain(forces).chain(terms).chain(constraint).any(|part| part.depends_on(model.time))
+    let mut constraint = model.constraint.iter().flat_map(|constraint| constraint.kind.parts());
+    energies.iter().chain(forces).chain(terms).any(|part| part.depends_on(model.time))
+        || constraint.any(|part| part.depends_on(model.time))
 }

@@ -80,6 +80,11 @@ functions! {
         fn orbit_defect(&self, q: &Q) -> T { Id::Membership }
         fn isotropy_defect(&self, q: &Q, mu: &Mu) -> T { Id::Isotropy }
         fn project_momentum(&self, q: &Q, mu: &Mu) -> Mu { Id::Isotropy }
+        /// Whether a configuration obeys the constraint.
+        fn check_place(&self, t: T, q: &Q) -> Result<(), Error> { Id::Places } = {
+            Locals
+            runtime::check_place(&Value0, &Matrix1, q)
+        }
         /// By how much the velocity of a momentum violates the constraint.
         fn constraint_defect(Receiver, c: &C, t: T, q: &Q, mu: &Mu) -> Result<runtime::Violation<T>, Error> { Id::Constraint } = {
             Locals

@@ -81,7 +81,7 @@ impl<'g> Emitter<'_, 'g> {
                 Body::new(kernel?, quote!(runtime::check_definite_at(&{ #inertia })))
             }
             "check_kinetic_energy" => return None,
-            "constraint_defect" | "constrained" => {
+            "check_place" | "constraint_defect" | "constrained" => {
                 let scope = self.scope(self.receiver(), Some(quote!(c)));
                 function.written(&scope, kernel, &|word| {
                     let number = word.strip_prefix("Matrix")?.parse().ok()?;

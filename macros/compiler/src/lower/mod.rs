@@ -194,7 +194,7 @@ impl<'g> Maker<'_, 'g> {
         self.inertia(formulas);
         self.rows([Id::MomentumMatrix, Id::MomentumComponents]);
         self.velocity();
-        self.known_rows([Id::Gyroscopic, Id::ConservedMomenta, Id::Constraint, Id::MomentumOfVelocity]);
+        self.known_rows([Id::Gyroscopic, Id::ConservedMomenta, Id::Places, Id::Constraint, Id::MomentumOfVelocity]);
         gathered
     }
 

@@ -73,6 +73,7 @@ const OF_SYSTEM: Names<Id> = &[
     ("velocity", Id::Lagrangian),
     ("gyroscopic", Id::Gyroscopic),
     ("conserved", Id::ConservedMomenta),
+    ("places", Id::Places),
     ("constraint", Id::Constraint),
     ("momentum_of_velocity", Id::MomentumOfVelocity),
     ("stagger", Id::SynchronizedMomentum),

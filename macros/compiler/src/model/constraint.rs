@@ -1,25 +1,25 @@
-//! Constraints: the closure `constraint`, equations that are affine in the velocity.
+//! Constraints: the closure `constraint`. Its equations are affine in the velocity, or of the configuration alone.
 
-use clebsch_symbolic::{Elements, Expr, IntoList, Shape, identity};
+use clebsch_symbolic::{Elements, Expr, IntoElements, IntoList, identity};
 use syn::{BinOp, Expr as Syntax, ExprArray, ExprBinary};
 
-use super::closures::written;
+use super::closures::optional;
 use super::elaborate::Elaborator;
 use super::slots::{CONSTRAINT, Slot};
 use super::typed::{ActedSystem, Velocity};
 use super::value::Value;
-use super::{Constraint, Dials};
-use crate::diagnostic::{Diagnostic, Diagnostics, error, refuse};
-use crate::parse::{Argument, Closure, joined, shortened, spell, tail};
+use super::{Constraint, Dials, Equation, Restriction, Written};
+use crate::diagnostic::{Diagnostics, Location, error, refuse};
+use crate::parse::{Closure, shortened, spell, tail};
 
 /// One equation of the list, as left side less right side.
-struct Equation<'g> {
-    value: Expr<'g>,
-    text: String,
+struct Sides<'g> {
+    difference: Expr<'g>,
+    written: Written,
 }
 
 impl<'g> ActedSystem<'_, '_, 'g> {
-    /// The rows of a constraint; `None` with an error, which was reported.
+    /// A constraint: on the velocity if that is among the arguments, else on the configuration. `None` with an error, which was reported.
     pub fn constraint(&mut self, closure: &Closure, dials: &Dials) -> Option<Constraint<'g>> {
         let (graph, diagnostics) = (self.context.graph, self.context.diagnostics);
         if self.context.power.is_some() {
@@ -30,34 +30,28 @@ impl<'g> ActedSystem<'_, '_, 'g> {
         if matched.has_error() {
             return None;
         }
-        let Some(argument) = matched.argument(Slot::Velocity) else {
-            let help = format!("take the velocity as the last argument: write `|{}| …`", with_velocity(closure));
-            return diagnostics.refuse(Diagnostic::later(
-                closure.head,
-                "a constraint on the configuration alone".to_string(),
-                Some(&help),
-            ));
-        };
         let velocity = Velocity { graph, factors: self.factors, diagnostics };
-        let (value, velocities) = velocity.of(&argument.pattern, self.element)?;
-        let mut scope = self.arguments.scope(&matched, &[(Slot::Velocity, Some(value))]);
-        scope.set_velocities(&velocities, self.factors);
+        let pattern = matched.argument(Slot::Velocity).map(|argument| &argument.pattern);
+        let (value, velocities) = optional(pattern, |pattern| velocity.of(pattern, self.element))?.unzip();
+        let mut scope = self.arguments.scope(&matched, &[(Slot::Velocity, value)]);
+        if let Some(velocities) = &velocities {
+            scope.set_velocities(velocities, self.factors);
+        }
         let list = list(closure, diagnostics)?;
         let mut elaborator = Elaborator::new(self.context, "constraint", scope);
-        let equations = elaborator.in_block(&closure.body, |elaborator| {
+        let all = elaborator.in_block(&closure.body, |elaborator| {
             let equations = list.elems.iter().map(|syntax| equation(elaborator, syntax));
-            equations.into_list().into_iter().collect::<Option<Vec<Equation<'g>>>>()
+            equations.into_list().into_iter().collect::<Option<Vec<Sides<'g>>>>()
         })?;
-        let constraint = rows(closure, &equations, &velocities, diagnostics)?;
-        check_rows(list, &equations, &constraint, diagnostics)?;
+        let kind = match velocities {
+            Some(velocities) => of_velocities(closure, &all, &velocities, diagnostics)?,
+            None => Restriction::Places(graph.below(&all.each(|sides| sides.difference))),
+        };
         let discretization = dials.discretization.as_ref().map(|chosen| chosen.value);
-        Some(Constraint { discretization, ..constraint })
+        let equations =
+            all.into_each(|Sides { difference, written }| Equation { count: difference.shape().rows, written });
+        Some(Constraint { kind, equations, discretization })
     }
-}
-
-/// The arguments of a closure, and a velocity behind them.
-fn with_velocity(closure: &Closure) -> String {
-    joined(closure.arguments.iter().map(Argument::spell).chain(["xi".to_string()]))
 }
 
 /// The list that the body ends with.
@@ -105,7 +99,7 @@ fn as_equation(link: &ExprBinary) -> String {
 }
 
 /// `a == b` as a − b, a scalar or a vector.
-fn equation<'g>(elaborator: &mut Elaborator<'_, '_, 'g>, syntax: &Syntax) -> Option<Equation<'g>> {
+fn equation<'g>(elaborator: &mut Elaborator<'_, '_, 'g>, syntax: &Syntax) -> Option<Sides<'g>> {
     let diagnostics = elaborator.context.diagnostics;
     let text = shortened(syntax);
     match syntax {
@@ -124,7 +118,8 @@ fn equation<'g>(elaborator: &mut Elaborator<'_, '_, 'g>, syntax: &Syntax) -> Opt
     let shape = |value: &Value<'g>| value.matrix().map(Expr::shape);
     match (left.matrix(), right.matrix()) {
         (Some(left), Some(right)) if left.shape() == right.shape() && left.shape().columns == 1 => {
-            Some(Equation { value: left - right, text })
+            let written = Written { place: Location::from(syntax), text };
+            Some(Sides { difference: left - right, written })
         }
         _ => {
             let (a, b) = (left.describe(), right.describe());
@@ -141,68 +136,27 @@ fn equation<'g>(elaborator: &mut Elaborator<'_, '_, 'g>, syntax: &Syntax) -> Opt
 }
 
 /// The rows a and the values b with a ξ = b.
-fn rows<'g>(
+fn of_velocities<'g>(
     closure: &Closure,
-    equations: &[Equation<'g>],
+    equations: &[Sides<'g>],
     velocities: &[Expr<'g>],
     diagnostics: &Diagnostics,
-) -> Option<Constraint<'g>> {
+) -> Option<Restriction<'g>> {
     let graph = velocities.first()?.graph();
     let at_rest: Vec<_> = velocities.each(|velocity| (*velocity, graph.zero(velocity.shape())));
     let (mut rows, mut values) = (Vec::new(), Vec::new());
-    for Equation { value, text } in equations {
-        let slopes = velocities.each(|velocity| value.jacobian(*velocity));
+    for Sides { difference, written } in equations {
+        let slopes = velocities.each(|velocity| difference.jacobian(*velocity));
         let slopes = graph.beside(&slopes).substitute(&at_rest);
-        let value_at_rest = value.substitute(&at_rest);
-        if !identity::equal(&[*value], &[slopes * graph.below(velocities) + value_at_rest]) {
+        let value_at_rest = difference.substitute(&at_rest);
+        if !identity::equal(&[*difference], &[slopes * graph.below(velocities) + value_at_rest]) {
             let name = last_name(closure);
-            refuse!(diagnostics, tail(&closure.body), "`{text}` is not affine in the velocity";
+            refuse!(diagnostics, written.place, "`{}` is not affine in the velocity", written.text;
                 help "write sums of components of `{name}`, each times a function of the configuration";
                 note "by the principle of d'Alembert a constraint acts along its rows, and only equations that are affine in the velocity have rows");
         }
         rows.push(slopes.expand());
         values.push((-value_at_rest).expand());
     }
-    let texts = equations.iter().map(|equation| equation.text.clone()).into_list();
-    let (rows, values) = (graph.below(&rows), graph.below(&values));
-    Some(Constraint { rows, values, discretization: None, texts, written: written(closure) })
-}
-
-/// Every equation fixes a velocity, and there are no more of them than velocities.
-fn check_rows<'g>(
-    list: &ExprArray,
-    equations: &[Equation<'g>],
-    constraint: &Constraint<'g>,
-    diagnostics: &Diagnostics,
-) -> Option<()> {
-    let Shape { rows, columns } = constraint.rows.shape();
-    let mut first = 0;
-    let mut known = 0;
-    for (Equation { value, text }, syntax) in equations.iter().zip(&list.elems) {
-        let count = value.shape().rows;
-        let last = first + count;
-        let is_zero = |i: usize| identity::vanishes(constraint.rows.block(i, 0, Shape::new(1, columns)));
-        if let Some(i) = (first..last).find(|i| is_zero(*i)) {
-            let which = if count > 1 { format!("component {} of ", i - first) } else { String::new() };
-            refuse!(diagnostics, syntax, "{which}`{text}` does not depend on the velocity";
-                help "leave it out, or write the velocity that it fixes";
-                note "an equation for the configuration alone is no equation for its velocity")
-        }
-        if rows > columns {
-            first = last;
-            continue;
-        }
-        let rank = identity::rank(constraint.rows.block(0, 0, Shape::new(last, columns)));
-        if rank < known + count {
-            refuse!(diagnostics, syntax, "`{text}` follows from the other equations, or contradicts them";
-                help "leave it out";
-                note "the rows of the constraint have rank {rank}, and there are {last} of them: their forces are not determined")
-        }
-        (first, known) = (last, rank);
-    }
-    if rows > columns {
-        refuse!(diagnostics, list, "there are {rows} equations for a velocity of {columns} components";
-            help "leave out those that follow from others")
-    }
-    Some(())
+    Some(Restriction::Velocities { rows: graph.below(&rows), values: graph.below(&values) })
 }

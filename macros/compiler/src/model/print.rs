@@ -6,7 +6,7 @@ use clebsch_symbolic::Group;
 
 use super::scalar::spell_scalar;
 use super::{
-    Constraint, Isotropy, Kinetic, LeafSpace, Mechanics, Model, Motion, OfferedSymmetry, Order, Parameter, Side,
+    Isotropy, Kinetic, LeafSpace, Mechanics, Model, Motion, OfferedSymmetry, Order, Parameter, Restriction, Side,
     Signature, Steered, System,
 };
 use crate::parse::joined;
@@ -51,8 +51,10 @@ impl fmt::Display for Mechanics<'_> {
             force.of_group.iter().flatten().try_for_each(|part| writeln!(f, "  force      {part}"))?;
             force.on_configuration.iter().flatten().try_for_each(|part| writeln!(f, "  force on   {part}"))?;
         }
-        if let Some(Constraint { rows, values, .. }) = &self.constraint {
-            writeln!(f, "  constraint {rows} * xi = {values}")?;
+        match self.constraint.as_ref().map(|constraint| constraint.kind) {
+            Some(Restriction::Velocities { rows, values }) => writeln!(f, "  constraint {rows} * xi = {values}")?,
+            Some(Restriction::Places(places)) => writeln!(f, "  constraint {places} = 0")?,
+            None => {}
         }
         self.system.print_inputs(f)?;
         if self.power.as_ref().is_some_and(|power| power.has_own_inputs) {

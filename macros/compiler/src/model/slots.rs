@@ -67,8 +67,11 @@ pub(crate) fn arguments_of(key: &str) -> Option<String> {
         Slot::Input => "a new name with its type (input)",
         Slot::Chosen => "the input",
     };
-    let also =
-        if key == "cost" { "; with `controls` and `dynamics` the input in place of the group element" } else { "" };
+    let also = match key {
+        "cost" => "; with `controls` and `dynamics` the input in place of the group element",
+        "constraint" => "; without a velocity it is on the configuration",
+        _ => "",
+    };
     Some(format!("{}{also}", joined(slots.iter().map(name))))
 }
 

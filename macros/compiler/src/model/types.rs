@@ -344,18 +344,54 @@ pub struct Force<'g> {
     pub written: Vec<Written>,
 }
 
-/// Equations a(t, q) ξ = b(t, q) that the velocity obeys.
+/// Equations that the velocity or the configuration obeys.
 pub struct Constraint<'g> {
-    /// a, one row for each equation of scalars, in the components of all factors.
-    pub rows: Expr<'g>,
-    /// b.
-    pub values: Expr<'g>,
+    /// The equations.
+    pub kind: Restriction<'g>,
+    /// Each of them as written.
+    pub equations: Vec<Equation>,
     /// How the velocity of a step is made from F and h, if the declaration says so.
     pub discretization: Option<Discretization>,
-    /// The equations as written.
-    pub texts: Vec<String>,
-    /// The closure's body as written.
+}
+
+/// Equations of scalars, one below the other.
+#[derive(Copy, Clone)]
+pub enum Restriction<'g> {
+    /// a(t, q) ξ = b(t, q): nonholonomic.
+    Velocities {
+        /// a, in the components of all factors.
+        rows: Expr<'g>,
+        /// b.
+        values: Expr<'g>,
+    },
+    /// φ(t, q) = 0: holonomic.
+    Places(Expr<'g>),
+}
+
+impl<'g> Restriction<'g> {
+    /// The functions of time and configuration in it.
+    pub fn parts(self) -> Vec<Expr<'g>> {
+        match self {
+            Restriction::Velocities { rows, values } => vec![rows, values],
+            Restriction::Places(places) => vec![places],
+        }
+    }
+}
+
+impl Constraint<'_> {
+    /// Whether it is on velocities.
+    pub fn is_of_velocities(&self) -> bool {
+        matches!(self.kind, Restriction::Velocities { .. })
+    }
+}
+
+/// An equation of a constraint.
+#[derive(Clone)]
+pub struct Equation {
+    /// As it was written.
     pub written: Written,
+    /// How many equations of scalars it is.
+    pub count: usize,
 }
 
 /// The choice of inputs.

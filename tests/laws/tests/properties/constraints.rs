@@ -2,10 +2,10 @@
 
 use crate::arbitrary::{cases, definite, matrix, vector};
 use crate::bodies::H;
-use clebsch::__private::{Parts, Substep, Violation, constrained, violation};
+use clebsch::__private::{Parts, Substep, Violation, check_place, constrained, violation};
 use clebsch::{Clebsch, Constrained, Declared, Error, Method};
 use clebsch_tests::oracle::near::assert_near;
-use nalgebra::{Matrix2x3, Matrix3, Vector3};
+use nalgebra::{Matrix1x3, Matrix2x3, Matrix3, Vector1, Vector3};
 use proptest::prelude::*;
 
 const NEAR: f64 = 1e-12;
@@ -23,6 +23,17 @@ pub struct Guided {
     pub mass: Matrix3<f64>,
     pub pull: Vector3<f64>,
     pub rate: f64,
+}
+
+/// A bead on a sphere.
+#[derive(Clebsch, Clone, Debug)]
+#[clebsch(
+    action     = |a: Translation<3>, x: Vector3| x + a,
+    lagrangian = |v| v.norm_squared() / 2,
+    constraint = |t, x| [x.norm_squared() == 1 + self.growth * t],
+)]
+pub struct Bead {
+    pub growth: f64,
 }
 
 proptest! {
@@ -67,6 +78,23 @@ proptest! {
         prop_assert!(system.constraint_defect(&constants, t, &x, &mu)?.largest < NEAR);
         let defect = <Declared as Method<Guided>>::constraint_defect(&system, &constants, 0.0, &x, &mu)?;
         prop_assert!((defect.largest - (0.7 * t).abs()).abs() < NEAR);
+    }
+
+    /// The place of a state is on the constraint at its time, to the rounding of its size.
+    #[test]
+    fn places_obey_constraints(x in vector::<3>(1.0), t in 0.0_f64..1.0, off in 1e-6_f64..1.0) {
+        prop_assume!(x.norm() > 0.1);
+        let bead = Bead { growth: 0.5 };
+        let place = x.normalize() * (1.0 + 0.5 * t).sqrt();
+        prop_assert_eq!(bead.check_place(t, &place), Ok(()));
+        let far = bead.check_place(t, &(place * (1.0 + off)));
+        let beyond = (1.0 + 0.5 * t) * (off * (2.0 + off));
+        let is_told = matches!(far, Err(Error::OffConstraint { violation, .. }) if (violation - beyond).abs() < NEAR);
+        prop_assert!(is_told, "{:?}", far);
+        // rows of one: the tolerance is √ε of 1 + |q|
+        let rows = Matrix1x3::new(1.0, 0.0, 0.0);
+        prop_assert_eq!(check_place(&Vector1::new(1e-9), &rows, &place), Ok(()));
+        prop_assert!(check_place(&Vector1::new(f64::NAN), &rows, &place).is_err());
     }
 
     /// A step: kick, solve, the force of the constraint along its rows, move, kick, projection. The velocity of the step obeys the

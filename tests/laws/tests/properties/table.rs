@@ -36,6 +36,7 @@ pub const PROPERTIES: &[(&str, &[Property])] = &[
     ("tests/laws/tests/properties/constraints.rs", &[
         ("momenta_come_to_constraints",      &["constrained", "violation", "Violation::none"]),
         ("velocities_obey_constraints",      &["Stepper::state_moving", "Stepper::project_at", "Constrained::momentum_of_velocity", "Clebsch::constrained", "Clebsch::constraint_defect", "Method::constrained", "Method::constraint_defect"]),
+        ("places_obey_constraints",          &["check_place", "Clebsch::check_place"]),
         ("constraints_push_along_their_rows", &["Substep::reaction", "Substep::projection"]),
     ]),
     ("tests/laws/tests/properties/derivatives.rs", &[

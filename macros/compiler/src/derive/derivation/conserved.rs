@@ -36,6 +36,15 @@ pub(super) fn constraint(formulas: &MechanicsFormulas<'_>) -> String {
     let (Some(constraint), Some(known)) = (&formulas.model.constraint, &formulas.constraint) else {
         return String::new();
     };
+    let texts = constraint.equations.each(|equation| equation.written.text.clone()).join(", ");
+    let multipliers = "The multipliers λ are no unknowns of the momentum equation: they are found from its residual.";
+    if !constraint.is_of_velocities() {
+        return format!(
+            "Constraint on places: {texts}. Its force Aᵀλ acts along its rows at both ends of the step, and q⁺ obeys it. \
+             The velocity of N⁺ is tangent to it: A·Σ⁻¹·N⁺ = b at the end of the step.\n\
+             {multipliers} The step is time-symmetric, symplectic on the momenta that are tangent to the constraint, and obeys it to rounding.\n"
+        );
+    }
     let q = formulas.model.configurations.each(|leaf| leaf.name.clone()).join(", ");
     let mean = if known.is_mean_of_rows {
         format!("the rows are the mean of those at {q} and {q}⁺")
@@ -45,11 +54,10 @@ pub(super) fn constraint(formulas: &MechanicsFormulas<'_>) -> String {
     let is_steady = !formulas.is_moving(known.rows) && !formulas.is_moving(known.values);
     let mean = if is_steady { String::new() } else { format!(", where {mean}") };
     format!(
-        "Constraint: {}. Its force Aᵀλ acts along its rows at both ends of the step (Lagrange–d'Alembert). The velocity ξ(F)/h of the step obeys it{mean}. \
+        "Constraint: {texts}. Its force Aᵀλ acts along its rows at both ends of the step (Lagrange–d'Alembert). The velocity ξ(F)/h of the step obeys it{mean}. \
          So does that of N⁺: A·Σ⁻¹·N⁺ = b at the end of the step.\n\
-         The multipliers λ are no unknowns of the momentum equation: they are found from its residual. The step is time-symmetric, and obeys the constraint to rounding. \
-         It is not symplectic. Momenta are conserved along motions that the constraint allows at every configuration.\n",
-        constraint.texts.join(", "),
+         {multipliers} The step is time-symmetric, and obeys the constraint to rounding. \
+         It is not symplectic. Momenta are conserved along motions that the constraint allows at every configuration.\n"
     )
 }
 

@@ -39,13 +39,16 @@ impl<'g> MechanicsFormulas<'g> {
     /// The constraint, and that of a step; the momentum of a velocity.
     pub(super) fn rows_of_constraint(&self, Names { q, f, xi, .. }: &Names) -> Vec<Formula<'g>> {
         let Some(constraint) = &self.constraint else { return Vec::new() };
-        let ConstraintFormulas { rows, values, velocity, metric, between, momentum, .. } = *constraint;
+        let ConstraintFormulas { rows, values, velocity, metric, between, momentum, places, .. } = *constraint;
         let row = Formula::new(Id::Constraint, format!("(A, b)({q}), A {xi} = b"), [rows, values]);
-        vec![
+        let places = places
+            .map(|places| Formula::new(Id::Places, format!("0 = φ({q})"), [places]).computed_as(vec![places, rows]));
+        let known = [
             row.computed_as(vec![rows, values, velocity, metric]),
             Formula::new(Id::DiscreteConstraint, format!("ψ({q}, {f})"), [between]),
             Formula::new(Id::MomentumOfVelocity, format!("Σ{xi} + A"), [momentum]),
-        ]
+        ];
+        places.into_iter().chain(known).into_list()
     }
 
     /// ½ (μ − A)·Σ⁻¹(μ − A), or μ·ξ − ℓ(ξ) where ℓ is not quadratic, and a potential energy added to it.
