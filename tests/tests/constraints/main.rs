@@ -8,3 +8,4 @@ mod order;
 mod places;
 mod reference;
 mod refused;
+mod variants;

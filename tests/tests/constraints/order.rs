@@ -11,7 +11,7 @@ use clebsch_tests::fixtures::{
 use nalgebra::{Matrix3, Matrix4, SVector, Vector1, Vector2, Vector3, Vector5};
 
 /// The classical method of order 4, with so many steps that its error is below those that are measured.
-fn integrated<const N: usize>(
+pub fn integrated<const N: usize>(
     slope: impl Fn(&SVector<f64, N>) -> SVector<f64, N>,
     start: SVector<f64, N>,
     time: f64,
