@@ -13,7 +13,7 @@ use crate::diagnostic::{Diagnostic, Diagnostics, Location, error};
 use crate::parse::{ChartChoice, Closure, CodeForm, Declaration, Discretization, Kinetic, Located, Order, Potential};
 
 /// The work of one expansion, for each of its methods: about a second where nothing is optimised, as in a crate of a user. A unit is up to a
-/// quarter of a microsecond there. Fixtures of the tests take up to a seventh of the budget, and the largest scenes two thirds.
+/// quarter of a microsecond there. Fixtures of the tests take up to a quarter of the budget, and the largest scenes two thirds.
 pub const WORK: u64 = 3_300_000;
 
 /// The stages behind the first one.
