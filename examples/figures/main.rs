@@ -8,6 +8,7 @@
 
 mod body;
 mod pendulum;
+mod sleigh;
 mod sphere;
 mod top;
 mod turn;
@@ -36,6 +37,7 @@ fn draw_all(pictures: &Pictures) -> Result<Claims, Failure> {
     top::exact_drift(pictures, &mut claims)?;
     top::conserved(pictures, &mut claims)?;
     turn::optimal_control(pictures, &mut claims)?;
+    sleigh::constraints(pictures, &mut claims)?;
     Ok(claims)
 }
 
