@@ -69,6 +69,8 @@ fn list<'s>(closure: &'s Closure, diagnostics: &Diagnostics) -> Option<&'s ExprA
         Syntax::Binary(link) if matches!(link.op, BinOp::And(_)) => {
             refuse!(diagnostics, body, "a constraint is a list of equations"; help "write `[{}]`", conjuncts(body))
         }
+        Syntax::Assign(link) => refuse!(diagnostics, body, "a constraint is a list of equations";
+            help "write `[{} == {}]`", spell(&link.left), spell(&link.right)),
         _ => refuse!(diagnostics, body, "a constraint is a list of equations";
             help "end it with a list, as in `[{}.z == 0]`", last_name(closure)),
     }
@@ -112,6 +114,8 @@ fn equation<'g>(elaborator: &mut Elaborator<'_, '_, 'g>, syntax: &Syntax) -> Opt
         Syntax::Binary(link) if matches!(link.op, BinOp::And(_)) => {
             refuse!(diagnostics, &link.op, "`{text}` is no equation"; help "separate equations by commas: write `{}`", conjuncts(syntax))
         }
+        Syntax::Assign(link) => refuse!(diagnostics, &link.eq_token, "`{text}` is no equation";
+            help "write `{} == {}`", spell(&link.left), spell(&link.right)),
         other => refuse!(diagnostics, other, "`{text}` is no equation"; help "write `{} == 0`", spell(other)),
     }
     let (left, right) = elaborator.equation(syntax)?;

@@ -50,7 +50,7 @@ pub(super) fn parse(stream: ParseStream) -> Result<ExprClosure, Diagnostic> {
         }
         if error.to_string().contains("cannot be chained") {
             return error!(error.span(), "comparisons cannot be chained";
-                help "write two of them, `[a <= x, x <= b]`");
+                help "write two of them, as in `[a <= x, x <= b]` or `[a == b, b == c]`");
         }
         Diagnostic::from(error)
     })
