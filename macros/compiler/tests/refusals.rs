@@ -1,5 +1,6 @@
 //! A declaration that is too large is refused after bounded work, and a change of dials that the refusal offers is
-//! accepted. Work is counted: a budget takes about a second in a crate of a user, where nothing is optimised.
+//! accepted. Work is counted: a budget takes about a second in a crate of a user, where nothing is optimised. Searches for
+//! fewer operations have an allowance of their own, which bounds them without a count.
 
 use clebsch_compiler::diagnostic::Diagnostics;
 use clebsch_compiler::{Graph, WORK, compile, emit};

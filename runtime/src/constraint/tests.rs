@@ -16,7 +16,7 @@ fn ranks_do_not_depend_on_units() {
 
 #[test]
 fn momenta_come_to_the_constraint() {
-    // masses 1, 2, 4; x = 3 and y − z = 1, by hand: μ = (3, 2/3 (1 + 2), …)
+    // masses 1, 2 and 4, with v_x = 3 and v_y − v_z = 1
     let a = Matrix2x3::new(1.0, 0.0, 0.0, 0.0, 1.0, -1.0);
     let b = Vector2::new(3.0, 1.0);
     let metric = Matrix2::new(1.0, 0.0, 0.0, 0.75);

@@ -79,37 +79,6 @@ fn constraints_and_energies_stay_for_many_steps() -> Result<(), Error> {
     Ok(())
 }
 
-mod compensated {
-    use clebsch::Clebsch;
-    use nalgebra::Matrix3;
-
-    /// Suslov's body with compensated sums.
-    #[derive(Clebsch, Clone, Debug)]
-    #[clebsch(
-        action         = |F: SO<3>, R: SO<3>| R * F,
-        lagrangian     = |omega| omega.dot(&(self.inertia * omega)) / 2,
-        discretization = moser_veselov,
-        constraint     = |omega| [omega.z == 0],
-        summation      = compensated,
-    )]
-    pub struct Suslov {
-        #[clebsch(symmetric)]
-        pub inertia: Matrix3<f64>,
-    }
-}
-
-#[test]
-fn compensated_sums_are_the_same_steps() -> Result<(), Error> {
-    let inertia = suslov().inertia;
-    let (plain, compensated) = (suslov().into_stepper(0.1)?, compensated::Suslov { inertia }.into_stepper(0.1)?);
-    let omega = Vector3::new(0.9, -0.7, 0.0);
-    let one = plain.advance(&plain.state_moving(Matrix3::identity(), omega)?, 100)?;
-    let other = compensated.advance(&compensated.state_moving(Matrix3::identity(), omega)?, 100)?;
-    assert!((one.momentum() - other.momentum()).norm() < 1e-13);
-    assert!((one.configuration() - other.configuration()).norm() < 1e-13);
-    Ok(())
-}
-
 /// J₁₃ω₁ + J₂₃ω₂ → 0: Suslov's body ends in a steady turn.
 #[test]
 fn suslovs_body_ends_in_a_steady_turn() -> Result<(), Error> {

@@ -57,22 +57,33 @@ fn the_sleigh_is_of_second_order() -> Result<(), Error> {
     Ok(())
 }
 
-#[test]
-fn suslovs_body_is_of_second_order() -> Result<(), Error> {
-    let inertia = Matrix3::new(1.0, 0.1, 0.3, 0.1, 1.4, -0.2, 0.3, -0.2, 0.9);
-    // J ω′ = J ω × ω + λ e₃ with ω₃ = 0
-    let slope = |y: &SVector<f64, 5>| {
+/// The change of (ω₁, ω₂) of Suslov's body and of the third row r of R.
+///
+/// ```text
+/// J ω′ = J ω × ω + λ e₃ with ω₃ = 0,    r′ = r × ω
+/// ```
+fn suslov(inertia: Matrix3<f64>) -> impl Fn(&SVector<f64, 5>) -> SVector<f64, 5> {
+    move |y| {
         let omega = Vector3::new(y[0], y[1], 0.0);
         let torque = (inertia * omega).cross(&omega);
         let plane = inertia.fixed_view::<2, 2>(0, 0).try_inverse().unwrap();
         let change = plane * Vector2::new(torque.x, torque.y);
-        // the third row of R moves by r′ = r × ω
-        let (r, r3) = (Vector2::new(y[2], y[3]), y[4]);
-        let row = Vector3::new(r.x, r.y, r3).cross(&omega);
+        let row = Vector3::new(y[2], y[3], y[4]).cross(&omega);
         Vector5::new(change.x, change.y, row.x, row.y, row.z)
-    };
+    }
+}
+
+/// The momentum of Suslov's body after some time, from (ω₁, ω₂).
+pub fn momentum_of_suslov(inertia: Matrix3<f64>, omega: Vector2<f64>, time: f64) -> Vector3<f64> {
+    let end = integrated(suslov(inertia), Vector5::new(omega.x, omega.y, 0.0, 0.0, 1.0), time);
+    inertia * Vector3::new(end[0], end[1], 0.0)
+}
+
+#[test]
+fn suslovs_body_is_of_second_order() -> Result<(), Error> {
+    let inertia = Matrix3::new(1.0, 0.1, 0.3, 0.1, 1.4, -0.2, 0.3, -0.2, 0.9);
     let omega = Vector2::new(0.9, -0.7);
-    let expected = integrated(slope, Vector5::new(omega.x, omega.y, 0.0, 0.0, 1.0), 2.0);
+    let expected = integrated(suslov(inertia), Vector5::new(omega.x, omega.y, 0.0, 0.0, 1.0), 2.0);
     let measured = order(|steps| {
         let stepper = Suslov { inertia }.into_stepper(2.0 / steps as f64)?;
         let start = stepper.state_moving(Matrix3::identity(), Vector3::new(omega.x, omega.y, 0.0))?;
@@ -116,21 +127,6 @@ fn the_ball_goes_round_an_exact_circle() -> Result<(), Error> {
     assert!((end.momentum()[4] - ball.inertia * spin).abs() < 1e-15);
     assert!((stepper.conserved(&end)[0] - ball.inertia * spin).abs() < 1e-15);
     assert!(end.configuration().all_finite());
-    Ok(())
-}
-
-/// A composition of five steps, each with its projection, against itself with many steps.
-#[test]
-fn a_composition_is_of_fourth_order() -> Result<(), Error> {
-    let inertia = Matrix3::new(1.0, 0.1, 0.3, 0.1, 1.4, -0.2, 0.3, -0.2, 0.9);
-    let at = |steps: usize| -> Result<Vector3<f64>, Error> {
-        let stepper = composed::Suslov { inertia }.into_stepper(2.0 / steps as f64)?;
-        let start = stepper.state_moving(Matrix3::identity(), Vector3::new(0.9, -0.7, 0.0))?;
-        Ok(stepper.advance(&start, steps)?.momentum())
-    };
-    let exact = at(320)?;
-    let measured = ((at(10)? - exact).norm() / (at(20)? - exact).norm()).log2();
-    assert!((measured - 4.0).abs() < 0.2, "order {measured}");
     Ok(())
 }
 
@@ -230,23 +226,4 @@ fn the_rattleback_reverses() -> Result<(), Error> {
         assert!(found > 4.9 && (found - expected).abs() < 1e-2, "{spin}: {found} and not {expected}");
     }
     Ok(())
-}
-
-mod composed {
-    use clebsch::Clebsch;
-    use nalgebra::Matrix3;
-
-    /// Suslov's body by steps of order 4.
-    #[derive(Clebsch, Clone, Debug)]
-    #[clebsch(
-        action         = |F: SO<3>, R: SO<3>| R * F,
-        lagrangian     = |omega| omega.dot(&(self.inertia * omega)) / 2,
-        discretization = moser_veselov,
-        constraint     = |omega| [omega.z == 0],
-        order          = 4,
-    )]
-    pub struct Suslov {
-        #[clebsch(symmetric)]
-        pub inertia: Matrix3<f64>,
-    }
 }
