@@ -7,7 +7,7 @@ pub mod keys;
 
 pub use crate::__formulas_of_sites as formulas_of_sites;
 pub use crate::collocation::{GAUSS_16, SWEEPS, collocate};
-pub use crate::constraint::{Violation, check_place, constrained, violation};
+pub use crate::constraint::{Violation, check_place, constrained, multipliers, reactions, violation};
 pub use crate::definite::{check_definite, check_definite_at, check_definite_uniform};
 pub use crate::element::{
     below_right_angle, from_increment, inverse, per_one_plus_cosine, quaternion, quaternion_from_increment,
@@ -56,7 +56,8 @@ pub use crate::sums::{Compensated, Plain, accumulate};
 pub use crate::sylvester::Sylvester;
 pub use crate::{
     Arrival, BoundsExpansion, Carried, Clebsch, Clock, Conserved, Conserves, Constrained, Controlled, Declared, Edge,
-    EndpointExpansion, Ends, Error, Expansion, Method, Momenta, Scalar, Sensitive, Space, Time, Variational, group,
+    EndpointExpansion, Ends, Error, Expansion, Method, Momenta, Reacting, Scalar, Sensitive, Space, Time, Variational,
+    group,
 };
 pub use core;
 pub use core::option::Option::{self, None, Some};

@@ -1,8 +1,9 @@
 //! Constraints A ξ = b on the velocity: violations, the momenta that obey them, and states from velocities.
 
 use crate::linear::entry;
+use crate::parts::{Mu, Q, T};
 use crate::space::larger;
-use crate::{Clebsch, Error, Scalar, Space};
+use crate::{Clebsch, Declared, Error, Method, Scalar, Space};
 use nalgebra::{SMatrix, SVector};
 
 /// A system whose velocities obey a constraint A ξ = b.
@@ -29,6 +30,9 @@ use nalgebra::{SMatrix, SVector};
 /// ```
 #[diagnostic::on_unimplemented(message = "`{Self}` has no constraint")]
 pub trait Constrained: Clebsch {
+    /// One number for each scalar equation of the constraint, in the order of the declaration: a vector.
+    type Reactions: Space<Self::Scalar>;
+
     /// The momentum of a velocity: ∂ℓ/∂ξ at (t, q, ξ), in the components of all factors.
     fn momentum_of_velocity(
         &self,
@@ -36,6 +40,56 @@ pub trait Constrained: Clebsch {
         q: &Self::Configuration,
         velocity: &Self::Momentum,
     ) -> Self::Momentum;
+}
+
+/// A system whose constraint pushes in the steps of the method M.
+///
+/// Implemented by `#[derive(Clebsch)]` where the declaration has the key `constraint`, for the declared dials and for
+/// each method. See [`Stepper::reactions`](crate::Stepper::reactions).
+///
+/// ```
+/// use clebsch::{Clebsch, Error, Method, Reacting, State, Stepper};
+/// use nalgebra::Vector2;
+///
+/// /// A mass on an incline.
+/// #[derive(Clebsch, Clone, Debug)]
+/// #[clebsch(
+///     action     = |a: Translation<2>, x: Vector2| x + a,
+///     lagrangian = |v| self.mass * v.norm_squared() / 2,
+///     potential  = |x| self.weight * x.y,
+///     constraint = |x| [0.6 * x.y == 0.8 * x.x],
+/// )]
+/// struct Sliding { mass: f64, weight: f64 }
+///
+/// /// The reactions at the end of so many steps.
+/// fn late<S: Reacting<M>, M: Method<S>>(by: &Stepper<S, M>, from: &State<S, M>) -> Result<S::Reactions, Error> {
+///     by.reactions(&by.advance(from, 10)?)
+/// }
+///
+/// let stepper = Sliding { mass: 2.0, weight: 5.0 }.into_stepper(0.1)?;
+/// let start = stepper.state(Vector2::zeros(), Vector2::zeros())?;
+/// assert!((late(&stepper, &start)?.x - 3.0).abs() < 1e-14); // 0.6 · 5 N, across the incline
+/// # Ok::<(), Error>(())
+/// ```
+#[diagnostic::on_unimplemented(message = "`{Self}` has no constraint")]
+pub trait Reacting<M: Method<Self> = Declared>: Constrained {
+    /// The multipliers κ of a push p = Aᵀκ at (t, q): S⁻¹A Σ⁻¹p.
+    #[doc(hidden)]
+    fn multipliers(&self, c: &M::Constants, t: T<Self>, q: &Q<Self>, push: &Mu<Self>) -> Self::Reactions;
+
+    /// The multipliers λ of the motion N′ = N′_free + Aᵀλ through (q, μ), with the input u of the forces.
+    ///
+    /// # Errors
+    /// [`Error::DependentConstraints`] where the rows depend on each other.
+    #[doc(hidden)]
+    fn reactions_of_motion(
+        &self,
+        c: &M::Constants,
+        t: T<Self>,
+        q: &Q<Self>,
+        mu: &Mu<Self>,
+        u: &Self::Input,
+    ) -> Result<Self::Reactions, Error>;
 }
 
 /// The violation of a constraint by a velocity.
@@ -136,6 +190,23 @@ pub fn constrained<T: Scalar, const R: usize, const M: usize>(
     // by construction: its rank was checked
     let Some(kappa) = crate::linear::solve_linear(metric, &missing) else { return Ok(*mu) };
     Ok(mu + a.transpose() * kappa)
+}
+
+/// κ of S κ = A Σ⁻¹p, the multipliers of a push p = Aᵀκ; NaN where S = A Σ⁻¹Aᵀ is singular.
+pub fn multipliers<T: Scalar, const R: usize>(metric: &SMatrix<T, R, R>, along: &SVector<T, R>) -> SVector<T, R> {
+    crate::linear::solve_linear(metric, along).unwrap_or_else(|| along.map(|_| T::zero() / T::zero()))
+}
+
+/// λ of S λ = −d/dt (A ξ − b) along the motion without the constraint.
+///
+/// # Errors
+/// [`Error::DependentConstraints`] where S = A Σ⁻¹Aᵀ is singular.
+pub fn reactions<T: Scalar, const R: usize>(
+    metric: &SMatrix<T, R, R>,
+    lag: &SVector<T, R>,
+) -> Result<SVector<T, R>, Error> {
+    check_rank(metric)?;
+    Ok(multipliers(metric, lag))
 }
 
 /// The rank of a symmetric positive S, by pivots relative to its diagonal: √ε is zero.

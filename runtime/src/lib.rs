@@ -189,7 +189,7 @@ mod variational;
 pub use boundary::{Boundary, Extremal, Guess, Node, States, Way};
 pub use clebsch_macros::Clebsch;
 pub use conserved::{Conserved, Conserves};
-pub use constraint::Constrained;
+pub use constraint::{Constrained, Reacting};
 pub use control::{Control, Optimum, Stage, Target};
 pub use controlled::{Arrival, BoundsExpansion, Controlled, EndpointExpansion, Expansion};
 #[cfg(feature = "double-double")]

@@ -124,6 +124,28 @@ impl<'a, S: Clebsch, M: Method<S>, C> At<'a, S, M, C> {
 
 copy!(At<'_, S, M, C> where [S: Clebsch, M: Method<S>, C]);
 
+/// A push of a constraint in a step: Aᵀλ at q before the move, or Aᵀμ at q⁺ after it.
+pub struct Push<'a, S: Clebsch, M: Method<S> = Declared> {
+    /// The system and the constants, with the time at which the step starts.
+    pub at: At<'a, S, M>,
+    /// q or q⁺.
+    pub place: &'a Q<S>,
+    /// The push.
+    pub momentum: &'a Mu<S>,
+    /// Whether the push is a step later than the time.
+    pub is_after: bool,
+}
+
+impl<S: Clebsch, M: Method<S>> Push<'_, S, M> {
+    /// The same with its own time, in a step of the size h.
+    #[inline]
+    pub(crate) fn at_its_time(self, h: S::Scalar) -> Self {
+        let At { t, .. } = self.at;
+        let t = if self.is_after { t + h } else { t };
+        Self { at: At { t, ..self.at }, is_after: false, ..self }
+    }
+}
+
 /// How a system S is stepped by the method M.
 pub trait Scheme<S: Clebsch, M: Method<S> = Declared>: Sized {
     /// The stored form of the momentum. It is N itself, except for a point on a large sphere. There it is the covector
@@ -174,6 +196,17 @@ pub trait Scheme<S: Clebsch, M: Method<S> = Declared>: Sized {
 
     /// One step of the discrete Euler–Poincaré representation: (q, N) ↦ (q⁺, N⁺), from the time t to t + h, with the input u of its forces.
     fn step(at: AtOf<'_, S, Self, M>, state: Before<'_, S, Self, M>, u: &S::Input) -> Stepped<S, Self, M>;
+
+    /// The same step, which tells each push of a constraint to `pushed`. As provided there is none.
+    #[inline]
+    fn step_pushed(
+        at: AtOf<'_, S, Self, M>,
+        state: Before<'_, S, Self, M>,
+        u: &S::Input,
+        _pushed: impl FnMut(Push<'_, S, M>),
+    ) -> Stepped<S, Self, M> {
+        Self::step(at, state, u)
+    }
 
     /// The same step, into the place of another state. After an error that state is unspecified.
     #[inline]

@@ -4,6 +4,7 @@
 mod stepping;
 
 mod formulas;
+mod reactions;
 mod refusal;
 mod staggered;
 mod step_size;

@@ -23,10 +23,10 @@ impl<S: Substep<0, M> + Substep<1, M> + Substep<2, M>, M: Method<S>, C: CarryKic
         let At { system, constants, t, .. } = at;
         let (impulse, rests) = parted::<S, M, C>(left);
         let kick = C::kick(impulse, || Substep::<0, M>::start_kick(system, constants, t, q));
-        let mut half = substep::<S, M, 0>(at, (q, mu), rests, kick, u)?;
+        let mut half = substep::<S, M, 0>(at, (q, mu), rests, kick, u, |_| ())?;
         half.push(Substep::<0, M>::end_kick(system, constants, t, &half.q));
         let kick = Substep::<1, M>::start_kick(system, constants, t, &half.q);
-        let mut state = substep::<S, M, 1>(at, (&half.q, &half.mu), half.rests, kick, u)?;
+        let mut state = substep::<S, M, 1>(at, (&half.q, &half.mu), half.rests, kick, u, |_| ())?;
         let kick = Substep::<1, M>::end_kick(system, constants, t, &state.q);
         state.push(kick);
         state.on_space();

@@ -11,7 +11,7 @@
 //! schemes for ordinary differential equations*.
 
 use super::sites::{AtSite, InStorage, Stored};
-use super::{At, AtOf, Before, Pair, Parted, Scheme, Stepped};
+use super::{At, AtOf, Before, Pair, Parted, Push, Scheme, Stepped};
 use crate::parts::{Mu, Q, T, U};
 use crate::power::Power;
 use crate::{Clebsch, Error, Method, Scalar, Space};
@@ -118,6 +118,24 @@ impl<S: Clebsch, M: Method<S>, I: Scheme<S, M>, Z: Sizes<K>, const K: usize> Sch
     }
 
     #[inline]
+    fn step_pushed(
+        at: AtOf<'_, S, Self, M>,
+        (q, held, left): Before<'_, S, Self, M>,
+        u: &S::Input,
+        mut pushed: impl FnMut(Push<'_, S, M>),
+    ) -> Stepped<S, Self, M> {
+        let mut number = 0;
+        let step = |stage: &I::Constants, t, (q, held, left): Parted<S, Self, M>| {
+            let size = at.constants.at(number).map_or_else(Zero::zero, |(_, size)| size);
+            number += 1;
+            let pushed = |push: Push<'_, S, M>| pushed(push.at_its_time(size));
+            I::step_pushed(At::new(at.system, stage, t), (&q, &held, &left), u, pushed)
+        };
+        let scaled = |(q, held, left): Parted<S, Self, M>, ratio| (q, held, I::scaled(left, ratio));
+        compose(at.constants, at.t, (*q, *held, *left), step, scaled)
+    }
+
+    #[inline]
     fn step_symmetric(at: AtOf<'_, S, Self, M>, q: &Q<S>, p: &Q<S>) -> Result<Pair<S>, Error> {
         let step = |stage: &I::Constants, t, (q, p): Pair<S>| I::step_symmetric(At::new(at.system, stage, t), &q, &p);
         compose(at.constants, at.t, (*q, *p), step, |state, _| state)
@@ -160,7 +178,7 @@ pub fn compose<T: Scalar, C: Clone, X, E, const K: usize>(
     stages: &Stages<T, C, K>,
     t: T,
     start: X,
-    step: impl Fn(&C, T, X) -> Result<X, E>,
+    mut step: impl FnMut(&C, T, X) -> Result<X, E>,
     scaled: impl Fn(X, T) -> X,
 ) -> Result<X, E> {
     let (mut state, mut t) = (start, t);

@@ -1,8 +1,8 @@
 //! Kick, drift, kick; or drift and kick, of first order.
 
-use super::At;
 use super::sequence::{CarryKick, From, InSequence, Sequence, To, parted};
 use super::substep::{inverse_legendre, substep};
+use super::{At, Push};
 use crate::parts::{Mu, Q, Substep};
 use crate::{Error, Method};
 use core::marker::PhantomData;
@@ -24,13 +24,28 @@ impl<S: Substep<0, M> + Substep<W, M>, M: Method<S>, C: CarryKick<S, M>, const W
     type Carry = C;
 
     #[inline(always)]
-    fn step(at: At<'_, S, M>, (q, mu, left): From<'_, S, M, C>, u: &S::Input) -> To<S, M, C> {
+    fn step(at: At<'_, S, M>, state: From<'_, S, M, C>, u: &S::Input) -> To<S, M, C> {
+        Self::step_pushed(at, state, u, |_| ())
+    }
+
+    #[inline(always)]
+    fn step_pushed(
+        at: At<'_, S, M>,
+        (q, mu, left): From<'_, S, M, C>,
+        u: &S::Input,
+        mut pushed: impl FnMut(Push<'_, S, M>),
+    ) -> To<S, M, C> {
         let (impulse, rests) = parted::<S, M, C>(left);
         let kick = C::kick(impulse, || Substep::<0, M>::start_kick(at.system, at.constants, at.t, q));
-        let mut state = substep::<S, M, 0>(at, (q, mu), rests, kick, u)?;
+        let mut state = substep::<S, M, 0>(at, (q, mu), rests, kick, u, |momentum| {
+            pushed(Push { at, place: q, momentum, is_after: false });
+        })?;
         let kick = Substep::<0, M>::end_kick(at.system, at.constants, at.t, &state.q);
         state.push(kick);
         let projection = Substep::<0, M>::projection(at.system, at.constants, at.t, &state.q, &state.mu);
+        if let Some(momentum) = &projection {
+            pushed(Push { at, place: &state.q, momentum, is_after: true });
+        }
         state.push(projection);
         state.on_space();
         Ok(state.end::<C>(C::impulse(kick)))

@@ -1,7 +1,7 @@
 //! The common part of all schemes that are sequences of the parts of a step.
 
 use super::substep::{RestsOf, inverse_legendre, symmetric};
-use super::{At, Before, Pair, Scheme, Stepped, as_made, one_by_one};
+use super::{At, Before, Pair, Push, Scheme, Stepped, as_made, one_by_one};
 use crate::parts::{Mu, Parts, Q, Substep, T, U};
 use crate::sums::Sums;
 use crate::{Clebsch, Error, Method, Space};
@@ -14,6 +14,17 @@ pub trait Sequence<S: Substep<0, M>, M: Method<S>>: Sized {
 
     /// As [`Scheme::step`].
     fn step(at: At<'_, S, M>, state: From<'_, S, M, Self::Carry>, u: &S::Input) -> To<S, M, Self::Carry>;
+
+    /// As [`Scheme::step_pushed`].
+    #[inline]
+    fn step_pushed(
+        at: At<'_, S, M>,
+        state: From<'_, S, M, Self::Carry>,
+        u: &S::Input,
+        _pushed: impl FnMut(Push<'_, S, M>),
+    ) -> To<S, M, Self::Carry> {
+        Self::step(at, state, u)
+    }
 
     /// As [`Scheme::steps`].
     #[inline]
@@ -74,6 +85,16 @@ impl<S: Substep<0, M>, M: Method<S>, P: Sequence<S, M>> Scheme<S, M> for InSeque
     #[inline(always)]
     fn step(at: At<'_, S, M>, state: Before<'_, S, Self, M>, u: &S::Input) -> Stepped<S, Self, M> {
         if S::IS_SHORT { P::step(at, state, u) } else { called::<S, M, P>(at, state, u) }
+    }
+
+    #[inline]
+    fn step_pushed(
+        at: At<'_, S, M>,
+        state: Before<'_, S, Self, M>,
+        u: &S::Input,
+        pushed: impl FnMut(Push<'_, S, M>),
+    ) -> Stepped<S, Self, M> {
+        P::step_pushed(at, state, u, pushed)
     }
 
     #[inline]

@@ -61,8 +61,8 @@ impl<S: Parts<M>, M: Method<S>> Moving<S, M> {
     }
 }
 
-/// One substep, from its first kick to the one before its last. Values that do not change stay in place, without a
-/// copy.
+/// One substep, from its first kick to the one before its last. `pushed` is told the push of the constraint. Values that
+/// do not change stay in place, without a copy.
 #[inline(always)]
 pub(super) fn substep<S: Substep<K, M>, M: Method<S>, const K: usize>(
     at: At<'_, S, M>,
@@ -70,6 +70,7 @@ pub(super) fn substep<S: Substep<K, M>, M: Method<S>, const K: usize>(
     mut rests: RestsOf<S, M>,
     kick: Option<Mu<S>>,
     u: &S::Input,
+    mut pushed: impl FnMut(&Mu<S>),
 ) -> Result<Moving<S, M>, Error> {
     let At { system, constants, t, .. } = at;
     let add = |mu: &Mu<S>, kick: &Mu<S>, rest: &mut _| S::Sums::sum(mu, rest, kick);
@@ -85,6 +86,7 @@ pub(super) fn substep<S: Substep<K, M>, M: Method<S>, const K: usize>(
     let x = system.solve(constants, t, q, target, u)?;
     let motion = system.motion(&x, || system.increment(&x));
     let reaction = system.reaction(constants, t, q, target, &x);
+    reaction.iter().for_each(&mut pushed);
     let mu = with(mu, reaction, &mut held_back, |mu, push| add(mu, push, &mut rests.1));
     let force = system.moving_force(constants, t, q, &x, u);
     let mu = with(mu, force, &mut moving, |mu, kick| add(mu, kick, &mut rests.1));

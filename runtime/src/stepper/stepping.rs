@@ -171,7 +171,7 @@ impl<S: Clebsch, M: Method<S>> Stepper<S, M> {
     /// The error of a step that no lane can make, which is tried once more for it.
     #[cold]
     #[inline(never)]
-    fn refused(&self, state: &State<S, M>, u: &S::Input) -> Error {
+    pub(super) fn refused(&self, state: &State<S, M>, u: &S::Input) -> Error {
         match self.attempt_again(state, u) {
             Err(error) if S::Scalar::LANES == 1 => self.refusal(state, u, 0, error),
             // by construction an error: the same step has the same result
@@ -207,7 +207,7 @@ impl<S: Clebsch, M: Method<S>> Stepper<S, M> {
 
     /// The error of a step whose state is not finite, or off its orbit, in some lane.
     #[cold]
-    fn beyond(&self, next: &State<S, M>) -> Error {
+    pub(super) fn beyond(&self, next: &State<S, M>) -> Error {
         let lane = first_without::<S::Scalar>(self.sound(next));
         whole_or_lane::<S::Scalar>(lane, self.overflow(next, lane))
     }
@@ -215,7 +215,7 @@ impl<S: Clebsch, M: Method<S>> Stepper<S, M> {
 
 /// The input is finite.
 #[inline(always)]
-fn check_input<S: Clebsch>(u: &S::Input) -> Result<(), Error> {
+pub(super) fn check_input<S: Clebsch>(u: &S::Input) -> Result<(), Error> {
     if size_of::<S::Input>() == 0 || u.all_finite() { Ok(()) } else { Err(Error::NotFinite { name: "the input" }) }
 }
 

@@ -4,7 +4,9 @@
 //! has lanes, [`Absent`] has one that does nothing. An operation that a declaration has to ask for is a method of
 //! [`Asked`] instead: every stepper has a method of its name.
 
-use clebsch::{Clebsch, Conserves, Differentiated, Error, Method, Space, State, Stepper, Tangent, Variational};
+use clebsch::{
+    Clebsch, Conserves, Differentiated, Error, Method, Reacting, Space, State, Stepper, Tangent, Variational,
+};
 use nalgebra::SVector;
 
 /// The steps of a plan, and the edges of a path.
@@ -42,10 +44,20 @@ where
     }
 }
 
+impl<S: Reacting<M>, M: Method<S>> Asked<'_, S, M> {
+    #[inline]
+    pub fn reactions(&self, state: &State<S, M>, u: &S::Input) -> Result<(State<S, M>, [S::Reactions; 2]), Error> {
+        let now = self.0.reactions_under(state, u)?;
+        let (next, reactions) = self.0.step_with_reactions_under(state, u)?;
+        Ok((next, [now, reactions]))
+    }
+}
+
 /// Operations that a declaration does not ask for.
 pub trait Unasked<S: Clebsch, M: Method<S>> {
     fn conserved(&self, _: &State<S, M>) {}
     fn step_tangent(&self, _: &State<S, M>) {}
+    fn reactions(&self, _: &State<S, M>, _: &S::Input) {}
 }
 
 impl<S: Clebsch, M: Method<S>> Unasked<S, M> for Asked<'_, S, M> {}
@@ -139,6 +151,11 @@ macro_rules! stepping {
             });
             $crate::export!("step_tangent", $name, |stepper: &Stepper<S, M>, state: &State<S, M>| {
                 let _ = black_box(Asked(stepper).step_tangent(state));
+            });
+            $crate::export!("reactions", $name, |stepper: &Stepper<S, M>,
+                                                 state: &State<S, M>,
+                                                 u: &<S as Clebsch>::Input| {
+                let _ = black_box(Asked(stepper).reactions(state, u));
             });
             $crate::export!("advance", $name, |stepper: &Stepper<S, M>, state: &mut State<S, M>, steps: usize| {
                 *state = stepper.advance(state, steps)?;

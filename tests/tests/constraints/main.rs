@@ -6,6 +6,7 @@
 mod invariants;
 mod order;
 mod places;
+mod reactions;
 mod reference;
 mod refused;
 mod variants;

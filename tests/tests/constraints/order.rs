@@ -62,7 +62,7 @@ fn the_sleigh_is_of_second_order() -> Result<(), Error> {
 /// ```text
 /// J ω′ = J ω × ω + λ e₃ with ω₃ = 0,    r′ = r × ω
 /// ```
-fn suslov(inertia: Matrix3<f64>) -> impl Fn(&SVector<f64, 5>) -> SVector<f64, 5> {
+pub fn suslov(inertia: Matrix3<f64>) -> impl Fn(&SVector<f64, 5>) -> SVector<f64, 5> {
     move |y| {
         let omega = Vector3::new(y[0], y[1], 0.0);
         let torque = (inertia * omega).cross(&omega);

@@ -4,7 +4,7 @@ use clebsch::{Clebsch, Error, Space};
 use clebsch_tests::fixtures::jointed_bodies::JointedBodies;
 use nalgebra::{Matrix3, Matrix4, Rotation3, SVector, Vector3};
 
-mod rods {
+pub mod rods {
     use clebsch::Clebsch;
 
     /// A mass on a rod: a spherical pendulum in three coordinates.
@@ -114,7 +114,7 @@ fn second_moment(moments: Vector3<f64>) -> Matrix3<f64> {
     Matrix3::from_diagonal(&(-moments).add_scalar(moments.sum() / 2.0))
 }
 
-fn bodies() -> JointedBodies {
+pub fn bodies() -> JointedBodies {
     JointedBodies {
         second_moments: [Vector3::new(0.09, 0.085, 0.01), Vector3::new(0.04, 0.038, 0.005)].map(second_moment),
         mass: [1.0, 0.7],
@@ -125,7 +125,7 @@ fn bodies() -> JointedBodies {
 }
 
 /// Both bodies tilted about axes of their own.
-fn tilted(bodies: &JointedBodies) -> [Matrix4<f64>; 2] {
+pub fn tilted(bodies: &JointedBodies) -> [Matrix4<f64>; 2] {
     let turns = [Rotation3::new(Vector3::new(0.6, 0.3, 0.1)), Rotation3::new(Vector3::new(-0.4, 0.7, 0.2))];
     let turns = turns.map(|turn| *turn.matrix());
     let upper = -(turns[0] * bodies.near[0]);

@@ -180,6 +180,10 @@ catalogue! {
     Places = listed("constraint", Hot);
     /// A and b of a constraint A ξ = b; computed with Σ⁻¹(μ − A) and A Σ⁻¹Aᵀ.
     Constraint = listed("constraint", Hot);
+    /// κ of a push p = Aᵀκ; computed as S and A Σ⁻¹p.
+    Multipliers = unlisted("multipliers", Hot);
+    /// λ of the motion; computed as S and −d/dt (A ξ − b).
+    Reactions = listed("multipliers", Hot);
     /// ψ(q, F).
     DiscreteConstraint = listed("constraint of a step", Cold);
     /// Σξ + A.

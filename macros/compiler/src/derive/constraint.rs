@@ -11,6 +11,9 @@
 //! ```
 //! A Σ⁻¹ρ = ψ, so ρ = 0 says that ψ vanishes and that y = Aᵀλ. At F = I the slope of ρ is that without a constraint,
 //! as A Σ⁻¹ Dr = Dψ there.
+//!
+//! The multipliers of a push p = Aᵀκ are κ = S⁻¹A Σ⁻¹p. Those of the continuous motion, N′ = N′_free + Aᵀλ, follow from
+//! the derivative of the constraint: S λ = −d/dt (A ξ − b) along N′_free.
 
 use clebsch_symbolic::{Expr, IntoList, Property, Role, Shape, identity};
 
@@ -20,7 +23,7 @@ use super::symbols::{logarithm, moved, moved_on};
 use super::{DiscreteLagrangian, SystemFormulas, force, structure};
 use crate::diagnostic::{Diagnostics, bail};
 use crate::model::features::{self, Feature, Found};
-use crate::model::{Configuration, Constraint, Equation, Isotropy, LeafSpace, Mechanics, Restriction};
+use crate::model::{Configuration, Constraint, Equation, Factor, Isotropy, LeafSpace, Mechanics, Restriction, Side};
 
 /// The formulas of a constraint.
 pub struct ConstraintFormulas<'g> {
@@ -38,6 +41,10 @@ pub struct ConstraintFormulas<'g> {
     pub velocity: Expr<'g>,
     /// The momentum Σξ + A_g of a velocity.
     pub momentum: Expr<'g>,
+    /// A Σ⁻¹p of a push p, with μ standing for p.
+    pub along: Expr<'g>,
+    /// −d/dt (A ξ − b) along the motion without the constraint, a function of t, q, μ and the input u.
+    pub lag: Expr<'g>,
     /// φ(t, q), of a constraint on places.
     pub places: Option<Expr<'g>>,
     /// The rows between both ends of a step are the mean of those at the ends, not those at the mean of the ends.
@@ -53,6 +60,7 @@ impl<'g> ConstraintFormulas<'g> {
         model: &Mechanics<'g>,
         system: &SystemFormulas<'g>,
         (energy, inertia): (&Energy<'g>, Expr<'g>),
+        (potential, force): (Expr<'g>, Option<&[Expr<'g>]>),
     ) -> Result<Option<ConstraintFormulas<'g>>, Diagnostics> {
         let Some(constraint) = &model.constraint else { return Ok(None) };
         check(model, system, (energy, inertia))?;
@@ -69,6 +77,8 @@ impl<'g> ConstraintFormulas<'g> {
         let gyroscopic = system.symbols.slope(energy.gyroscopic);
         let momenta = model.graph.below(&system.symbols.momenta);
         let is_mean_of_rows = places.is_none() && is_mean_of_rows(model, [rows, values]);
+        let velocity = inverse * (momenta - gyroscopic);
+        let free = free_motion(model, system, (energy.gyroscopic - potential, force), velocity);
         Ok(Some(ConstraintFormulas {
             rows,
             values,
@@ -78,7 +88,9 @@ impl<'g> ConstraintFormulas<'g> {
             },
             by_inertia,
             metric: product(by_inertia, rows.transpose()),
-            velocity: inverse * (momenta - gyroscopic),
+            velocity,
+            along: by_inertia * momenta,
+            lag: -(rows * velocity - values).differential(&free),
             momentum: system.symbols.slope(energy.kinetic) + gyroscopic,
             places,
             is_mean_of_rows,
@@ -113,6 +125,31 @@ impl<'g> ConstraintFormulas<'g> {
         let solved = if self.metric.shape().is_scalar() { along / self.metric } else { self.metric.inverse() * along };
         self.rows.transpose() * solved
     }
+}
+
+/// The changes of t, q and N where no constraint acts, N′ = ± ad*_ξ N + J(q, ∂(A·ξ − V)) + f, with this ξ.
+fn free_motion<'g>(
+    model: &Mechanics<'g>,
+    system: &SystemFormulas<'g>,
+    (pushing, force): (Expr<'g>, Option<&[Expr<'g>]>),
+    velocity: Expr<'g>,
+) -> Vec<(Expr<'g>, Expr<'g>)> {
+    let (symbols, velocities) = (&system.symbols, system.parted(velocity));
+    let mut at_velocity: Vec<_> = symbols.algebra.iter().copied().zip(velocities.iter().copied()).into_list();
+    let of_force = model.force.iter().flat_map(|force| &force.velocities);
+    at_velocity.extend(of_force.copied().zip(velocities.iter().copied()));
+    let pushes = system.momenta_of(system.gradients(pushing));
+    let change = |(k, factor): (usize, &Factor<'g>)| {
+        let carried = factor.group.ad(velocities[k]).transpose() * symbols.momenta[k];
+        let carried = if factor.side == Side::Left { -carried } else { carried };
+        let pushed = force.map_or(pushes[k], |force| pushes[k] + force[k]);
+        (symbols.momenta[k], carried + pushed.substitute(&at_velocity))
+    };
+    let mut changes: Vec<_> = model.factors.iter().enumerate().map(change).into_list();
+    changes.push((model.time, model.graph.integer(1)));
+    let leaves = model.configurations.iter().map(|leaf| leaf.symbol);
+    changes.extend(leaves.zip(system.motion_by(&velocities)));
+    changes
 }
 
 /// J(q, ∂φ): the change of φ along a motion of q, a row for each entry.

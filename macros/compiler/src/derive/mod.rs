@@ -104,12 +104,13 @@ fn mechanics(mut model: Mechanics<'_>) -> Result<MechanicsFormulas<'_>, Diagnost
     let declared = if declared == cost { lagrangian } else { discrete_lagrangian::separate(&model, declared) };
     substep::check_unmoved(&model, &lagrangian)?;
     let potential_energy = energy::potential(&model, &declared)?;
-    let constraint = ConstraintFormulas::of(&model, &system, (&energy, inertia))?;
+    let covector = force::covector(&model, &system);
+    let pushes = (potential_energy, covector.as_deref());
+    let constraint = ConstraintFormulas::of(&model, &system, (&energy, inertia), pushes)?;
     let is_timed = is_timed(&model, &lagrangian);
     let quantities = if model.emit.tangent { variation::quantities(&model, is_timed) } else { Vec::new() };
     let variations = variation::Source { system: &system, quantities: &quantities };
     let sources = |divisor| Sources { model: &model, system: &system, inertia, divisor, keeps_exponentials: false };
-    let covector = force::covector(&model, &system);
     let mut edges = discrete_lagrangian::substeps(&model, &lagrangian, &declared);
     constraint::check_adjoint(&model, &edges)?;
     let stepped = if edges.len() == 1 { 1 } else { 2 };

@@ -103,6 +103,20 @@ functions! {
         fn momentum_of_velocity(&self, t: T, q: &Q, x: &Mu) -> Mu { Id::MomentumOfVelocity }
     }
 
+    /// `Reacting`.
+    REACTING(false) {
+        /// The multipliers κ of a push p = Aᵀκ.
+        fn multipliers(&self, c: &C, t: T, q: &Q, mu: &Mu) -> Self::Reactions { Id::Multipliers } = {
+            Locals
+            runtime::multipliers(&Matrix0, &Value1)
+        }
+        /// The multipliers λ of the motion.
+        fn reactions_of_motion(&self, c: &C, t: T, q: &Q, mu: &Mu, u: &U) -> Result<Self::Reactions, Error> { Id::Reactions } = {
+            Locals
+            runtime::reactions(&Matrix0, &Value1)
+        }
+    }
+
     /// `Conserves`.
     CONSERVES(false) {
         /// The momenta that no step changes.

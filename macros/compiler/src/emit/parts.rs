@@ -16,11 +16,12 @@ use crate::model::LeafSpace;
 const SHORT_STEP: usize = 192;
 
 impl Emitter<'_, '_> {
-    /// The implementations of `Parts`, of `Substep` for each substep, and of the other traits that the scheme calls.
+    /// The implementations of `Parts`, of `Substep` for each substep, of the other traits that the scheme calls, and of `Reacting`.
     pub(super) fn parts(&self) -> TokenStream {
         let (shared, of_scheme) = (self.shared_parts(), self.parts_of_scheme());
         let substeps = (0..self.program.steps.len()).map(|index| self.substep(index));
-        quote!(#shared #(#substeps)* #of_scheme)
+        let reacting = self.reacting();
+        quote!(#shared #(#substeps)* #of_scheme #reacting)
     }
 
     /// The names and types of the data that moves q and N, in signatures. They are D = F − I, the chart coordinates x,

@@ -5,9 +5,9 @@ use proc_macro2::TokenStream;
 use quote::{format_ident, quote};
 
 use super::block::{Target, matrix, time_type, types_of_system};
-use super::function::{Body, Function, no_words};
-use super::functions::{CONSERVES, CONSTRAINED, SYSTEM, VELOCITY};
-use super::scope::size;
+use super::function::{Body, Function, no_words, number};
+use super::functions::{CONSERVES, CONSTRAINED, REACTING, SYSTEM, VELOCITY};
+use super::scope::{Scope, size};
 use super::{Emitter, SystemEmitter, flag};
 use crate::derive::{Id, Solution};
 use crate::lower::{Code, Kernel, Solve};
@@ -83,10 +83,7 @@ impl<'g> Emitter<'_, 'g> {
             "check_kinetic_energy" => return None,
             "check_place" | "constraint_defect" | "constrained" => {
                 let scope = self.scope(self.receiver(), Some(quote!(c)));
-                function.written(&scope, kernel, &|word| {
-                    let number = word.strip_prefix("Matrix")?.parse().ok()?;
-                    Some(scope.whole_matrix(kernel?, number))
-                })?
+                function.written(&scope, kernel, &|word| matrix_of_kernel(&scope, kernel?, word))?
             }
             _ => function.computes(&scope, kernel?),
         })
@@ -141,7 +138,22 @@ impl<'g> Emitter<'_, 'g> {
             return TokenStream::new();
         }
         let functions = self.written(CONSTRAINED, &self.scope_of_system(), &no_words);
-        self.declared().derived(Some(quote!(runtime::Constrained)), functions)
+        let rows = size(self.formulas.constraint.as_ref().map_or(0, |constraint| constraint.rows.shape().rows));
+        let reactions = quote!(type Reactions = runtime::SVector<T, #rows>;);
+        self.declared().derived(Some(quote!(runtime::Constrained)), quote!(#reactions #functions))
+    }
+
+    /// The implementation of `Reacting`, where there is a constraint.
+    pub(super) fn reacting(&self) -> TokenStream {
+        if self.formulas.constraint.is_none() {
+            return TokenStream::new();
+        }
+        let scope = self.scope_of_step();
+        let functions = self.functions(REACTING, (0, 0), &no_words, |function, kernel| {
+            let kernel = Some(kernel?);
+            function.written(&scope, kernel, &|word| matrix_of_kernel(&scope, kernel?, word))
+        });
+        self.implementation("Reacting", &[], functions)
     }
 
     /// The momenta of the free motions that make F, for the Legendre transforms of free motions.
@@ -242,6 +254,11 @@ impl<'g> Emitter<'_, 'g> {
         let rows = entries.chunks(shape.columns).map(|row| quote!([#(#row),*]));
         quote!(#locals runtime::#of_motions(&[#(#rows),*], mu))
     }
+}
+
+/// The output of a kernel that a word `Matrix0` means, as a matrix.
+fn matrix_of_kernel(scope: &Scope<'_, '_>, kernel: &Kernel, word: &str) -> Option<TokenStream> {
+    Some(scope.whole_matrix(kernel, number(word, "Matrix")?))
 }
 
 impl SystemEmitter<'_, '_> {

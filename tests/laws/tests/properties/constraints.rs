@@ -2,10 +2,12 @@
 
 use crate::arbitrary::{cases, definite, matrix, vector};
 use crate::bodies::H;
-use clebsch::__private::{Parts, Substep, Violation, check_place, constrained, violation};
-use clebsch::{Clebsch, Constrained, Declared, Error, Method};
+use clebsch::__private::{
+    At, Parts, Scheme, Substep, Violation, check_place, constrained, multipliers, reactions, violation,
+};
+use clebsch::{Clebsch, Constrained, Declared, Error, Method, Reacting};
 use clebsch_tests::oracle::near::assert_near;
-use nalgebra::{Matrix1x3, Matrix2x3, Matrix3, Vector1, Vector3};
+use nalgebra::{Matrix1x3, Matrix2, Matrix2x3, Matrix3, Vector1, Vector3};
 use proptest::prelude::*;
 
 const NEAR: f64 = 1e-12;
@@ -19,6 +21,22 @@ const NEAR: f64 = 1e-12;
     constraint = |t, x, v| [v.z == x.y * v.x + self.rate * t],
 )]
 pub struct Guided {
+    #[clebsch(symmetric)]
+    pub mass: Matrix3<f64>,
+    pub pull: Vector3<f64>,
+    pub rate: f64,
+}
+
+/// The same with a force as input.
+#[derive(Clebsch, Clone, Debug)]
+#[clebsch(
+    action     = |a: Translation<3>, x: Vector3| x + a,
+    lagrangian = |v| v.dot(&(self.mass * v)) / 2,
+    potential  = |x| self.pull.dot(&x),
+    force      = |push: Vector3| push,
+    constraint = |t, x, v| [v.z == x.y * v.x + self.rate * t],
+)]
+pub struct Driven {
     #[clebsch(symmetric)]
     pub mass: Matrix3<f64>,
     pub pull: Vector3<f64>,
@@ -120,5 +138,47 @@ proptest! {
         assert_near(&(reached + repair), &end.momentum(), NEAR, "the step");
         let velocity = mass.try_inverse().expect("a regular matrix") * end.momentum();
         prop_assert!((row(end.configuration()).dot(&velocity) - 0.7 * H).abs() < NEAR);
+        // the third component of a row is 1, so that of a push is its multiplier
+        prop_assert!((system.multipliers(&constants, 0.0, &x, &push).x - push.z).abs() < NEAR);
+        let mut pushes = Vec::new();
+        let at = At::<_, Declared>::new(&system, &constants, 0.0);
+        type Steps = <Guided as Clebsch>::Scheme;
+        let left = <Steps as Scheme<Guided>>::left(at, &x, &start.momentum());
+        let stepped = <Steps as Scheme<Guided>>::step_pushed(at, (&x, &start.momentum(), &left), &(), |push| {
+            pushes.push((*push.place, *push.momentum, push.is_after));
+        });
+        prop_assert_eq!(stepped?.0, *end.configuration());
+        prop_assert_eq!(pushes, vec![(x, push, false), (next, repair, true)]);
+        let (same, reactions) = stepper.step_with_reactions(&start)?;
+        prop_assert_eq!(same, end);
+        prop_assert!((reactions.x - (push.z + repair.z) / H).abs() < NEAR / H);
+    }
+
+    /// With N′ = −∂V + f + Aᵀλ the acceleration obeys the derivative of the constraint.
+    #[test]
+    fn reactions_hold_motions_on_constraints(mass in definite::<3>(), pull in vector::<3>(1.0), x in vector::<3>(1.0), v in vector::<2>(1.0), u in vector::<3>(1.0)) {
+        let system = Driven { mass, pull, rate: 0.7 };
+        let (stepper, constants) = (system.stepper(H)?, system.constants(H)?);
+        let velocity = Vector3::new(v.x, v.y, x.y * v.x);
+        let start = stepper.state_moving(x, velocity)?;
+        let lambda = stepper.reactions_under(&start, &u)?;
+        let force = u - pull + Vector3::new(-x.y, 0.0, 1.0) * lambda.x;
+        let change = mass.try_inverse().expect("a regular matrix") * force;
+        // z″ = y′x′ + y x″ + rate
+        prop_assert!((change.z - v.y * v.x - x.y * change.x - 0.7).abs() < NEAR);
+        prop_assert_eq!(stepper.reactions(&start)?, stepper.reactions_under(&start, &Vector3::zeros())?);
+        prop_assert_eq!(system.reactions_of_motion(&constants, 0.0, &x, &start.momentum(), &u)?, lambda);
+        let (end, mean) = stepper.step_with_reactions_under(&start, &u)?;
+        prop_assert_eq!(&end, &stepper.step_with(&start, &u)?);
+        // those of a short step are near
+        prop_assert!((mean - lambda).norm() < 1e3 * H);
+        // S λ = −d/dt (A ξ − b)
+        let metric = Matrix2::new(3.0, 1.0, 1.0, 2.0);
+        let found = reactions(&metric, &(metric * v))?;
+        assert_near(&found, &v, NEAR, "the multipliers");
+        prop_assert_eq!(found, multipliers(&metric, &(metric * v)));
+        let dependent = Matrix2::new(1.0, 1.0, 1.0, 1.0);
+        prop_assert_eq!(reactions(&dependent, &v), Err(Error::DependentConstraints { rank: 1, rows: 2 }));
+        prop_assert!(multipliers(&dependent, &v).x.is_nan());
     }
 }

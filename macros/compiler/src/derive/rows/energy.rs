@@ -37,16 +37,25 @@ impl<'g> MechanicsFormulas<'g> {
     }
 
     /// The constraint, and that of a step; the momentum of a velocity.
-    pub(super) fn rows_of_constraint(&self, Names { q, f, xi, .. }: &Names) -> Vec<Formula<'g>> {
+    pub(super) fn rows_of_constraint(&self, Names { q, f, xi, mu, .. }: &Names) -> Vec<Formula<'g>> {
         let Some(constraint) = &self.constraint else { return Vec::new() };
-        let ConstraintFormulas { rows, values, velocity, metric, between, momentum, places, .. } = *constraint;
+        let ConstraintFormulas { rows, values, velocity, metric, between, momentum, places, along, lag, .. } =
+            *constraint;
         let row = Formula::new(Id::Constraint, format!("(A, b)({q}), A {xi} = b"), [rows, values]);
         let places = places
             .map(|places| Formula::new(Id::Places, format!("0 = φ({q})"), [places]).computed_as(vec![places, rows]));
+        let multipliers = Formula::new(Id::Multipliers, format!("κ({q}, p), Aᵀκ = p"), [metric, along])
+            .in_words("S⁻¹·A·Σ⁻¹·p".into(), "S^{-1} A \\Sigma^{-1} p".into());
+        let reactions = Formula::new(Id::Reactions, format!("λ({q}, {mu})"), [metric, lag]).in_words(
+            format!("−S⁻¹·d/dt (A·{xi} − b) where λ = 0, {xi} = Σ⁻¹{mu}"),
+            format!("-S^{{-1}} \\frac{{d}}{{dt}} (A\\,{xi} - b) \\text{{ where }} \\lambda = 0,\\quad {xi} = \\Sigma^{{-1}} {mu}"),
+        );
         let known = [
             row.computed_as(vec![rows, values, velocity, metric]),
             Formula::new(Id::DiscreteConstraint, format!("ψ({q}, {f})"), [between]),
             Formula::new(Id::MomentumOfVelocity, format!("Σ{xi} + A"), [momentum]),
+            multipliers,
+            reactions,
         ];
         places.into_iter().chain(known).into_list()
     }
