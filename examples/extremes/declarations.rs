@@ -210,8 +210,7 @@ where
     S: Clebsch<Scalar = T, Configuration = Vector3<T>, Momentum = Vector3<T>>,
 {
     let q = vector(&setup.attitude.column(2).into_owned());
-    let n = stepper.project(&q, &vector(&setup.momentum))?;
-    stepper.state(q, n)
+    stepper.project(q, vector(&setup.momentum))
 }
 
 fn numbers_of_bob<T: Real>(q: &Vector3<T>, n: &Vector3<T>) -> Vec<f64> {
@@ -290,8 +289,7 @@ impl<T: Real> Scene for Series<T> {
     fn start<M: Method<Self>>(setup: &Setup, stepper: &Stepper<Self, M>) -> Result<State<Self, M>, Error> {
         let q = [2, 0].map(|column| vector(&setup.attitude.column(column).into_owned()));
         let n = vector(&setup.momentum);
-        let n = stepper.project(&q.into(), &Vector6::from_iterator(n.iter().chain(&n).copied()))?;
-        stepper.state(q.into(), n)
+        stepper.project(q.into(), Vector6::from_iterator(n.iter().chain(&n).copied()))
     }
     fn numbers<M: Method<Self>>(state: &State<Self, M>) -> Vec<f64> {
         let (p, q) = state.configuration();

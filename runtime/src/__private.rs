@@ -7,7 +7,9 @@ pub mod keys;
 
 pub use crate::__formulas_of_sites as formulas_of_sites;
 pub use crate::collocation::{GAUSS_16, SWEEPS, collocate};
-pub use crate::constraint::{Violation, check_place, constrained, multipliers, reactions, violation};
+pub use crate::constraint::{
+    Correction, Violation, check_place, constrained, multipliers, placed, reactions, violation,
+};
 pub use crate::definite::{check_definite, check_definite_at, check_definite_uniform};
 pub use crate::element::{
     below_right_angle, from_increment, inverse, per_one_plus_cosine, quaternion, quaternion_from_increment,

@@ -164,7 +164,7 @@ errors! {
             tolerance: f64,
         } =>
             "the momentum has a component of {violation:.3e} along motions that leave the configuration unchanged, \
-             where {tolerance:.1e} is accepted: project it by `Stepper::project` or compute it by `momentum_map`; \
+             where {tolerance:.1e} is accepted: start by `Stepper::project` or compute it by `momentum_map`; \
              where such motions are motions of the body, declare `isotropy = free`";
         /// The configuration does not obey the constraint of the declaration on places.
         OffConstraint {
@@ -174,7 +174,16 @@ errors! {
             tolerance: f64,
         } =>
             "the configuration violates the constraint by {violation:.3e}, where {tolerance:.1e} is accepted: start \
-             from one that obeys every equation of the constraint";
+             by `Stepper::project`, or from one that obeys every equation of the constraint";
+        /// No configuration that obeys the constraint of the declaration on places was found near this one.
+        FarFromConstraint {
+            /// The size of one of its equations that was left, left side less right side.
+            violation: f64,
+            /// Number of corrections of the configuration that were made.
+            corrections: u32,
+        } =>
+            "no configuration that obeys the constraint was found near this one: it is violated by {violation:.3e} \
+             after {corrections} corrections; start nearer to one that obeys it";
         /// The velocity of the momentum does not obey the constraint of the declaration.
         ConstraintViolated {
             /// The largest |A ξ − b| of its equations, in the units of the velocity that they fix.
@@ -182,8 +191,8 @@ errors! {
             /// The largest violation that is accepted.
             tolerance: f64,
         } =>
-            "the velocity violates the constraint by {violation:.3e}, where {tolerance:.1e} is accepted: project the \
-             momentum by `Stepper::project`, or give a velocity that obeys every equation of the constraint";
+            "the velocity violates the constraint by {violation:.3e}, where {tolerance:.1e} is accepted: start by \
+             `Stepper::project`, or give a velocity that obeys every equation of the constraint";
         /// The rows of the constraint depend on each other at this configuration: its forces are not determined.
         DependentConstraints {
             /// The number of independent rows.

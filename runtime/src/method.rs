@@ -77,6 +77,18 @@ pub trait Method<S: Clebsch>: Sized {
         S::Momentum::origin()
     }
 
+    /// The configuration on the constraint, as [`Clebsch::placed`].
+    #[doc(hidden)]
+    #[allow(unused_variables, reason = "provided methods take what others need")]
+    fn placed(
+        system: &S,
+        constants: &Self::Constants,
+        t: S::Scalar,
+        q: &S::Configuration,
+    ) -> Result<S::Configuration, Error> {
+        Ok(*q)
+    }
+
     /// The violation of the constraint, as [`Clebsch::constraint_defect`].
     #[doc(hidden)]
     #[allow(unused_variables, reason = "provided methods take what others need")]
@@ -153,6 +165,16 @@ impl<S: Clebsch> Method<S> for Declared {
     #[inline]
     fn stagger(system: &S, h: S::Scalar, t: S::Scalar, q: &S::Configuration) -> S::Momentum {
         system.stagger(h, t, q)
+    }
+
+    #[inline]
+    fn placed(
+        system: &S,
+        constants: &S::Constants,
+        t: S::Scalar,
+        q: &S::Configuration,
+    ) -> Result<S::Configuration, Error> {
+        system.placed(constants, t, q)
     }
 
     #[inline]

@@ -119,25 +119,47 @@ impl<S: Clebsch, M: Method<S>> Stepper<S, M> {
         ref system: S;
     }
 
-    /// The momentum nearest to `mu` that motions of q can have: the orthogonal projection of its components to 𝔤_q^⊥.
+    /// The state nearest to (q, N), which need not be one. Where the time matters it starts at 0.
     ///
-    /// With a constraint, nearest in the kinetic energy: μ + Aᵀκ whose velocity obeys the constraint, at the time 0.
+    /// Its momentum is the orthogonal projection of N to 𝔤_q^⊥, the momenta that motions of q can have. With a
+    /// constraint it is nearest in the kinetic energy: N + Aᵀκ, whose velocity obeys the constraint.
     ///
-    /// `mu` itself where there is no constraint, and the action is free or the declaration says `isotropy = free`.
+    /// A constraint on places moves q first. Newton's method takes motions along Σ⁻¹Aᵀ until φ(q) = 0 to rounding. The
+    /// distance is of the order of the violation.
+    ///
+    /// ```
+    /// # use clebsch::{Clebsch, Error};
+    /// # #[derive(Clebsch, Clone, Debug)]
+    /// # #[clebsch(
+    /// #     action     = |a: Translation<2>, x: Vector2| x + a,
+    /// #     lagrangian = |v| self.mass * v.norm_squared() / 2,
+    /// #     constraint = |x| [x.norm_squared() == 25],
+    /// # )]
+    /// # struct Bob { mass: f64 }
+    /// # use nalgebra::Vector2;
+    /// let stepper = Bob { mass: 2.0 }.into_stepper(0.1)?;
+    /// let start = stepper.project(Vector2::new(3.3, 4.4), Vector2::new(1.0, 0.0))?;
+    /// assert!((start.configuration() - Vector2::new(3.0, 4.0)).norm() < 1e-14);
+    /// assert!((start.momentum() - Vector2::new(0.64, -0.48)).norm() < 1e-14);
+    /// # Ok::<(), Error>(())
+    /// ```
     ///
     /// # Errors
-    /// [`Error::NotFinite`], [`Error::OffOrbit`] or [`Error::DependentConstraints`].
-    pub fn project(&self, q: &S::Configuration, mu: &S::Momentum) -> Result<S::Momentum, Error> {
+    /// [`Error::NotFinite`], [`Error::OffOrbit`], [`Error::FarFromConstraint`], [`Error::DependentConstraints`], or
+    /// [`Error::IndefiniteKineticEnergy`] as for [`state`](Self::state).
+    pub fn project(&self, q: S::Configuration, mu: S::Momentum) -> Result<State<S, M>, Error> {
         self.projected_at(Zero::zero(), q, mu)
     }
 
-    fn projected_at(&self, t: S::Scalar, q: &S::Configuration, mu: &S::Momentum) -> Result<S::Momentum, Error> {
-        self.check_configuration(q)?;
-        let projected = self.system.project_momentum(q, mu);
-        check_finite("the momentum", &(*mu, projected))?;
-        let projected = M::constrained(&self.system, M::Scheme::whole(&self.constants), t, q, &projected)?;
+    fn projected_at(&self, t: S::Scalar, q: S::Configuration, mu: S::Momentum) -> Result<State<S, M>, Error> {
+        self.check_configuration(&q)?;
+        check_finite("the momentum", &mu)?;
+        let constants = M::Scheme::whole(&self.constants);
+        let q = M::placed(&self.system, constants, t, &q)?;
+        let projected = self.system.project_momentum(&q, &mu);
         check_finite("the momentum", &projected)?;
-        Ok(projected)
+        let projected = M::constrained(&self.system, constants, t, &q, &projected)?;
+        self.checked_state(t, q, projected)
     }
 }
 
@@ -201,11 +223,11 @@ impl<S: Clebsch<Time = Clock<<S as Clebsch>::Scalar>>, M: Method<S>> Stepper<S, 
         self.checked_state(t, q, mu)
     }
 
-    /// The momentum nearest to `mu` at the time t, as [`project`](Self::project).
+    /// The state nearest to (q, N) at the time t, as [`project`](Self::project).
     ///
     /// # Errors
     /// As [`project`](Self::project); [`Error::NotFinite`] for the time too.
-    pub fn project_at(&self, t: S::Scalar, q: &S::Configuration, mu: &S::Momentum) -> Result<S::Momentum, Error> {
+    pub fn project_at(&self, t: S::Scalar, q: S::Configuration, mu: S::Momentum) -> Result<State<S, M>, Error> {
         check_finite("the time", &t)?;
         self.projected_at(t, q, mu)
     }

@@ -189,6 +189,20 @@ pub trait Clebsch: Sized {
         Ok(())
     }
 
+    /// A configuration that obeys the constraint of the declaration on places, next to q; q as provided.
+    ///
+    /// # Errors
+    /// [`Error::FarFromConstraint`], or [`Error::DependentConstraints`] where its rows depend on each other.
+    #[doc(hidden)]
+    fn placed(
+        &self,
+        constants: &Self::Constants,
+        t: Self::Scalar,
+        q: &Self::Configuration,
+    ) -> Result<Self::Configuration, Error> {
+        Ok(*q)
+    }
+
     /// By how much the velocity of the momentum μ violates the constraint of the declaration: a Σ⁻¹μ − b. None as provided.
     ///
     /// # Errors

@@ -164,7 +164,7 @@ fn states_are_checked() -> Result<(), Error> {
     let stepper = top().stepper(0.1)?;
     let mirrored = Matrix3::from_diagonal(&Vector3::new(1.0, 1.0, -1.0));
     assert!(matches!(stepper.state(mirrored, momentum()), Err(Error::OffOrbit { defect: f64::INFINITY, .. })));
-    assert!(matches!(stepper.project(&mirrored, &momentum()), Err(Error::OffOrbit { .. })));
+    assert!(matches!(stepper.project(mirrored, momentum()), Err(Error::OffOrbit { .. })));
     assert!(matches!(stepper.state(attitude() * 1.001, momentum()), Err(Error::OffOrbit { .. })));
     assert!(matches!(stepper.state(attitude() * f64::NAN, momentum()), Err(Error::NotFinite { .. })));
     assert!(matches!(stepper.state(attitude(), momentum() * f64::NAN), Err(Error::NotFinite { name: "the momentum" })));

@@ -66,8 +66,7 @@ where
 {
     let stepper = system.into_stepper(H).expect("parameters");
     task.quantity(name, "path", |record| {
-        let mu = stepper.project(&q, &uneven(1.0)).expect("a projection");
-        let start = stepper.state(q, mu).expect("a state");
+        let start = stepper.project(q, uneven(1.0)).expect("a state");
         let target = stepper.trajectory(start).nth(STEPS).expect("endless").expect("a step");
         let boundary = stepper.boundary();
         let mut path: [Node<S, M>; N] = [boundary.rest(&q); N];

@@ -42,7 +42,7 @@ pub struct Start<S: Clebsch, M: Method<S> = Declared> {
 impl<S: Clebsch<Scalar: Scalar<Lane: Bits>> + Clone, M: Method<S>> Start<S, M> {
     pub fn new(system: S, q: S::Configuration, h: S::Scalar) -> Self {
         let stepper = system.into_stepper_by::<M>(h).expect("parameters");
-        let mu = stepper.project(&q, &uneven(1.0)).expect("a projection");
+        let mu = stepper.project(q, uneven(1.0)).expect("a projection").momentum();
         Self { stepper, q, mu }
     }
 

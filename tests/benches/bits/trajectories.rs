@@ -184,7 +184,9 @@ fn formulas<S: Clebsch<Scalar: Scalar<Lane: Bits>> + Clone>(
     each("coadjoint", &|record, point| record.add(&stepper.coadjoint(&point.f, &point.mu)));
     each("momentum_map", &|record, point| record.add(&stepper.momentum_map(point.q(), &p)));
     each("momentum_matrix", &|record, point| record.add(&stepper.momentum_matrix(&point.mu)));
-    each("project", &|record, point| record.result(stepper.project(point.q(), &uneven(1.0))));
+    each("project", &|record, point| {
+        record.result(stepper.project(*point.q(), uneven(1.0)).map(|state| state.momentum()))
+    });
     each("potential", &|record, point| record.add(&stepper.potential_at(point.t, point.q())));
     each("kinetic_energy", &|record, point| record.add(&stepper.kinetic_energy(&point.state)));
     each("synchronized", &|record, point| {

@@ -120,8 +120,8 @@ macro_rules! stepping {
                     *made = stepper.cotangent_state(*q, *p)?;
                 }
             );
-            $crate::export!("project", $name, |stepper: &Stepper<S, M>, q: &Q, mu: &mut N| {
-                *mu = stepper.project(q, mu)?;
+            $crate::export!("project", $name, |stepper: &Stepper<S, M>, q: &Q, mu: &N, made: &mut State<S, M>| {
+                *made = stepper.project(*q, *mu)?;
             });
             $crate::export!("resume", $name, |stepper: &Stepper<S, M>,
                                               saved: &SavedState<S, M>,

@@ -9,4 +9,5 @@ mod places;
 mod reactions;
 mod reference;
 mod refused;
+mod repaired;
 mod variants;

@@ -140,7 +140,7 @@ pub fn tilted(bodies: &JointedBodies) -> [Matrix4<f64>; 2] {
 }
 
 /// By how much both joints are open.
-fn open(bodies: &JointedBodies, q: &[Matrix4<f64>; 2]) -> f64 {
+pub fn open(bodies: &JointedBodies, q: &[Matrix4<f64>; 2]) -> f64 {
     let at = |q: &Matrix4<f64>, point: Vector3<f64>| q.transform_point(&point.into()).coords;
     let ceiling = at(&q[0], bodies.near[0]);
     ceiling.norm().max((at(&q[1], bodies.near[1]) - at(&q[0], bodies.far)).norm())
@@ -151,8 +151,7 @@ fn joints_stay_closed_and_steps_are_time_symmetric() -> Result<(), Error> {
     let bodies = bodies();
     let (forth, back) = (bodies.stepper(0.01)?, bodies.stepper(-0.01)?);
     let places = tilted(&bodies);
-    let momentum = forth.project(&places, &SVector::<f64, 12>::from_fn(|i, _| 0.01 * (i as f64 - 5.0)))?;
-    let start = forth.state(places, momentum)?;
+    let start = forth.project(places, SVector::from_fn(|i, _| 0.01 * (i as f64 - 5.0)))?;
     let there = forth.advance(&start, 40)?;
     let again = back.advance(&back.state(*there.configuration(), there.momentum())?, 40)?;
     let far = start.configuration().distance_squared(again.configuration()).sqrt();

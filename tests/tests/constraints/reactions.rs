@@ -183,8 +183,7 @@ fn the_table_pushes_its_ball_round() -> Result<(), Error> {
     let ball = RollingBall { mass: 1.3, inertia: 0.7, radius: 0.5, table_rate: 0.9 };
     let kappa = ball.inertia * ball.table_rate / (ball.inertia + ball.mass * ball.radius * ball.radius);
     let stepper = ball.stepper(0.1)?;
-    let momentum = stepper.project(&Vector2::new(0.3, -0.2), &Vector5::new(0.2, 0.4, 0.1, -0.3, 0.35))?;
-    let mut state = stepper.state(Vector2::new(0.3, -0.2), momentum)?;
+    let mut state = stepper.project(Vector2::new(0.3, -0.2), Vector5::new(0.2, 0.4, 0.1, -0.3, 0.35))?;
     for _ in 0..100 {
         let n = state.momentum();
         let off = (stepper.reactions(&state)? - Vector2::new(-n[1], n[0]) * kappa).norm();
@@ -244,9 +243,8 @@ fn joints_accelerate_the_centres_of_mass() -> Result<(), Error> {
     let bodies = bodies();
     let h = 1e-4;
     let stepper = bodies.stepper(h)?;
-    let places = tilted(&bodies);
-    let momentum = stepper.project(&places, &SVector::<f64, 12>::from_fn(|i, _| 0.01 * (i as f64 - 5.0)))?;
-    let before = stepper.advance(&stepper.state(places, momentum)?, 1000)?;
+    let start = stepper.project(tilted(&bodies), SVector::from_fn(|i, _| 0.01 * (i as f64 - 5.0)))?;
+    let before = stepper.advance(&start, 1000)?;
     let state = stepper.step(&before)?;
     let after = stepper.step(&state)?;
     let forces = [0, 1].map(|i| {
@@ -267,10 +265,10 @@ where
     S: Reacting<Declared, Scalar = f64> + Clone,
 {
     let (forth, back) = (system.stepper(h)?, system.stepper(-h)?);
-    let mu = forth.project(&q, &mu)?;
-    let found = forth.reactions(&forth.state(q, mu)?)?;
-    let (_, there) = forth.step_with_reactions(&forth.state(q, mu)?)?;
-    let (_, again) = back.step_with_reactions(&back.state(q, mu)?)?;
+    let start = forth.project(q, mu)?;
+    let found = forth.reactions(&start)?;
+    let (_, there) = forth.step_with_reactions(&start)?;
+    let (_, again) = back.step_with_reactions(&back.state(*start.configuration(), start.momentum())?)?;
     let mean = there.zip_map(&again, |a, b| (a + b) / 2.0);
     Ok(found.distance_squared(&mean).sqrt() / found.max_abs())
 }

@@ -182,11 +182,22 @@ fn states() -> Vec<Scene> {
     vec![
         scene(
             refused(sleigh.state_moving(r, Vector3::new(1.0, 0.5, 0.25))),
-            &["the velocity violates the constraint by 2.500e-1", "project the momentum by `Stepper::project`"],
+            &["the velocity violates the constraint by 2.500e-1", "start by `Stepper::project`, or give a velocity"],
         ),
         scene(
             refused(Rod.into_stepper(0.1).expect("a rod").state(Vector2::new(1.0, 1.0), Vector2::zeros())),
-            &["the configuration violates the constraint by 1.000e0", "start from one that obeys every equation"],
+            &[
+                "the configuration violates the constraint by 1.000e0",
+                "start by `Stepper::project`, or from one that obeys every equation",
+            ],
+        ),
+        scene(
+            refused(Rod.into_stepper(0.1).expect("a rod").project(Vector2::new(1e-12, 0.0), Vector2::zeros())),
+            &[
+                "no configuration that obeys the constraint was found near",
+                "after 32 corrections",
+                "start nearer to one",
+            ],
         ),
         scene(
             refused(crossing.state(Vector2::new(1.0, 1.0), Vector2::zeros())),
@@ -207,7 +218,7 @@ fn states() -> Vec<Scene> {
         ),
         scene(
             refused(sphere.state(Vector3::y(), Vector3::new(1.0, 0.25, 0.5))),
-            &["a component of 2.500e-1", "project it by `Stepper::project` or compute it by `momentum_map`"],
+            &["a component of 2.500e-1", "start by `Stepper::project` or compute it by `momentum_map`"],
         ),
         scene(refused(ensemble.set_body(2, (r, mu))), &["no body 2 in an ensemble of 2", "give a number below 2"]),
         scene(refused(damped.step_symmetric(&covector)), &["no step in (q, p)", "step in (q, N), by `Stepper::step`"]),

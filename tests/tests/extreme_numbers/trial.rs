@@ -78,7 +78,7 @@ impl<S: Scene> Of<S> {
     pub fn new() -> Self {
         let stepper = S::ordinary().stepper(S::step_size()).expect("an ordinary system");
         let (q, mu) = (S::configuration(), S::Momentum::filled(Scalar::from_ratio(3, 10)));
-        let mu = stepper.project(&q, &mu).expect("a projection");
+        let mu = stepper.project(q, mu).expect("a projection").momentum();
         let input = S::Input::filled(S::Scalar::from_f64(0.1));
         let ordinary = (stepper.clone(), mu);
         Of { ordinary, stepper, q, mu, input, start: None, cotangent: None, ensemble: None }
@@ -169,8 +169,8 @@ impl<S: Scene> Trial for Of<S> {
             "legendre" => drop(stepper.legendre_at(zero, &q, &broken())),
             "legendre_next" => drop(stepper.legendre_next_at(zero, &q, &broken())),
             "act" => drop((stepper.act(&broken(), &q), stepper.coadjoint(&broken(), &mu))),
-            "project" => return Ok(stepper.project(&q, &mu)?.all_finite()),
-            "projected" => self.mu = stepper.project(&q, &mu)?,
+            "project" => return Ok(stepper.project(q, mu)?.momentum().all_finite()),
+            "projected" => self.mu = stepper.project(q, mu)?.momentum(),
             "inverse_legendre" => {
                 let f = stepper.inverse_legendre_at(zero, &q, &mu)?;
                 return Ok(f.all_finite() && self.is_on_space(&stepper.act(&f, &q)));

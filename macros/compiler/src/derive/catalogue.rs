@@ -184,6 +184,8 @@ catalogue! {
     Multipliers = unlisted("multipliers", Hot);
     /// λ of the motion; computed as S and −d/dt (A ξ − b).
     Reactions = listed("multipliers", Hot);
+    /// The coordinates of a motion to φ = 0; computed as φ, A, S and s Σ⁻¹Aᵀ.
+    PlaceCorrection = unlisted("correction of a place", Hot);
     /// ψ(q, F).
     DiscreteConstraint = listed("constraint of a step", Cold);
     /// Σξ + A.

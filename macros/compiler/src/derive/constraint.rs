@@ -14,6 +14,9 @@
 //!
 //! The multipliers of a push p = Aᵀκ are κ = S⁻¹A Σ⁻¹p. Those of the continuous motion, N′ = N′_free + Aᵀλ, follow from
 //! the derivative of the constraint: S λ = −d/dt (A ξ − b) along N′_free.
+//!
+//! A place comes to φ = 0 by motions with x = −s Σ⁻¹Aᵀ S⁻¹φ, where s = dx/dξ at the identity. This is Newton's method with the
+//! motion that is shortest in the kinetic energy.
 
 use clebsch_symbolic::{Expr, IntoList, Property, Role, Shape, identity};
 
@@ -45,6 +48,8 @@ pub struct ConstraintFormulas<'g> {
     pub along: Expr<'g>,
     /// −d/dt (A ξ − b) along the motion without the constraint, a function of t, q, μ and the input u.
     pub lag: Expr<'g>,
+    /// s Σ⁻¹Aᵀ: chart coordinates of the motion that a push makes.
+    pub moved: Expr<'g>,
     /// φ(t, q), of a constraint on places.
     pub places: Option<Expr<'g>>,
     /// The rows between both ends of a step are the mean of those at the ends, not those at the mean of the ends.
@@ -90,6 +95,7 @@ impl<'g> ConstraintFormulas<'g> {
             metric: product(by_inertia, rows.transpose()),
             velocity,
             along: by_inertia * momenta,
+            moved: coordinates_of_motion(system, by_inertia.transpose()),
             lag: -(rows * velocity - values).differential(&free),
             momentum: system.symbols.slope(energy.kinetic) + gyroscopic,
             places,
@@ -125,6 +131,18 @@ impl<'g> ConstraintFormulas<'g> {
         let solved = if self.metric.shape().is_scalar() { along / self.metric } else { self.metric.inverse() * along };
         self.rows.transpose() * solved
     }
+}
+
+/// s ξ in the charts, for each column ξ.
+fn coordinates_of_motion<'g>(system: &SystemFormulas<'g>, velocities: Expr<'g>) -> Expr<'g> {
+    let shape = velocities.shape();
+    let entry = |(i, j): (usize, usize)| {
+        let block = system.symbols.blocks.iter().position(|block| block.components().contains(&i));
+        let slope = block.map(|block| system.chart_slope(block));
+        slope
+            .map_or(velocities.entry(i, j), |(numerator, denominator)| numerator * velocities.entry(i, j) / denominator)
+    };
+    velocities.graph().stack(shape, shape.positions().map(entry).into_list())
 }
 
 /// The changes of t, q and N where no constraint acts, N′ = ± ad*_ξ N + J(q, ∂(A·ξ − V)) + f, with this ξ.

@@ -59,10 +59,15 @@ impl<'g> SystemFormulas<'g> {
     /// s·h/c with s = dx/dξ at the identity in a block. To first order, x is this factor times a velocity in one of c
     /// parts of a step.
     pub(super) fn chart_step(&self, block: usize, divisor: i64) -> Expr<'g> {
+        let (numerator, denominator) = self.chart_slope(block);
+        numerator * self.model.step_size / (denominator * divisor)
+    }
+
+    /// s = dx/dξ at the identity in a block, a ratio.
+    pub(super) fn chart_slope(&self, block: usize) -> (i64, i64) {
         let ChartBlock { factor, block, .. } = self.symbols.blocks[block];
         let blocks = self.model.graph.blocks(self.model.factors[factor].group);
-        let (numerator, denominator) = self.symbols.charts[factor].slope_at_identity(&blocks[block]);
-        numerator * self.model.step_size / (denominator * divisor)
+        self.symbols.charts[factor].slope_at_identity(&blocks[block])
     }
 
     /// The part of the momentum symbol that belongs to a block.

@@ -95,6 +95,14 @@ functions! {
             Locals
             runtime::constrained(mu, &Matrix0, &Value2, &Value1, &Matrix3)
         }
+        /// The configuration that obeys the constraint, next to a configuration.
+        fn placed(Receiver, c: &C, t: T, q: &Q) -> Result<Q, Error> { Id::PlaceCorrection } = {
+            runtime::placed(
+                System, q,
+                |q| { Locals runtime::Correction { places: Value0, rows: Matrix1, metric: Matrix2, moved: Matrix3 } },
+                |x| PartsOf::element(&PartsOf::increment(System, x)),
+            )
+        }
     }
 
     /// `Constrained`.

@@ -81,9 +81,16 @@ impl<'g> Emitter<'_, 'g> {
                 Body::new(kernel?, quote!(runtime::check_definite_at(&{ #inertia })))
             }
             "check_kinetic_energy" => return None,
-            "check_place" | "constraint_defect" | "constrained" => {
+            "check_place" | "constraint_defect" | "constrained" | "placed" => {
                 let scope = self.scope(self.receiver(), Some(quote!(c)));
-                function.written(&scope, kernel, &|word| matrix_of_kernel(&scope, kernel?, word))?
+                function.written(&scope, kernel, &|word| match word {
+                    "System" => Some(self.receiver()),
+                    "PartsOf" => {
+                        let (system, parts) = (self.target.of_type(), self.trait_of_parts("Parts", &[]));
+                        Some(quote!(<#system as #parts>))
+                    }
+                    _ => matrix_of_kernel(&scope, kernel?, word),
+                })?
             }
             _ => function.computes(&scope, kernel?),
         })

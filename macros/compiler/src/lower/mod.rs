@@ -195,7 +195,7 @@ impl<'g> Maker<'_, 'g> {
         self.rows([Id::MomentumMatrix, Id::MomentumComponents]);
         self.velocity();
         self.known_rows([Id::Gyroscopic, Id::ConservedMomenta, Id::Places, Id::Constraint, Id::MomentumOfVelocity]);
-        self.known_rows([Id::Multipliers, Id::Reactions]);
+        self.known_rows([Id::PlaceCorrection, Id::Multipliers, Id::Reactions]);
         gathered
     }
 

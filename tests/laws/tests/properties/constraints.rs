@@ -3,11 +3,12 @@
 use crate::arbitrary::{cases, definite, matrix, vector};
 use crate::bodies::H;
 use clebsch::__private::{
-    At, Parts, Scheme, Substep, Violation, check_place, constrained, multipliers, reactions, violation,
+    At, Correction, Parts, Scheme, Substep, Violation, check_place, constrained, multipliers, placed, reactions,
+    violation,
 };
 use clebsch::{Clebsch, Constrained, Declared, Error, Method, Reacting};
 use clebsch_tests::oracle::near::assert_near;
-use nalgebra::{Matrix1x3, Matrix2, Matrix2x3, Matrix3, Vector1, Vector3};
+use nalgebra::{Matrix1, Matrix1x3, Matrix2, Matrix2x3, Matrix3, Vector1, Vector3};
 use proptest::prelude::*;
 
 const NEAR: f64 = 1e-12;
@@ -85,11 +86,11 @@ proptest! {
         let is_refused = matches!(beyond, Err(Error::ConstraintViolated { violation, .. }) if (violation - 1.0).abs() < NEAR);
         prop_assert!(is_refused);
         // at another time
-        let mu = stepper.project_at(t, &x, &(mass * velocity))?;
+        let mu = stepper.project_at(t, x, mass * velocity)?.momentum();
         let inverse = mass.try_inverse().expect("a regular matrix");
         let reached = inverse * mu;
         prop_assert!((reached.z - x.y * reached.x - 0.7 * t).abs() < NEAR);
-        prop_assert_eq!(stepper.project(&x, &mu)?, stepper.project_at(0.0, &x, &mu)?);
+        prop_assert_eq!(stepper.project(x, mu)?, stepper.project_at(0.0, x, mu)?);
         // the same by the system and by its method
         prop_assert_eq!(system.constrained(&constants, t, &x, &(mass * velocity))?, mu);
         prop_assert_eq!(<Declared as Method<Guided>>::constrained(&system, &constants, t, &x, &(mass * velocity))?, mu);
@@ -113,6 +114,27 @@ proptest! {
         let rows = Matrix1x3::new(1.0, 0.0, 0.0);
         prop_assert_eq!(check_place(&Vector1::new(1e-9), &rows, &place), Ok(()));
         prop_assert!(check_place(&Vector1::new(f64::NAN), &rows, &place).is_err());
+    }
+
+    /// A place comes straight to the sphere, as motions of a point are shortest so.
+    #[test]
+    fn places_come_to_constraints(x in vector::<3>(1.0), t in 0.0_f64..1.0) {
+        prop_assume!(x.norm() > 0.1);
+        let bead = Bead { growth: 0.5 };
+        let constants = bead.constants(H)?;
+        let expected = x.normalize() * (1.0 + 0.5 * t).sqrt();
+        let found = bead.placed(&constants, t, &x)?;
+        assert_near(&found, &expected, NEAR, "the place");
+        prop_assert_eq!(<Declared as Method<Bead>>::placed(&bead, &constants, t, &x)?, found);
+        let near = |x: &Vector3<f64>| Correction {
+            places: Vector1::new(x.norm_squared() - 1.0),
+            rows: Matrix1x3::new(2.0 * x.x, 2.0 * x.y, 2.0 * x.z),
+            metric: Matrix1::new(4.0 * x.norm_squared()),
+            moved: x * 2.0,
+        };
+        assert_near(&placed(&bead, &x, near, |x| *x)?, &x.normalize(), NEAR, "the same place");
+        let nowhere = |x: &Vector3<f64>| Correction { places: Vector1::new(x.norm_squared() + 1.0), ..near(x) };
+        prop_assert!(placed(&bead, &x, nowhere, |x| *x).is_err());
     }
 
     /// A step: kick, solve, the force of the constraint along its rows, move, kick, projection. The velocity of the step obeys the

@@ -37,6 +37,7 @@ pub const PROPERTIES: &[(&str, &[Property])] = &[
         ("momenta_come_to_constraints",      &["constrained", "violation", "Violation::none"]),
         ("velocities_obey_constraints",      &["Stepper::state_moving", "Stepper::project_at", "Constrained::momentum_of_velocity", "Clebsch::constrained", "Clebsch::constraint_defect", "Method::constrained", "Method::constraint_defect"]),
         ("places_obey_constraints",          &["check_place", "Clebsch::check_place"]),
+        ("places_come_to_constraints",       &["placed", "Clebsch::placed", "Method::placed"]),
         ("constraints_push_along_their_rows", &["Substep::reaction", "Substep::projection", "Scheme::step_pushed", "Stepper::step_with_reactions", "Reacting::multipliers", "multipliers"]),
         ("reactions_hold_motions_on_constraints", &["Stepper::reactions", "Stepper::reactions_under", "Stepper::step_with_reactions_under", "Reacting::reactions_of_motion", "reactions"]),
     ]),

@@ -194,7 +194,7 @@ where
     S::Scalar: Scalar<Lane: Bytes>,
 {
     let stepper = stepper?;
-    let start = stepper.state(q, stepper.project(&q, &mu)?)?;
+    let start = stepper.project(q, mu)?;
     Trial::new(&stepper, start)?.run();
     Ok(())
 }
@@ -288,7 +288,7 @@ fn what_is_held_of_a_momentum_is_checked() -> Result<(), Error> {
     let point = SVector::from([0.6, 0.0, 0.8, 0.0, 0.0, 0.0, 0.0, 0.0]);
     let spin = Random::new(95).vector();
     let pushed = PointOfLargeSphere { weight: 3.0 }.into_stepper(0.05)?;
-    let state = pushed.state(point, pushed.project(&point, &spin)?)?;
+    let state = pushed.project(point, spin)?;
     let refused = changed(&pushed, &state, |state| {
         let along = |i: usize, q: f64| state["momentum"][i].as_f64().expect("a number") + 1e-3 * q;
         let w: Vec<f64> = point.iter().enumerate().map(|(i, q)| along(i, *q)).collect();
@@ -297,7 +297,7 @@ fn what_is_held_of_a_momentum_is_checked() -> Result<(), Error> {
     assert!(matches!(refused, Some(Error::OutsideMomentumSpace { .. })), "{refused:?}");
 
     let free = FreePointOfLargeSphere.into_stepper(0.05)?;
-    let state = free.state(point, free.project(&point, &spin)?)?;
+    let state = free.project(point, spin)?;
     let refused = changed(&free, &state, |state| {
         let longer: Vec<f64> = point.iter().map(|entry| 1.001 * entry).collect();
         state["momentum"][0] = longer.into();

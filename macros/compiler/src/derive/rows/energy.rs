@@ -37,13 +37,17 @@ impl<'g> MechanicsFormulas<'g> {
     }
 
     /// The constraint, and that of a step; the momentum of a velocity.
-    pub(super) fn rows_of_constraint(&self, Names { q, f, xi, mu, .. }: &Names) -> Vec<Formula<'g>> {
+    pub(super) fn rows_of_constraint(&self, Names { q, f, xi, mu, x, .. }: &Names) -> Vec<Formula<'g>> {
         let Some(constraint) = &self.constraint else { return Vec::new() };
-        let ConstraintFormulas { rows, values, velocity, metric, between, momentum, places, along, lag, .. } =
+        let ConstraintFormulas { rows, values, velocity, metric, between, momentum, places, along, lag, moved, .. } =
             *constraint;
         let row = Formula::new(Id::Constraint, format!("(A, b)({q}), A {xi} = b"), [rows, values]);
-        let places = places
-            .map(|places| Formula::new(Id::Places, format!("0 = φ({q})"), [places]).computed_as(vec![places, rows]));
+        let of_places = |places: Expr<'g>| {
+            let correction = Formula::new(Id::PlaceCorrection, x, [places, rows, metric, moved])
+                .in_words("−s·Σ⁻¹·Aᵀ·S⁻¹·φ".into(), "-s\\,\\Sigma^{-1} A^T S^{-1} \\varphi".into());
+            [Formula::new(Id::Places, format!("0 = φ({q})"), [places]).computed_as(vec![places, rows]), correction]
+        };
+        let places = places.map(of_places);
         let multipliers = Formula::new(Id::Multipliers, format!("κ({q}, p), Aᵀκ = p"), [metric, along])
             .in_words("S⁻¹·A·Σ⁻¹·p".into(), "S^{-1} A \\Sigma^{-1} p".into());
         let reactions = Formula::new(Id::Reactions, format!("λ({q}, {mu})"), [metric, lag]).in_words(
@@ -57,7 +61,7 @@ impl<'g> MechanicsFormulas<'g> {
             multipliers,
             reactions,
         ];
-        places.into_iter().chain(known).into_list()
+        places.into_iter().flatten().chain(known).into_list()
     }
 
     /// ½ (μ − A)·Σ⁻¹(μ − A), or μ·ξ − ℓ(ξ) where ℓ is not quadratic, and a potential energy added to it.
