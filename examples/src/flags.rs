@@ -1,5 +1,6 @@
 //! Flags that every scene takes, and parsers whose errors name the mistake in a number.
 
+use crate::scene::Failure;
 use clap::{Args, Parser, ValueEnum};
 use std::fmt::{self, Display, Formatter};
 use std::path::PathBuf;
@@ -55,6 +56,17 @@ impl Run {
     /// The time of the last step.
     pub fn duration(&self) -> f64 {
         self.time(self.steps)
+    }
+
+    /// For scenes with a constraint.
+    ///
+    /// # Errors
+    /// [`Failure::Flags`] for `--order 1`.
+    pub fn refuse_first_order(&self) -> Result<(), Failure> {
+        if self.order == Order::First {
+            return Err(Failure::Flags("--order 1: steps with a constraint have order 2".to_owned()));
+        }
+        Ok(())
     }
 
     /// Whether `step` is one of about `count` evenly spaced ones, the first and the last among them.

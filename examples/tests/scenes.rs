@@ -96,13 +96,15 @@ fn defaults_hold_all_their_claims() {
     });
 }
 
-/// Scenes of plans, which short runs do not suit: name, flags, and the columns of the CSV file.
-const PLANS: [(&str, &[&str], &str); 2] = [
+/// Scenes of plans, which short runs do not suit, and those with a constraint, whose steps have order 2 alone.
+/// They are a name, flags, and the columns of the CSV file.
+const PLANS: [(&str, &[&str], &str); 3] = [
     (
         "slew",
         &["--least", "effort"],
         "step,time,R11,R12,R13,R21,R22,R23,R31,R32,R33,pi1,pi2,pi3,omega1,omega2,omega3,u1,u2,u3",
     ),
+    ("rolling_ball", &[], "step,time,x,y,vx,vy,w1,w2,w3"),
     ("quadrotor", &[], "step,time,R11,R12,R13,R21,R22,R23,R31,R32,R33,x1,x2,x3,v1,v2,v3,pi1,pi2,pi3,u1,u2,u3,u4"),
 ];
 
@@ -196,6 +198,8 @@ fn other_flags_hold_all_their_claims() {
         ("unicycle", &["--goal", "1,0,0", "--costate", "3,0,0", "--time-price", "100"]),
         ("unicycle", &["--turn-price", "0.04", "--costate", "0,1,0", "--top-turn", "1", "--miss-price", "0.1"]),
         ("slew", &["--least", "effort", "--torque", "250", "--heavier", "0.01", "--tilted", "1"]),
+        ("rolling_ball", &["--hollow", "--tilt", "0.5"]),
+        ("rolling_ball", &["--table", "-2", "--velocity", "0,0"]),
         ("ensemble", &["--bodies", "13", "--inertia", "1,1.5,2", "--tilt", "20", "--spin", "1", "--seed", "3"]),
         ("inertia_estimation", &["--noise", "2000", "--step-size", "0.05", "--steps", "12000", "--seed", "2"]),
         ("inertia_estimation", &["--spin", "0,0,0", "--step-size", "0.1", "--steps", "6000", "--guess", "1,1,1"]),
@@ -312,6 +316,9 @@ fn mistakes_are_explained() {
         ("plate_ball", &["--turn", "0,0,0,3"], "an axis needs a direction"),
         ("plate_ball", &["--turn", "1,0,0,0"], "another place or another attitude is needed"),
         ("plate_ball", &["--radius", "-1"], "`-1` is not above zero"),
+        ("rolling_ball", &["--order", "1"], "steps with a constraint have order 2"),
+        ("rolling_ball", &["--table", "0"], "the table has to turn"),
+        ("rolling_ball", &["--step-size", "0.1"], "was not reached"),
         ("sphere_geodesics", &["--step-size", "2"], "step 1 was not reached"),
         ("sphere_geodesics", &["--sphere", "5"], "possible values: 3, 7, 20, 100"),
         ("sphere_geodesics", &["--position", "1,0,0,0"], "a point of S7 has 8 coordinates, 4 were given"),
