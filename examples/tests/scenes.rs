@@ -98,13 +98,14 @@ fn defaults_hold_all_their_claims() {
 
 /// Scenes of plans, which short runs do not suit, and those with a constraint, whose steps have order 2 alone.
 /// They are a name, flags, and the columns of the CSV file.
-const PLANS: [(&str, &[&str], &str); 3] = [
+const PLANS: [(&str, &[&str], &str); 4] = [
     (
         "slew",
         &["--least", "effort"],
         "step,time,R11,R12,R13,R21,R22,R23,R31,R32,R33,pi1,pi2,pi3,omega1,omega2,omega3,u1,u2,u3",
     ),
     ("rolling_ball", &[], "step,time,x,y,vx,vy,w1,w2,w3"),
+    ("sleigh", &[], "step,time,x,y,heading,omega,v,omega1,omega2,omega3"),
     ("quadrotor", &[], "step,time,R11,R12,R13,R21,R22,R23,R31,R32,R33,x1,x2,x3,v1,v2,v3,pi1,pi2,pi3,u1,u2,u3,u4"),
 ];
 
@@ -200,6 +201,8 @@ fn other_flags_hold_all_their_claims() {
         ("slew", &["--least", "effort", "--torque", "250", "--heavier", "0.01", "--tilted", "1"]),
         ("rolling_ball", &["--hollow", "--tilt", "0.5"]),
         ("rolling_ball", &["--table", "-2", "--velocity", "0,0"]),
+        ("sleigh", &["--offset", "0.2", "--turning", "-2", "--omega", "0.3,-0.4", "--steps", "300"]),
+        ("sleigh", &["--speed", "1", "--turning", "1e-3", "--omega", "1,1.6", "--steps", "100"]),
         ("ensemble", &["--bodies", "13", "--inertia", "1,1.5,2", "--tilt", "20", "--spin", "1", "--seed", "3"]),
         ("inertia_estimation", &["--noise", "2000", "--step-size", "0.05", "--steps", "12000", "--seed", "2"]),
         ("inertia_estimation", &["--spin", "0,0,0", "--step-size", "0.1", "--steps", "6000", "--guess", "1,1,1"]),
@@ -319,6 +322,9 @@ fn mistakes_are_explained() {
         ("rolling_ball", &["--order", "1"], "steps with a constraint have order 2"),
         ("rolling_ball", &["--table", "0"], "the table has to turn"),
         ("rolling_ball", &["--step-size", "0.1"], "was not reached"),
+        ("sleigh", &["--turning", "0"], "both need a velocity that is not steady"),
+        ("sleigh", &["--offset", "-1"], "`-1` is not above zero"),
+        ("sleigh", &["--step-size", "10"], "was not reached"),
         ("sphere_geodesics", &["--step-size", "2"], "step 1 was not reached"),
         ("sphere_geodesics", &["--sphere", "5"], "possible values: 3, 7, 20, 100"),
         ("sphere_geodesics", &["--position", "1,0,0,0"], "a point of S7 has 8 coordinates, 4 were given"),
