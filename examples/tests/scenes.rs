@@ -98,7 +98,7 @@ fn defaults_hold_all_their_claims() {
 
 /// Scenes of plans, which short runs do not suit, and those with a constraint, whose steps have order 2 alone.
 /// They are a name, flags, and the columns of the CSV file.
-const PLANS: [(&str, &[&str], &str); 6] = [
+const PLANS: [(&str, &[&str], &str); 7] = [
     (
         "slew",
         &["--least", "effort"],
@@ -108,6 +108,7 @@ const PLANS: [(&str, &[&str], &str); 6] = [
     ("sleigh", &[], "step,time,x,y,heading,omega,v,omega1,omega2,omega3"),
     ("rattleback", &[], "step,time,R11,R12,R13,R21,R22,R23,R31,R32,R33,x1,x2,x3,w1,w2,w3"),
     ("snakeboard", &[], "step,time,x,y,heading,rotor,wheel,speed"),
+    ("double_pendulum", &[], "step,time,x1,y1,z1,x2,y2,z2,a1,a2,a3,b1,b2,b3"),
     ("quadrotor", &[], "step,time,R11,R12,R13,R21,R22,R23,R31,R32,R33,x1,x2,x3,v1,v2,v3,pi1,pi2,pi3,u1,u2,u3,u4"),
 ];
 
@@ -208,6 +209,8 @@ fn other_flags_hold_all_their_claims() {
         ("rattleback", &["--spin", "1", "--tilt", "2", "--steps", "8000"]),
         ("snakeboard", &["--wheels", "0.8", "--cycle", "2", "--steps", "1200"]),
         ("snakeboard", &["--rotor", "0", "--steps", "130"]),
+        ("double_pendulum", &["--bars", "0.3,0.4,0.5", "--ground", "0.6", "--crank", "0", "--steps", "400"]),
+        ("double_pendulum", &["--gravity", "0", "--upper", "0,0,1", "--steps", "300"]),
         ("ensemble", &["--bodies", "13", "--inertia", "1,1.5,2", "--tilt", "20", "--spin", "1", "--seed", "3"]),
         ("inertia_estimation", &["--noise", "2000", "--step-size", "0.05", "--steps", "12000", "--seed", "2"]),
         ("inertia_estimation", &["--spin", "0,0,0", "--step-size", "0.1", "--steps", "6000", "--guess", "1,1,1"]),
@@ -334,6 +337,9 @@ fn mistakes_are_explained() {
         ("rattleback", &["--step-size", "1"], "was not reached"),
         ("snakeboard", &["--wheels", "1.6"], "at a quarter of a turn the wheels stand across"),
         ("snakeboard", &["--cycle", "0"], "`0` is not above zero"),
+        ("double_pendulum", &["--bars", "0.1,0.1,0.1"], "the loop cannot be closed"),
+        ("double_pendulum", &["--ground", "0"], "`0` is not above zero"),
+        ("double_pendulum", &["--step-size", "0.1"], "was not reached"),
         ("sphere_geodesics", &["--step-size", "2"], "step 1 was not reached"),
         ("sphere_geodesics", &["--sphere", "5"], "possible values: 3, 7, 20, 100"),
         ("sphere_geodesics", &["--position", "1,0,0,0"], "a point of S7 has 8 coordinates, 4 were given"),
