@@ -31,7 +31,8 @@ use num_traits::Zero;
 /// ```
 #[diagnostic::on_unimplemented(message = "`{Self}` has no constraint")]
 pub trait Constrained: Clebsch {
-    /// One number for each scalar equation of the constraint, in the order of the declaration: a vector.
+    /// One number for each scalar equation of the constraint, in the order of the declaration: a vector. In a list of
+    /// closures those of places come first.
     type Reactions: Space<Self::Scalar>;
 
     /// The momentum of a velocity: ∂ℓ/∂ξ at (t, q, ξ), in the components of all factors.

@@ -100,7 +100,7 @@ impl Others<'_> {
             (potential, |rest| rest.potential = None, "potential", METHODS),
             (declaration.force.as_ref(), |rest| rest.force = None, "force", SHORTER_FORCE),
             (declaration.force_on.as_ref(), |rest| rest.force_on = None, "force", SHORTER_FORCE),
-            (declaration.constraint.as_ref(), |rest| rest.constraint = None, "constraint", CONSTRAINT),
+            (declaration.constraints.first(), |rest| rest.constraints.clear(), "constraint", CONSTRAINT),
         ];
         rows.into_iter().find_map(|(closure, without, what, instead)| {
             let closure = closure.filter(|_| self.is_small(without))?;

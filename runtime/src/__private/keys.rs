@@ -37,7 +37,7 @@ pub mod force {}
 /// Example: `force_on = |x, thrust: Vector3| thrust`
 pub mod force_on {}
 
-/// Equations that the motion obeys. With the velocity ξ among the arguments, a new name, they are affine in ξ, as for rolling without slipping. Without it they are equations of the configuration, as for joints. Both sides may be vectors, and a block with `let` ends in the list.
+/// Equations that the motion obeys. With the velocity ξ among the arguments, a new name, they are affine in ξ, as for rolling without slipping. Without it they are equations of the configuration, as for joints. Both sides may be vectors, and a block with `let` ends in the list. An element `(0..3).map(|i| a == b)` is an equation for each number. `[closure, closure]` has both kinds.
 ///
 /// Example: `constraint = |xi| [xi.z == 0]`
 pub mod constraint {}

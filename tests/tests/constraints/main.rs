@@ -4,6 +4,7 @@
 #![allow(missing_docs)]
 
 mod invariants;
+mod joined;
 mod order;
 mod places;
 mod reactions;

@@ -26,7 +26,7 @@ use super::symbols::{logarithm, moved, moved_on};
 use super::{DiscreteLagrangian, SystemFormulas, force, structure};
 use crate::diagnostic::{Diagnostics, bail};
 use crate::model::features::{self, Feature, Found};
-use crate::model::{Configuration, Constraint, Equation, Factor, Isotropy, LeafSpace, Mechanics, Restriction, Side};
+use crate::model::{Configuration, Constraint, Equation, Factor, Isotropy, LeafSpace, Mechanics, Side, VelocityRows};
 
 /// The formulas of a constraint.
 pub struct ConstraintFormulas<'g> {
@@ -48,12 +48,31 @@ pub struct ConstraintFormulas<'g> {
     pub along: Expr<'g>,
     /// −d/dt (A ξ − b) along the motion without the constraint, a function of t, q, μ and the input u.
     pub lag: Expr<'g>,
+    /// The part of it that is on places.
+    pub places: Option<PlaceFormulas<'g>>,
+    /// The rows of velocities between both ends are the mean of those at the ends, not those at the mean of the ends.
+    pub is_mean_of_rows: bool,
+}
+
+/// The formulas of a constraint on places alone.
+pub struct PlaceFormulas<'g> {
+    /// φ(t, q).
+    pub value: Expr<'g>,
+    /// A = J(q, ∂φ).
+    pub rows: Expr<'g>,
+    /// S = A Σ⁻¹Aᵀ.
+    pub metric: Expr<'g>,
     /// s Σ⁻¹Aᵀ: chart coordinates of the motion that a push makes.
     pub moved: Expr<'g>,
-    /// φ(t, q), of a constraint on places.
-    pub places: Option<Expr<'g>>,
-    /// The rows between both ends of a step are the mean of those at the ends, not those at the mean of the ends.
-    pub is_mean_of_rows: bool,
+}
+
+impl<'g> PlaceFormulas<'g> {
+    fn new(system: &SystemFormulas<'g>, value: Expr<'g>, inverse: Expr<'g>) -> PlaceFormulas<'g> {
+        let rows = rows_of_places(system, value);
+        let by_inertia = product(rows, inverse);
+        let metric = product(by_inertia, rows.transpose());
+        PlaceFormulas { value, rows, metric, moved: coordinates_of_motion(system, by_inertia.transpose()) }
+    }
 }
 
 impl<'g> ConstraintFormulas<'g> {
@@ -69,37 +88,41 @@ impl<'g> ConstraintFormulas<'g> {
     ) -> Result<Option<ConstraintFormulas<'g>>, Diagnostics> {
         let Some(constraint) = &model.constraint else { return Ok(None) };
         check(model, system, (energy, inertia))?;
-        let (rows, values, places) = match constraint.kind {
-            Restriction::Velocities { rows, values } => (rows, values, None),
-            Restriction::Places(places) => {
-                let later = (model.time, model.graph.integer(1));
-                (rows_of_places(system, places), -places.differential(&[later]), Some(places))
-            }
-        };
-        check_rows(constraint, rows)?;
         let inverse = inverse(inertia);
+        let places = constraint.places.map(|value| PlaceFormulas::new(system, value, inverse));
+        let (mut rows, mut values, mut between) = (Vec::new(), Vec::new(), Vec::new());
+        if let Some(PlaceFormulas { value, rows: of_places, .. }) = places {
+            let later = (model.time, model.graph.integer(1));
+            rows.push(of_places);
+            values.push(-value.differential(&[later]));
+            between.push(value.substitute(&moved_on(model)) / model.step_size);
+        }
+        let mut is_mean = false;
+        if let Some(VelocityRows { rows: of_velocities, values: of_rows }) = constraint.velocities {
+            is_mean = is_mean_of_rows(model, [of_velocities, of_rows]);
+            rows.push(of_velocities);
+            values.push(of_rows);
+            between.push(self::between(model, (of_velocities, of_rows), is_mean));
+        }
+        let [rows, values, between] = [rows, values, between].map(|parts| model.graph.below(&parts));
+        check_rows(constraint, rows)?;
         let by_inertia = product(rows, inverse);
         let gyroscopic = system.symbols.slope(energy.gyroscopic);
         let momenta = model.graph.below(&system.symbols.momenta);
-        let is_mean_of_rows = places.is_none() && is_mean_of_rows(model, [rows, values]);
         let velocity = inverse * (momenta - gyroscopic);
         let free = free_motion(model, system, (energy.gyroscopic - potential, force), velocity);
         Ok(Some(ConstraintFormulas {
             rows,
             values,
-            between: match places {
-                Some(places) => places.substitute(&moved_on(model)) / model.step_size,
-                None => between(model, (rows, values), is_mean_of_rows),
-            },
+            between,
             by_inertia,
             metric: product(by_inertia, rows.transpose()),
             velocity,
             along: by_inertia * momenta,
-            moved: coordinates_of_motion(system, by_inertia.transpose()),
             lag: -(rows * velocity - values).differential(&free),
             momentum: system.symbols.slope(energy.kinetic) + gyroscopic,
             places,
-            is_mean_of_rows,
+            is_mean_of_rows: is_mean,
         }))
     }
 
@@ -225,9 +248,9 @@ fn is_mean_of_rows<'g>(model: &Mechanics<'g>, parts: [Expr<'g>; 2]) -> bool {
 /// Every equation has a row, no row follows from others, and there are no more of them than components of the velocity.
 fn check_rows<'g>(constraint: &Constraint<'g>, all: Expr<'g>) -> Result<(), Diagnostics> {
     let Shape { rows, columns } = all.shape();
-    let variable = if constraint.is_of_velocities() { "velocity" } else { "configuration" };
     let (mut first, mut known) = (0, 0);
-    for Equation { written, count } in &constraint.equations {
+    for Equation { written, count, is_of_velocities } in &constraint.equations {
+        let variable = if *is_of_velocities { "velocity" } else { "configuration" };
         let (place, text, last) = (written.place, &written.text, first + count);
         let is_zero = |i: &usize| identity::vanishes(all.block(*i, 0, Shape::new(1, columns)));
         if let Some(i) = (first..last).find(is_zero) {
@@ -268,7 +291,7 @@ fn check<'g>(
             let is_fixed = model.isotropy == Isotropy::Fixed && !system.is_free();
             is_fixed.then(|| Found::at(spans.action.place))
         }
-        Feature::OddVelocity if model.constraint.as_ref().is_some_and(Constraint::is_of_velocities) => {
+        Feature::OddVelocity if model.constraint.as_ref().is_some_and(|constraint| constraint.velocities.is_some()) => {
             let factor = model.factors.get(uneven(model)?)?;
             Some(Found::at(spans.kinetic.place).named(factor.group.name(model.graph)))
         }

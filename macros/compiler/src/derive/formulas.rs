@@ -213,7 +213,7 @@ pub(super) fn is_timed(model: &Mechanics<'_>, lagrangian: &DiscreteLagrangian<'_
     let forces = model.force.iter().flat_map(|force| force.of_group.iter().chain(&force.on_configuration).flatten());
     let energies = [lagrangian.kinetic, lagrangian.start, lagrangian.end];
     let terms = model.power.iter().flat_map(|power| power.terms.iter().map(|term| &term.value));
-    let mut constraint = model.constraint.iter().flat_map(|constraint| constraint.kind.parts());
+    let mut constraint = model.constraint.iter().flat_map(|constraint| constraint.parts());
     energies.iter().chain(forces).chain(terms).any(|part| part.depends_on(model.time))
         || constraint.any(|part| part.depends_on(model.time))
 }

@@ -57,7 +57,7 @@ use crate::model::{Discretization, Kinetic, Mechanics, Model, Order, Steered, Sy
 pub use catalogue::{Entry, Heat, Id, Reference};
 pub use choice::{Choice, Endpoint, Jet, Steering, StepOfChoice};
 pub use collocation::Collocation;
-pub use constraint::ConstraintFormulas;
+pub use constraint::{ConstraintFormulas, PlaceFormulas};
 pub use control::{Bend, InputStep};
 pub use derivation::{Iteration, Lowered, derivation, derivation_of_control};
 use discrete_lagrangian::Cost;

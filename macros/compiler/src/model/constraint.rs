@@ -1,14 +1,14 @@
 //! Constraints: the closure `constraint`. Its equations are affine in the velocity, or of the configuration alone.
 
 use clebsch_symbolic::{Elements, Expr, IntoElements, IntoList, identity};
-use syn::{BinOp, Expr as Syntax, ExprArray, ExprBinary};
+use syn::{BinOp, Expr as Syntax, ExprArray, ExprBinary, ExprMethodCall};
 
 use super::closures::optional;
 use super::elaborate::Elaborator;
 use super::slots::{CONSTRAINT, Slot};
 use super::typed::{ActedSystem, Velocity};
 use super::value::Value;
-use super::{Constraint, Dials, Equation, Restriction, Written};
+use super::{Constraint, Dials, Equation, VelocityRows, Written};
 use crate::diagnostic::{Diagnostics, Location, error, refuse};
 use crate::parse::{Closure, shortened, spell, tail};
 
@@ -18,14 +18,52 @@ struct Sides<'g> {
     written: Written,
 }
 
+/// The equations of one closure, and the velocities that they are of; none for equations of the configuration.
+struct Equations<'g> {
+    all: Vec<Sides<'g>>,
+    velocities: Option<Vec<Expr<'g>>>,
+}
+
 impl<'g> ActedSystem<'_, '_, 'g> {
-    /// A constraint: on the velocity if that is among the arguments, else on the configuration. `None` with an error, which was reported.
-    pub fn constraint(&mut self, closure: &Closure, dials: &Dials) -> Option<Constraint<'g>> {
-        let (graph, diagnostics) = (self.context.graph, self.context.diagnostics);
+    /// The constraint of all closures: on the velocity if that is among the arguments, else on the configuration. `None` with
+    /// an error, which was reported.
+    pub fn constraint(&mut self, closures: &[Closure], dials: &Dials) -> Option<Constraint<'g>> {
+        let graph = self.context.graph;
         if self.context.power.is_some() {
             // it has been refused
             return None;
         }
+        let (mut places, mut rows, mut values) = (Vec::new(), Vec::new(), Vec::new());
+        let (mut of_places, mut of_velocities) = (Vec::new(), Vec::new());
+        for closure in closures {
+            let Equations { all, velocities } = self.equations(closure)?;
+            match &velocities {
+                Some(velocities) => {
+                    let found = self::of_velocities(closure, &all, velocities, self.context.diagnostics)?;
+                    rows.push(found.rows);
+                    values.push(found.values);
+                }
+                None => places.extend(all.each(|sides| sides.difference)),
+            }
+            let is_of_velocities = velocities.is_some();
+            let known = if is_of_velocities { &mut of_velocities } else { &mut of_places };
+            let equation =
+                |Sides { difference, written }| Equation { count: difference.shape().rows, written, is_of_velocities };
+            known.extend(all.into_each(equation));
+        }
+        of_places.extend(of_velocities);
+        let velocities = || VelocityRows { rows: graph.below(&rows), values: graph.below(&values) };
+        Some(Constraint {
+            places: (!places.is_empty()).then(|| graph.below(&places)),
+            velocities: (!rows.is_empty()).then(velocities),
+            equations: of_places,
+            discretization: dials.discretization.as_ref().map(|chosen| chosen.value),
+        })
+    }
+
+    /// The equations of one closure.
+    fn equations(&mut self, closure: &Closure) -> Option<Equations<'g>> {
+        let (graph, diagnostics) = (self.context.graph, self.context.diagnostics);
         let matched = self.arguments.matched(closure, CONSTRAINT);
         if matched.has_error() {
             return None;
@@ -40,17 +78,14 @@ impl<'g> ActedSystem<'_, '_, 'g> {
         let list = list(closure, diagnostics)?;
         let mut elaborator = Elaborator::new(self.context, "constraint", scope);
         let all = elaborator.in_block(&closure.body, |elaborator| {
-            let equations = list.elems.iter().map(|syntax| equation(elaborator, syntax));
-            equations.into_list().into_iter().collect::<Option<Vec<Sides<'g>>>>()
+            let equations = list.elems.iter().map(|syntax| element(elaborator, syntax)).into_list();
+            let all = equations.into_iter().collect::<Option<Vec<Vec<Sides<'g>>>>>()?;
+            Some(all.into_iter().flatten().into_list())
         })?;
-        let kind = match velocities {
-            Some(velocities) => of_velocities(closure, &all, &velocities, diagnostics)?,
-            None => Restriction::Places(graph.below(&all.each(|sides| sides.difference))),
-        };
-        let discretization = dials.discretization.as_ref().map(|chosen| chosen.value);
-        let equations =
-            all.into_each(|Sides { difference, written }| Equation { count: difference.shape().rows, written });
-        Some(Constraint { kind, equations, discretization })
+        if all.is_empty() {
+            refuse!(diagnostics, list, "the constraint has no equation"; help "write a range with a number in it, as in `(0..2)`");
+        }
+        Some(Equations { all, velocities })
     }
 }
 
@@ -100,6 +135,27 @@ fn as_equation(link: &ExprBinary) -> String {
     format!("{} == {}", spell(&link.left), spell(&link.right))
 }
 
+/// An element of the list: `a == b`, or `(0..3).map(|i| a == b)` with an equation for each number.
+fn element<'g>(elaborator: &mut Elaborator<'_, '_, 'g>, syntax: &Syntax) -> Option<Vec<Sides<'g>>> {
+    let Some(sequence) = sequence(syntax) else { return equation(elaborator, syntax).map(|only| vec![only]) };
+    let mut all = elaborator.each_of_map(sequence, |elaborator, body| {
+        elaborator.in_block(body, |elaborator| element(elaborator, tail(body)))
+    })?;
+    let text = shortened(syntax);
+    all.iter_mut().for_each(|sides| sides.written.text.clone_from(&text));
+    Some(all)
+}
+
+/// A call `….map(…)`.
+fn sequence(syntax: &Syntax) -> Option<&ExprMethodCall> {
+    match syntax {
+        Syntax::Paren(inner) => sequence(&inner.expr),
+        Syntax::Group(inner) => sequence(&inner.expr),
+        Syntax::MethodCall(call) if call.method == "map" => Some(call),
+        _ => None,
+    }
+}
+
 /// `a == b` as a − b, a scalar or a vector.
 fn equation<'g>(elaborator: &mut Elaborator<'_, '_, 'g>, syntax: &Syntax) -> Option<Sides<'g>> {
     let diagnostics = elaborator.context.diagnostics;
@@ -145,7 +201,7 @@ fn of_velocities<'g>(
     equations: &[Sides<'g>],
     velocities: &[Expr<'g>],
     diagnostics: &Diagnostics,
-) -> Option<Restriction<'g>> {
+) -> Option<VelocityRows<'g>> {
     let graph = velocities.first()?.graph();
     let at_rest: Vec<_> = velocities.each(|velocity| (*velocity, graph.zero(velocity.shape())));
     let (mut rows, mut values) = (Vec::new(), Vec::new());
@@ -162,5 +218,5 @@ fn of_velocities<'g>(
         rows.push(slopes.expand());
         values.push((-value_at_rest).expand());
     }
-    Some(Restriction::Velocities { rows: graph.below(&rows), values: graph.below(&values) })
+    Some(VelocityRows { rows: graph.below(&rows), values: graph.below(&values) })
 }

@@ -218,8 +218,8 @@ impl<'g> ClosureValues<'g> {
         forces::check_dials(declaration, diagnostics);
         let endpoint = optional(declaration.endpoint.as_ref(), |closure| system.endpoint(closure));
         let forces = system.forces(declaration);
-        let constraint =
-            optional(declaration.constraint.as_ref(), |closure| system.constraint(closure, &declaration.dials));
+        let first = declaration.constraints.first();
+        let constraint = optional(first, |_| system.constraint(&declaration.constraints, &declaration.dials));
         let (mover, (force, input)) = match system.motion(declaration) {
             Some((motion, input)) => (Some(Mover::Inputs(motion)), (None, input)),
             // the moving closure has an error, and without it nothing is known of the input

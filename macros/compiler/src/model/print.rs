@@ -6,8 +6,8 @@ use clebsch_symbolic::Group;
 
 use super::scalar::spell_scalar;
 use super::{
-    Isotropy, Kinetic, LeafSpace, Mechanics, Model, Motion, OfferedSymmetry, Order, Parameter, Restriction, Side,
-    Signature, Steered, System,
+    Isotropy, Kinetic, LeafSpace, Mechanics, Model, Motion, OfferedSymmetry, Order, Parameter, Side, Signature,
+    Steered, System, VelocityRows,
 };
 use crate::parse::joined;
 
@@ -51,10 +51,11 @@ impl fmt::Display for Mechanics<'_> {
             force.of_group.iter().flatten().try_for_each(|part| writeln!(f, "  force      {part}"))?;
             force.on_configuration.iter().flatten().try_for_each(|part| writeln!(f, "  force on   {part}"))?;
         }
-        match self.constraint.as_ref().map(|constraint| constraint.kind) {
-            Some(Restriction::Velocities { rows, values }) => writeln!(f, "  constraint {rows} * xi = {values}")?,
-            Some(Restriction::Places(places)) => writeln!(f, "  constraint {places} = 0")?,
-            None => {}
+        if let Some(constraint) = &self.constraint {
+            constraint.places.iter().try_for_each(|places| writeln!(f, "  constraint {places} = 0"))?;
+            let mut velocities = constraint.velocities.iter();
+            velocities
+                .try_for_each(|VelocityRows { rows, values }| writeln!(f, "  constraint {rows} * xi = {values}"))?;
         }
         self.system.print_inputs(f)?;
         if self.power.as_ref().is_some_and(|power| power.has_own_inputs) {

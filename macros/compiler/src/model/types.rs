@@ -346,42 +346,30 @@ pub struct Force<'g> {
 
 /// Equations that the velocity or the configuration obeys.
 pub struct Constraint<'g> {
-    /// The equations.
-    pub kind: Restriction<'g>,
-    /// Each of them as written.
+    /// φ(t, q) with φ = 0, equations of scalars one below the other: holonomic. `None` if there is none.
+    pub places: Option<Expr<'g>>,
+    /// The equations of velocities, nonholonomic; `None` if there is none.
+    pub velocities: Option<VelocityRows<'g>>,
+    /// Each of them as written, those of places first.
     pub equations: Vec<Equation>,
     /// How the velocity of a step is made from F and h, if the declaration says so.
     pub discretization: Option<Discretization>,
 }
 
-/// Equations of scalars, one below the other.
+/// a(t, q) ξ = b(t, q), equations of scalars one below the other.
 #[derive(Copy, Clone)]
-pub enum Restriction<'g> {
-    /// a(t, q) ξ = b(t, q): nonholonomic.
-    Velocities {
-        /// a, in the components of all factors.
-        rows: Expr<'g>,
-        /// b.
-        values: Expr<'g>,
-    },
-    /// φ(t, q) = 0: holonomic.
-    Places(Expr<'g>),
+pub struct VelocityRows<'g> {
+    /// a, in the components of all factors.
+    pub rows: Expr<'g>,
+    /// b.
+    pub values: Expr<'g>,
 }
 
-impl<'g> Restriction<'g> {
+impl<'g> Constraint<'g> {
     /// The functions of time and configuration in it.
-    pub fn parts(self) -> Vec<Expr<'g>> {
-        match self {
-            Restriction::Velocities { rows, values } => vec![rows, values],
-            Restriction::Places(places) => vec![places],
-        }
-    }
-}
-
-impl Constraint<'_> {
-    /// Whether it is on velocities.
-    pub fn is_of_velocities(&self) -> bool {
-        matches!(self.kind, Restriction::Velocities { .. })
+    pub fn parts(&self) -> impl Iterator<Item = Expr<'g>> {
+        let of_velocities = self.velocities.into_iter().flat_map(|VelocityRows { rows, values }| [rows, values]);
+        self.places.into_iter().chain(of_velocities)
     }
 }
 
@@ -392,6 +380,8 @@ pub struct Equation {
     pub written: Written,
     /// How many equations of scalars it is.
     pub count: usize,
+    /// Whether it is of velocities.
+    pub is_of_velocities: bool,
 }
 
 /// The choice of inputs.

@@ -55,7 +55,7 @@ fn place(keys: &Keys, of_steps: &Keys, feature: Feature) -> Option<Span> {
         Feature::Boundary => emitted(emit.boundary),
         Feature::Momentum => emitted(emit.momentum),
         // it discretises the velocity of a constraint too
-        Feature::Discretization if readable("constraint").is_some() => None,
+        Feature::Discretization if keys.lists.contains_key("constraint") => None,
         Feature::Discretization => dials.discretization.as_ref().map(|discretization| discretization.span),
         Feature::Method => keys.place_of("method"),
         _ => {

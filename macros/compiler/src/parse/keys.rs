@@ -54,7 +54,7 @@ pub(super) enum Kind {
     /// A closure, or two methods of the struct.
     Potential,
     /// A closure, or a list of them.
-    Symmetry,
+    Closures,
     /// Any other key. It has a function that reads it, and one that prints it and gives its place, if it was given.
     /// Last are the values from which it chooses, with meanings.
     Dial(fn(&mut Dials, Reader) -> Result<(), Diagnostic>, fn(&Dials) -> Option<Located<String>>, fn() -> Meanings),
@@ -62,7 +62,7 @@ pub(super) enum Kind {
     Later,
 }
 
-use Kind::{Dial, Later, Symmetry};
+use Kind::{Closures, Dial, Later};
 
 const MECHANICS: &str = "`cost` or `lagrangian`";
 const PRICE: &str = "`cost`, the price of an input";
@@ -80,14 +80,14 @@ pub(super) const KEYS: [Key; 27] = [
         "The Lagrangian ℓ(q, ξ), most often the kinetic energy, in joules. The macro discretises it. The last argument is a new name for ξ, the velocity in the basis of the group."),
     key("potential", Kind::Potential, "|q| …", "none", MECHANICS,
         "The potential energy V(q), in joules. Where no formula exists, `opaque(Self::value, Self::gradient)` names two methods of the struct. `opaque(t, …)` is for methods that take the time first."),
-    key("symmetry", Symmetry, "|S: SO<3>, q, F| (S * q, S * F * S.transpose())", "found", MECHANICS,
+    key("symmetry", Closures, "|S: SO<3>, q, F| (S * q, S * F * S.transpose())", "found", MECHANICS,
         "A symmetry that lies outside the declared group, such as rotations of a system of translations. The value is the pair of the moved configuration and the group element of the moved step. The macro checks it and adds its momentum to the conserved ones. `[closure, closure]` offers several."),
     key("force", Kind::Closure, "|omega, torque: Vector3| torque - self.damping * omega", "none", MECHANICS,
         "A force that is no gradient, in the components of the momentum. A last argument with a type is an input, which each step is given or which `effort` chooses."),
     key("force_on", Kind::Closure, "|x, thrust: Vector3| thrust", "none", MECHANICS,
         "A force as a covector of the configuration, in its shape. It takes the same arguments as `force`."),
-    key("constraint", Kind::Closure, "|xi| [xi.z == 0]", "every motion is allowed", MECHANICS,
-        "Equations that the motion obeys. With the velocity ξ among the arguments, a new name, they are affine in ξ, as for rolling without slipping. Without it they are equations of the configuration, as for joints. Both sides may be vectors, and a block with `let` ends in the list."),
+    key("constraint", Closures, "|xi| [xi.z == 0]", "every motion is allowed", MECHANICS,
+        "Equations that the motion obeys. With the velocity ξ among the arguments, a new name, they are affine in ξ, as for rolling without slipping. Without it they are equations of the configuration, as for joints. Both sides may be vectors, and a block with `let` ends in the list. An element `(0..3).map(|i| a == b)` is an equation for each number. `[closure, closure]` has both kinds."),
     key("controls", Kind::Closure, "|u: Vector2| vector![u.x, u.y, 0]", "", PRICE,
         "The velocity that an input gives, in the basis of the group. It moves the configuration directly, without mass or momentum."),
     key("dynamics", Kind::Closure, "|h, x: Vector2, u: Vector1| x + h * vector![x.y, u.x]", "", PRICE,
@@ -186,7 +186,8 @@ pub(super) struct Keys<'d> {
     /// Those that are closures and could be read, by name.
     pub closures: BTreeMap<&'static str, Closure>,
     pub potential: Option<Potential>,
-    pub symmetries: Vec<Closure>,
+    /// The same of lists of closures.
+    pub lists: BTreeMap<&'static str, Vec<Closure>>,
     pub groups: Vec<DeclaredGroup>,
     /// Each method with its keys, and where each of these was given.
     pub methods: Vec<(Ident, Keys<'d>)>,
@@ -202,7 +203,7 @@ impl<'d> Keys<'d> {
             diagnostics,
             closures: BTreeMap::new(),
             potential: None,
-            symmetries: Vec::new(),
+            lists: BTreeMap::new(),
             groups: Vec::new(),
             methods: Vec::new(),
             dials: Dials::default(),

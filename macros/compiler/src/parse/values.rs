@@ -27,7 +27,7 @@ pub(super) fn read(name: &Ident, key: &Key, stream: ParseStream, keys: &mut Keys
             keys.potential = Some(Potential::Opaque(opaque::read(stream)?));
         }
         Kind::Potential => keys.potential = reader.closure(stream)?.map(Potential::Closure),
-        Kind::Symmetry => keys.symmetries = reader.closures()?,
+        Kind::Closures => keys.lists.extend([(key.name, reader.closures()?)]),
         Kind::Dial(read, ..) => read(&mut keys.dials, reader)?,
         // by construction: keys that come later have no value read
         Kind::Later => {}
@@ -75,7 +75,11 @@ impl Reader<'_, '_> {
         if !self.stream.peek(syn::token::Bracket) {
             return self.closure(self.stream).map(|closure| closure.into_iter().into_list());
         }
+        let place = self.stream.span();
         let list = bracket(self.stream)?;
+        if list.is_empty() {
+            bail!(place, "the list of `{}` is empty", self.name; help "write `{} = {}`, or leave out the key", self.name, self.example);
+        }
         let mut closures = Vec::new();
         while !list.is_empty() {
             closures.extend(self.closure(&list)?);

@@ -1,10 +1,11 @@
 //! The forces, the conserved quantities, and the parts that a problem does not need.
 
 use super::{bounds, inputs};
-use clebsch_symbolic::Elements;
+use clebsch_symbolic::{Elements, IntoList};
 
 use crate::derive::{MOST_LISTED, MechanicsFormulas, Substep};
-use crate::model::{Isotropy, Order};
+use crate::model::{Isotropy, Order, VelocityRows};
+
 pub(super) fn forces(formulas: &MechanicsFormulas<'_>) -> String {
     let model = &formulas.model;
     if model.force.is_none() {
@@ -36,28 +37,46 @@ pub(super) fn constraint(formulas: &MechanicsFormulas<'_>) -> String {
     let (Some(constraint), Some(known)) = (&formulas.model.constraint, &formulas.constraint) else {
         return String::new();
     };
-    let texts = constraint.equations.each(|equation| equation.written.text.clone()).join(", ");
+    let texts = |is_of_velocities: bool| {
+        let own = constraint.equations.iter().filter(|equation| equation.is_of_velocities == is_of_velocities);
+        let mut own: Vec<_> = own.map(|equation| equation.written.text.clone()).into_list();
+        // one sequence has several equations
+        own.dedup();
+        own.join(", ")
+    };
+    let (of_places, of_velocities) = (texts(false), texts(true));
     let multipliers = "The multipliers λ are no unknowns of the momentum equation: they are found from its residual.";
-    if !constraint.is_of_velocities() {
+    let Some(VelocityRows { rows, values }) = constraint.velocities else {
         return format!(
-            "Constraint on places: {texts}. Its force Aᵀλ acts along its rows at both ends of the step, and q⁺ obeys it. \
+            "Constraint on places: {of_places}. Its force Aᵀλ acts along its rows at both ends of the step, and q⁺ obeys it. \
              The velocity of N⁺ is tangent to it: A·Σ⁻¹·N⁺ = b at the end of the step.\n\
              {multipliers} The step is time-symmetric, symplectic on the momenta that are tangent to the constraint, and obeys it to rounding.\n"
         );
-    }
+    };
     let q = formulas.model.configurations.each(|leaf| leaf.name.clone()).join(", ");
     let mean = if known.is_mean_of_rows {
         format!("the rows are the mean of those at {q} and {q}⁺")
     } else {
         format!("{q} is the mean of both ends")
     };
-    let is_steady = !formulas.is_moving(known.rows) && !formulas.is_moving(known.values);
+    let is_steady = !formulas.is_moving(rows) && !formulas.is_moving(values);
     let mean = if is_steady { String::new() } else { format!(", where {mean}") };
+    let not_symplectic =
+        "It is not symplectic. Momenta are conserved along motions that the constraint allows at every configuration.";
+    if constraint.places.is_some() {
+        return format!(
+            "Constraint on places: {of_places}. Constraint on velocities: {of_velocities}. \
+             The force Aᵀλ of both acts along their rows at both ends of the step (Lagrange–d'Alembert). \
+             q⁺ obeys the first. The velocity ξ(F)/h of the step obeys the second{mean}. \
+             The velocity of N⁺ obeys both: A·Σ⁻¹·N⁺ = b at the end of the step.\n\
+             {multipliers} The step is time-symmetric, and obeys both to rounding. {not_symplectic}\n"
+        );
+    }
     format!(
-        "Constraint: {texts}. Its force Aᵀλ acts along its rows at both ends of the step (Lagrange–d'Alembert). The velocity ξ(F)/h of the step obeys it{mean}. \
+        "Constraint: {of_velocities}. Its force Aᵀλ acts along its rows at both ends of the step (Lagrange–d'Alembert). The velocity ξ(F)/h of the step obeys it{mean}. \
          So does that of N⁺: A·Σ⁻¹·N⁺ = b at the end of the step.\n\
          {multipliers} The step is time-symmetric, and obeys the constraint to rounding. \
-         It is not symplectic. Momenta are conserved along motions that the constraint allows at every configuration.\n"
+         {not_symplectic}\n"
     )
 }
 

@@ -5,7 +5,7 @@ use clebsch_symbolic::{Elements, Expr, IntoList, Property, Role, Shape, identity
 use super::{Names, tuple};
 use crate::derive::formula::Wording;
 use crate::derive::symbols::moved_on;
-use crate::derive::{ConstraintFormulas, Formula, Id, MechanicsFormulas, exact};
+use crate::derive::{ConstraintFormulas, Formula, Id, MechanicsFormulas, PlaceFormulas, exact};
 use crate::model::Kinetic;
 
 impl<'g> MechanicsFormulas<'g> {
@@ -39,15 +39,15 @@ impl<'g> MechanicsFormulas<'g> {
     /// The constraint, and that of a step; the momentum of a velocity.
     pub(super) fn rows_of_constraint(&self, Names { q, f, xi, mu, x, .. }: &Names) -> Vec<Formula<'g>> {
         let Some(constraint) = &self.constraint else { return Vec::new() };
-        let ConstraintFormulas { rows, values, velocity, metric, between, momentum, places, along, lag, moved, .. } =
+        let ConstraintFormulas { rows, values, velocity, metric, between, momentum, ref places, along, lag, .. } =
             *constraint;
         let row = Formula::new(Id::Constraint, format!("(A, b)({q}), A {xi} = b"), [rows, values]);
-        let of_places = |places: Expr<'g>| {
-            let correction = Formula::new(Id::PlaceCorrection, x, [places, rows, metric, moved])
+        let of_places = |&PlaceFormulas { value, rows, metric, moved }: &PlaceFormulas<'g>| {
+            let correction = Formula::new(Id::PlaceCorrection, x, [value, rows, metric, moved])
                 .in_words("−s·Σ⁻¹·Aᵀ·S⁻¹·φ".into(), "-s\\,\\Sigma^{-1} A^T S^{-1} \\varphi".into());
-            [Formula::new(Id::Places, format!("0 = φ({q})"), [places]).computed_as(vec![places, rows]), correction]
+            [Formula::new(Id::Places, format!("0 = φ({q})"), [value]).computed_as(vec![value, rows]), correction]
         };
-        let places = places.map(of_places);
+        let places = places.as_ref().map(of_places);
         let multipliers = Formula::new(Id::Multipliers, format!("κ({q}, p), Aᵀκ = p"), [metric, along])
             .in_words("S⁻¹·A·Σ⁻¹·p".into(), "S^{-1} A \\Sigma^{-1} p".into());
         let reactions = Formula::new(Id::Reactions, format!("λ({q}, {mu})"), [metric, lag]).in_words(

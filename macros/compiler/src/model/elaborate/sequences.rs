@@ -58,6 +58,32 @@ impl<'g> Elaborator<'_, '_, 'g> {
         values.collect::<Option<_>>().map(Value::Array)
     }
 
+    /// The results for each element of the sequence of `….map(|i| …)`, one after the other.
+    pub fn each_of_map<T>(
+        &mut self,
+        call: &ExprMethodCall,
+        mut read: impl FnMut(&mut Self, &Syntax) -> Option<Vec<T>>,
+    ) -> Option<Vec<T>> {
+        let parts = match self.elaborate(&call.receiver)? {
+            Value::Array(parts) => parts,
+            other => {
+                let (text, found) = (spell(&call.receiver), other.describe());
+                refuse!(self, &call.receiver, "`{text}` is {found}, and `map` is of a range or an array"; help "write `(0..3).map(|i| …)`")
+            }
+        };
+        let (pattern, closure) = self.closure_of_map(call)?;
+        let mut all = Vec::new();
+        for part in parts {
+            let errors = self.context.diagnostics.len();
+            all.extend(self.with_names(|this| {
+                this.bind(&pattern, Some(part), "an argument");
+                let is_bound = this.context.diagnostics.len() == errors;
+                if is_bound { read(this, &closure.body) } else { None }
+            })?);
+        }
+        Some(all)
+    }
+
     /// The value of a closure with one argument.
     pub(super) fn applied(
         &mut self,
