@@ -18,7 +18,7 @@
 //! A place comes to φ = 0 by motions with x = −s Σ⁻¹Aᵀ S⁻¹φ, where s = dx/dξ at the identity. This is Newton's method with the
 //! motion that is shortest in the kinetic energy.
 
-use clebsch_symbolic::{Expr, IntoList, Property, Role, Shape, identity};
+use clebsch_symbolic::{Expr, IntoList, Shape, identity};
 
 use super::energy::Energy;
 use super::exact::{self, inertia_inverse};
@@ -139,14 +139,6 @@ impl<'g> ConstraintFormulas<'g> {
     /// Aᵀμ with A Σ⁻¹(N + Aᵀμ − A_g) = b.
     pub(super) fn projection(&self) -> Expr<'g> {
         self.pushed(self.values - self.rows * self.velocity)
-    }
-
-    /// Aᵀλ for each factor, with any λ: a momentum along a motion is conserved where this does no work.
-    pub(super) fn any_force(&self, system: &SystemFormulas<'g>) -> Vec<Expr<'g>> {
-        let graph = self.rows.graph();
-        let shape = Shape::vector(self.rows.shape().rows);
-        let multipliers = graph.symbol("λ", shape, Role::Letter, Property::General);
-        system.parted(self.rows.transpose() * multipliers)
     }
 
     /// Aᵀ S⁻¹ν.

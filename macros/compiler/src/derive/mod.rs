@@ -137,8 +137,8 @@ fn mechanics(mut model: Mechanics<'_>) -> Result<MechanicsFormulas<'_>, Diagnost
     let stagger = if is_first { system.impulse((lagrangian.end - lagrangian.start) / 2) } else { None };
     let is_staggered = stagger.is_some() && model.force.is_none() && declared.balanced().is_time_symmetric(&model);
     let links = power::links(&model);
-    let pushes = force::total(covector.clone(), constraint.as_ref().map(|constraint| constraint.any_force(&system)));
-    let symmetries = symmetry::find(&sources(1), &declared, (pushes.as_deref(), &links));
+    let pushes = (covector.as_deref(), constraint.as_ref());
+    let symmetries = symmetry::find(&sources(1), &declared, pushes, &links);
     check_offers(&model, &symmetries)?;
     let splitting = splitting::splitting(&sources(1), &lagrangian, &substeps);
     let is_exact = potential_energy.is_zero() && splitting::drifts_exactly(&model, &system.symbols, &substeps);

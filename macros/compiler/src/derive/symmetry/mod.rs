@@ -9,13 +9,13 @@ mod directions;
 mod large;
 mod special;
 
-use clebsch_symbolic::{Elements, Expr, Group, IntoElements, IntoList, Rational, Shape, identity};
+use clebsch_symbolic::{Elements, Expr, Group, IntoElements, IntoList, Rational, Shape, identity, indexed};
 
 use super::equation::Sources;
 use super::power::{self, SiteTerm};
 use super::symbols::{moved, of_columns};
-use super::{DiscreteLagrangian, MechanicsFormulas, Substep, naming};
-use crate::model::{Isotropy, is_large};
+use super::{ConstraintFormulas, DiscreteLagrangian, MechanicsFormulas, Substep, naming};
+use crate::model::{Isotropy, Mechanics, is_large};
 use directions::Directions;
 
 /// A conserved momentum.
@@ -69,7 +69,8 @@ struct Family {
 pub(super) fn find<'g>(
     sources: &Sources<'_, 'g>,
     lagrangian: &DiscreteLagrangian<'g>,
-    (force, links): (Option<&[Expr<'g>]>, &[SiteTerm<'g>]),
+    (force, constraint): (Option<&[Expr<'g>]>, Option<&ConstraintFormulas<'g>>),
+    links: &[SiteTerm<'g>],
 ) -> Symmetries<'g> {
     let model = sources.model;
     if model.factors.iter().any(|factor| is_large(factor.group, &model.configurations)) {
@@ -79,9 +80,11 @@ pub(super) fn find<'g>(
     if directions.is_empty() {
         return Symmetries::default();
     }
-    let matrix = variations(sources, lagrangian, &directions, (force, links));
-    let found = identity::null_space(matrix);
-    let finder = Finder { sources, families, directions, matrix };
+    let places = constraint.map_or_else(Vec::new, |constraint| places(model, constraint));
+    let matrix = variations(sources, lagrangian, (&directions, &places), (force, constraint), links);
+    // the weights of places come first, so that each vector of the basis has a direction of its own
+    let found = identity::null_space(matrix).into_each(|vector| vector[places.len()..].to_vec());
+    let finder = Finder { sources, families, directions, matrix, places };
     let mut symmetries = Symmetries {
         conserved: finder.momenta(&found),
         special: finder.special(&found),
@@ -95,14 +98,46 @@ pub(super) fn find<'g>(
     symmetries
 }
 
-/// One column for each direction, with three kinds of rows. The variations of K, U₀ and U₁ all vanish along a symmetry.
-/// ⟨f, ξ⟩ is the change of its momentum by the force. The last rows are the variations of each term of a power where
-/// all sites move alike.
+/// A column of a constraint on places: φ_j times any number may be added to the row of an equation.
+#[derive(Copy, Clone)]
+struct Place<'g> {
+    /// The number of the row.
+    row: usize,
+    /// φ_j.
+    value: Expr<'g>,
+}
+
+/// The most equations of places that may mix where they move. In a longer constraint those of one vector mix alone.
+const MIXED: usize = 12;
+
+/// The places that the change of each equation may be a combination of. Joints of vectors turn with the bodies that they join.
+fn places<'g>(model: &Mechanics<'g>, constraint: &ConstraintFormulas<'g>) -> Vec<Place<'g>> {
+    let (Some(places), Some(declared)) = (&constraint.places, &model.constraint) else { return Vec::new() };
+    let count = places.value.shape().rows;
+    let (mut all, mut first) = (Vec::new(), 0);
+    for equation in declared.equations.iter().filter(|equation| !equation.is_of_velocities) {
+        let own = first..first + equation.count;
+        let others = if count <= MIXED { 0..count } else { own.clone() };
+        for row in own {
+            all.extend(others.clone().map(|j| Place { row, value: places.value.entry(j, 0) }));
+        }
+        first += equation.count;
+    }
+    all
+}
+
+/// One column for each direction, with four kinds of rows. The variations of K, U₀ and U₁ all vanish along a symmetry.
+/// ⟨f, ξ⟩ is the change of its momentum by the force. A ξ = 0 says that a constraint does not change it. The last rows are the
+/// variations of each term of a power where all sites move alike.
+///
+/// The first columns are those of places. On a constraint φ = 0 it is enough that A ξ = C φ with constant numbers C. A
+/// step changes the momentum by λᵀA ξ at its ends, where φ = 0.
 fn variations<'g>(
     sources: &Sources<'_, 'g>,
     lagrangian: &DiscreteLagrangian<'g>,
-    directions: &[Direction<'g>],
-    (force, links): (Option<&[Expr<'g>]>, &[SiteTerm<'g>]),
+    (directions, places): (&[Direction<'g>], &[Place<'g>]),
+    (force, constraint): (Option<&[Expr<'g>]>, Option<&ConstraintFormulas<'g>>),
+    links: &[SiteTerm<'g>],
 ) -> Expr<'g> {
     let (model, graph) = (sources.model, sources.model.graph);
     let parts = [lagrangian.kinetic, lagrangian.start, lagrangian.end];
@@ -116,6 +151,7 @@ fn variations<'g>(
     };
     let momenta = sources.symbols.momenta.iter().copied();
     let impulse: Vec<_> = momenta.zip(force.unwrap_or_default().iter().copied()).into_list();
+    let rows = constraint.map_or_else(Vec::new, |constraint| along_rows(sources, constraint));
     let column = |direction: &Direction<'g>| -> Vec<Expr<'g>> {
         let mut column = Vec::new();
         for (part, (leaves, factors)) in gradients.iter().enumerate() {
@@ -128,10 +164,26 @@ fn variations<'g>(
             });
         }
         column.extend(force.map(|_| direction.momentum.substitute(&impulse)));
+        column.extend(rows.iter().map(|row| direction.momentum.substitute(row)));
         column.extend(power::moved(model, links, &direction.leaves));
         column
     };
-    of_columns(graph, &directions.each(column))
+    let before = gradients.len() + usize::from(force.is_some());
+    let height = before + rows.len() + links.len();
+    let of_place = |place: &Place<'g>| -> Vec<Expr<'g>> {
+        indexed(height, |row| if row == before + place.row { place.value } else { graph.integer(0) })
+    };
+    of_columns(graph, &places.iter().map(of_place).chain(directions.iter().map(column)).into_list())
+}
+
+/// For each row of a constraint its components in place of the momentum, so that ⟨N, ξ⟩ becomes the entry of A ξ.
+fn along_rows<'g>(sources: &Sources<'_, 'g>, constraint: &ConstraintFormulas<'g>) -> Vec<Vec<(Expr<'g>, Expr<'g>)>> {
+    let Shape { rows, columns } = constraint.rows.shape();
+    let momenta = &sources.symbols.momenta;
+    indexed(rows, |i| {
+        let row = constraint.rows.block(i, 0, Shape::new(1, columns)).transpose();
+        momenta.iter().copied().zip(sources.system.parted(row)).into_list()
+    })
 }
 
 /// Everything that names and checks directions.
@@ -139,7 +191,9 @@ struct Finder<'a, 'g> {
     sources: &'a Sources<'a, 'g>,
     families: Vec<Family>,
     directions: Vec<Direction<'g>>,
+    /// A column for each place, and then for each direction.
     matrix: Expr<'g>,
+    places: Vec<Place<'g>>,
 }
 
 impl<'g> Finder<'_, 'g> {

@@ -36,7 +36,9 @@ impl<'g> Finder<'_, 'g> {
                         if is_of_choice { leaf.symbol.entry(direction.index, 0) } else { graph.integer(0) }
                     };
                     let weights: Vec<_> = self.directions.each(weight);
-                    let change = self.matrix * graph.stack(Shape::vector(weights.len()), weights.clone());
+                    let still = self.places.iter().map(|_| graph.integer(0));
+                    let all: Vec<_> = still.chain(weights.iter().copied()).into_list();
+                    let change = self.matrix * graph.stack(Shape::vector(all.len()), all);
                     if !identity::vanishes(change) {
                         continue;
                     }
@@ -92,7 +94,8 @@ impl<'g> Finder<'_, 'g> {
 
     /// The special parameters for which a direction is a symmetry; `None` if there are none of this kind.
     fn conditions(&self, position: usize, axis: usize) -> Option<String> {
-        let column = self.matrix.block(0, position, Shape::new(self.matrix.shape().rows, 1));
+        let place = self.places.len() + position;
+        let column = self.matrix.block(0, place, Shape::new(self.matrix.shape().rows, 1));
         let leaves = self.sources.model.parameters.iter().flat_map(|parameter| &parameter.leaves);
         let leaves = leaves.filter(|leaf| [Shape::vector(3), Shape::square(3)].contains(&leaf.shape));
         let leaves: Vec<Expr<'g>> = leaves.map(|leaf| leaf.symbol).into_list();
