@@ -224,6 +224,21 @@ errors! {
                 Some(h) => write!(f, "reduce the step size to {:.3e} or less", h * 0.9995),
                 None => f.write_str("reduce the step size, by that factor or more"),
             });
+        /// The equation of the step has no solution on the branch of short steps, and no part of the momentum changes that. This
+        /// is so for a constraint whose motion does not stop where the momentum does, as that of a ball on a turning table.
+        StepTooLong {
+            /// The step size.
+            step_size: f64,
+            /// The longest step from the same state that has a solution, if one was found by trying. A step that is 2 % longer has no
+            /// solution.
+            solvable_step: Option<f64>,
+        } =>
+            "the step of {step_size:.3e} is too long: its equation has no solution near those of short steps; {}",
+            Said(|f: &mut Formatter<'_>| match solvable_step {
+                // rounded down
+                Some(h) => write!(f, "reduce the step size to {:.3e} or less", h * 0.9995),
+                None => f.write_str("reduce the step size"),
+            });
         /// The gradient method of an opaque potential disagrees with differences of its value method.
         WrongGradient {
             /// The entry of the configuration, counted through all its leaves, matrices column by column.

@@ -94,6 +94,9 @@ impl<S: Clebsch, M: Method<S>> Stepper<S, M> {
                 }
                 let constants = |h: f64| M::Scheme::constants(&self.system, S::Scalar::from_f64(h));
                 let solvable_step = longest(h, solvable_fraction, |h| stepped(&constants(h)?));
+                if solvable_fraction <= 0.0 {
+                    return Error::StepTooLong { step_size: h, solvable_step };
+                }
                 Error::Unsolvable { solvable_fraction, step_size: Some(h), solvable_step }
             }
             other => other,

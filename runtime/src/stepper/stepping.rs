@@ -23,7 +23,7 @@ impl<S: Clebsch, M: Method<S>> Stepper<S, M> {
     /// One step of the discrete Euler–Poincaré representation: (q_k, N_k) ↦ (q_{k+1}, N_{k+1}).
     ///
     /// # Errors
-    /// [`Error::Unsolvable`] where the step is too long for the momentum, [`Error::NotFinite`] where the potential gave
+    /// [`Error::Unsolvable`] or [`Error::StepTooLong`] where the step is too long for the momentum, [`Error::NotFinite`] where the potential gave
     /// NaN or numbers overflowed, [`Error::NotConverged`]. Where the scalar has lanes: [`Error::InLane`].
     // a call hands states through memory, which costs as much as half of a short step; long ones stay calls within
     #[inline(always)]

@@ -1,8 +1,8 @@
 //! States that violate a constraint, rows that depend on each other, and the repair of momenta.
 
 use clebsch::{Clebsch, Error};
-use clebsch_tests::fixtures::{chaplygin_sleigh::ChaplyginSleigh, suslov::Suslov};
-use nalgebra::{Matrix3, Vector2, Vector3};
+use clebsch_tests::fixtures::{chaplygin_sleigh::ChaplyginSleigh, rolling_ball::RollingBall, suslov::Suslov};
+use nalgebra::{Matrix3, Vector2, Vector3, Vector5};
 
 #[test]
 fn a_velocity_off_the_constraint_is_refused_with_its_size() -> Result<(), Error> {
@@ -28,6 +28,24 @@ fn projection_repairs_momenta() -> Result<(), Error> {
     assert!(change.x.abs() < 1e-15 && change.y.abs() < 1e-15, "{change}");
     let omega = inertia.try_inverse().unwrap() * repaired;
     assert!(omega.z.abs() < 1e-15, "{omega}");
+    Ok(())
+}
+
+/// The table turns under a ball at rest too, so that no fraction of the momentum has a long step. The longest step is told.
+#[test]
+fn steps_too_long_for_a_turning_table_name_the_longest() -> Result<(), Error> {
+    let ball = RollingBall { mass: 1.3, inertia: 0.7, radius: 0.5, table_rate: 0.9 };
+    let (place, momentum) = (Vector2::new(0.3, -0.2), Vector5::new(0.2, 0.4, 0.1, -0.3, 0.35));
+    let step = |h: f64| -> Result<(), Error> {
+        let stepper = ball.stepper(h)?;
+        stepper.step(&stepper.project(place, momentum)?).map(drop)
+    };
+    let Err(Error::StepTooLong { step_size, solvable_step: Some(longest) }) = step(50.0) else {
+        panic!("{:?}", step(50.0))
+    };
+    assert!(step_size == 50.0 && longest > 0.1 && longest < 50.0, "{step_size} {longest}");
+    assert!(step(longest).is_ok());
+    assert!(matches!(step(longest * 1.03), Err(Error::StepTooLong { .. })), "{longest}: {:?}", step(longest * 1.03));
     Ok(())
 }
 

@@ -11,10 +11,11 @@ use clebsch_tests::fixtures::generic_body::GenericBody;
 use clebsch_tests::fixtures::heavy_top::HeavyTop;
 use clebsch_tests::fixtures::promised_top::PromisedTop;
 use clebsch_tests::fixtures::regulator::Regulator;
+use clebsch_tests::fixtures::rolling_ball::RollingBall;
 use clebsch_tests::fixtures::spherical_pendulum::SphericalPendulum;
 use clebsch_tests::fixtures::spin_chain::SpinChain;
 use clebsch_tests::fixtures::steered_body::SteeredBody;
-use nalgebra::{Matrix3, Quaternion, Vector1, Vector2, Vector3};
+use nalgebra::{Matrix3, Quaternion, Vector1, Vector2, Vector3, Vector5};
 
 /// A potential whose gradient has the wrong sign.
 #[derive(Clebsch, Clone, Debug)]
@@ -179,6 +180,9 @@ fn states() -> Vec<Scene> {
     let covector = damped.cotangent_state(r, r).expect("a state");
     let sleigh = ChaplyginSleigh { mass: 1.5, inertia: 0.4, offset: 0.6 }.into_stepper(0.1).expect("a sleigh");
     let crossing = Crossing.into_stepper(0.1).expect("a crossing");
+    let ball = RollingBall { mass: 1.3, inertia: 0.7, radius: 0.5, table_rate: 0.9 };
+    let turning = ball.into_stepper(50.0).expect("a ball");
+    let rolling = turning.project(Vector2::new(0.3, -0.2), Vector5::new(0.2, 0.4, 0.1, -0.3, 0.35)).expect("a state");
     vec![
         scene(
             refused(sleigh.state_moving(r, Vector3::new(1.0, 0.5, 0.25))),
@@ -198,6 +202,10 @@ fn states() -> Vec<Scene> {
                 "after 32 corrections",
                 "start nearer to one",
             ],
+        ),
+        scene(
+            refused(turning.step(&rolling)),
+            &["the step of 5.000e1 is too long", "no solution near those of short steps", "reduce the step size to"],
         ),
         scene(
             refused(crossing.state(Vector2::new(1.0, 1.0), Vector2::zeros())),

@@ -5,12 +5,13 @@ use syn::{BinOp, Expr as Syntax, ExprArray, ExprBinary, ExprMethodCall};
 
 use super::closures::optional;
 use super::elaborate::Elaborator;
+use super::features::{self, Feature, Found};
 use super::slots::{CONSTRAINT, Slot};
 use super::typed::{ActedSystem, Velocity};
 use super::value::Value;
-use super::{Constraint, Dials, Equation, VelocityRows, Written};
+use super::{Constraint, Equation, VelocityRows, Written};
 use crate::diagnostic::{Diagnostics, Location, error, refuse};
-use crate::parse::{Closure, shortened, spell, tail};
+use crate::parse::{Closure, Declaration, Kinetic, shortened, spell, tail};
 
 /// One equation of the list, as left side less right side.
 struct Sides<'g> {
@@ -27,7 +28,8 @@ struct Equations<'g> {
 impl<'g> ActedSystem<'_, '_, 'g> {
     /// The constraint of all closures: on the velocity if that is among the arguments, else on the configuration. `None` with
     /// an error, which was reported.
-    pub fn constraint(&mut self, closures: &[Closure], dials: &Dials) -> Option<Constraint<'g>> {
+    pub fn constraint(&mut self, declaration: &Declaration) -> Option<Constraint<'g>> {
+        let Declaration { constraints: closures, dials, kinetic, .. } = declaration;
         let graph = self.context.graph;
         if self.context.power.is_some() {
             // it has been refused
@@ -52,6 +54,11 @@ impl<'g> ActedSystem<'_, '_, 'g> {
             known.extend(all.into_each(equation));
         }
         of_places.extend(of_velocities);
+        if let (Kinetic::Cost(_), Some(chosen), true) = (kinetic, &dials.discretization, rows.is_empty()) {
+            let discretization = (Feature::Discretization, Found::at(chosen.span));
+            let error = features::refusal(discretization, (Feature::Cost, Found::somewhere()));
+            self.context.diagnostics.push(error.note("a constraint on places has no velocity to discretise"));
+        }
         let velocities = || VelocityRows { rows: graph.below(&rows), values: graph.below(&values) };
         Some(Constraint {
             places: (!places.is_empty()).then(|| graph.below(&places)),

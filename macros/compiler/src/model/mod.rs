@@ -219,7 +219,7 @@ impl<'g> ClosureValues<'g> {
         let endpoint = optional(declaration.endpoint.as_ref(), |closure| system.endpoint(closure));
         let forces = system.forces(declaration);
         let first = declaration.constraints.first();
-        let constraint = optional(first, |_| system.constraint(&declaration.constraints, &declaration.dials));
+        let constraint = optional(first, |_| system.constraint(declaration));
         let (mover, (force, input)) = match system.motion(declaration) {
             Some((motion, input)) => (Some(Mover::Inputs(motion)), (None, input)),
             // the moving closure has an error, and without it nothing is known of the input
