@@ -1,7 +1,9 @@
 //! Constraints on places: pendulums on rods and joints, and a place that moves with the time.
 
 use clebsch::{Clebsch, Error, Space};
-use clebsch_tests::fixtures::jointed_bodies::JointedBodies;
+use clebsch_tests::fixtures::{
+    chaplygin_sleigh::ChaplyginSleigh, jointed_bodies::JointedBodies, snakeboard::Snakeboard, suslov::Suslov,
+};
 use nalgebra::{Matrix3, Matrix4, Rotation3, SVector, Vector3};
 
 pub mod rods {
@@ -21,6 +23,42 @@ pub mod rods {
         pub length: f64,
     }
 
+    /// A body on a ball joint, by the velocity of the joint.
+    #[derive(Clebsch, Clone, Debug)]
+    #[clebsch(
+        action     = |F: SE<3>, q: SE<3>| q * F,
+        lagrangian = |(w, v)| (self.inertia * w.norm_squared() + self.mass * v.norm_squared()) / 2,
+        constraint = |q, (w, v)| [q.rotation() * (v + w.cross(&self.arm)) == Vector3::zeros()],
+    )]
+    pub struct Joint {
+        pub inertia: f64,
+        pub mass: f64,
+        pub arm: nalgebra::Vector3<f64>,
+    }
+
+    /// A direction of a body that stays level, by its velocity. The group acts from the left.
+    #[derive(Clebsch, Clone, Debug)]
+    #[clebsch(
+        action     = |F: SO<3>, R: SO<3>| F * R,
+        lagrangian = |w| self.inertia * w.norm_squared() / 2,
+        constraint = |R, w| [w.cross(&(R * self.arm)).z == 0],
+    )]
+    pub struct Level {
+        pub inertia: f64,
+        pub arm: nalgebra::Vector3<f64>,
+    }
+
+    /// A wheel that goes along (1, 0, y), and a plane.
+    #[derive(Clebsch, Clone, Debug)]
+    #[clebsch(
+        action     = |a: Translation<4>, x: Vector4| x + a,
+        lagrangian = |v| self.mass * v.norm_squared() / 2,
+        constraint = |x, v| [v.z == x.y * v.x, x.w * v.w == 0],
+    )]
+    pub struct Wheel {
+        pub mass: f64,
+    }
+
     /// A mass on a plane that moves up and down.
     #[derive(Clebsch, Clone, Debug)]
     #[clebsch(
@@ -33,7 +71,7 @@ pub mod rods {
     }
 }
 
-use rods::{Bob, Lifted};
+use rods::{Bob, Joint, Level, Lifted, Wheel};
 
 /// RATTLE, written by hand: x⁺ = x + h v + λ x with |x⁺| = l, a root of a quadratic equation, and v⁺ ⊥ x⁺.
 fn rattle(bob: &Bob, h: f64, (x, v): (Vector3<f64>, Vector3<f64>)) -> (Vector3<f64>, Vector3<f64>) {
@@ -107,6 +145,18 @@ fn places_off_the_constraint_are_refused() -> Result<(), Error> {
     let refused = stepper.state_moving(Vector3::new(1.3, 0.0, 0.0), Vector3::x());
     assert!(matches!(refused, Err(Error::ConstraintViolated { .. })), "{refused:?}");
     Ok(())
+}
+
+/// By the theorem of Frobenius: the velocity of a joint is that of a place, dz = y dx is not, and neither is a blade.
+#[test]
+fn velocities_of_places_are_told() {
+    let told = "of places φ(q) = c";
+    assert!(Joint::DERIVATION.contains("== Vector3::zeros() is the velocity of places"), "{}", Joint::DERIVATION);
+    assert!(Level::DERIVATION.contains(".z == 0 is the velocity of places"), "{}", Level::DERIVATION);
+    assert!(Wheel::DERIVATION.contains("\nx.w * v.w == 0 is the velocity of places"), "{}", Wheel::DERIVATION);
+    for text in [Bob::DERIVATION, ChaplyginSleigh::DERIVATION, Snakeboard::DERIVATION, Suslov::DERIVATION] {
+        assert!(!text.contains(told), "{text}");
+    }
 }
 
 /// ½ tr(J) I − J of principal moments.

@@ -18,7 +18,7 @@
 //! A place comes to φ = 0 by motions with x = −s Σ⁻¹Aᵀ S⁻¹φ, where s = dx/dξ at the identity. This is Newton's method with the
 //! motion that is shortest in the kinetic energy.
 
-use clebsch_symbolic::{Expr, IntoList, Shape, identity};
+use clebsch_symbolic::{Elements, Expr, IntoList, Shape, identity};
 
 use super::energy::Energy;
 use super::exact::{self, inertia_inverse};
@@ -50,6 +50,8 @@ pub struct ConstraintFormulas<'g> {
     pub lag: Expr<'g>,
     /// The part of it that is on places.
     pub places: Option<PlaceFormulas<'g>>,
+    /// The equations of velocities that are those of places, by their rows among these; all of them, or single ones.
+    pub of_places: Vec<usize>,
     /// The rows of velocities between both ends are the mean of those at the ends, not those at the mean of the ends.
     pub is_mean_of_rows: bool,
 }
@@ -122,6 +124,7 @@ impl<'g> ConstraintFormulas<'g> {
             lag: -(rows * velocity - values).differential(&free),
             momentum: system.symbols.slope(energy.kinetic) + gyroscopic,
             places,
+            of_places: constraint.velocities.map_or_else(Vec::new, |rows| of_places(model, system, rows)),
             is_mean_of_rows: is_mean,
         }))
     }
@@ -146,6 +149,49 @@ impl<'g> ConstraintFormulas<'g> {
         let solved = if self.metric.shape().is_scalar() { along / self.metric } else { self.metric.inverse() * along };
         self.rows.transpose() * solved
     }
+}
+
+/// The rows of velocities that are those of some φ(q) = c, by Frobenius' theorem. They are all of them if the velocities that
+/// they allow are closed under brackets. Else each row is tried alone. Rows with a time or a value are none.
+///
+/// A row a is a one-form with a(X_i) = a_i on the motions X_i of the basis. Its derivative is
+///
+/// ```text
+/// da(X_i, X_j) = X_i(a_j) − X_j(a_i) − a([X_i, X_j]),    [X_i, X_j] = ± the motion of [E_i, E_j]
+/// ```
+/// It has to vanish on the velocities with a ξ = 0. Bordered by the R rows, da has the rank 2R then.
+fn of_places<'g>(
+    model: &Mechanics<'g>,
+    system: &SystemFormulas<'g>,
+    VelocityRows { rows, values }: VelocityRows<'g>,
+) -> Vec<usize> {
+    let Shape { rows: count, columns } = rows.shape();
+    if rows.depends_on(model.time) || !identity::vanishes(values) {
+        return Vec::new();
+    }
+    let row = |i: usize| rows.block(i, 0, Shape::new(1, columns));
+    let derivative = |i: usize| {
+        let form = row(i).transpose();
+        let moved = system.symbols.slopes(form.differential(&system.leaves_by_generator()));
+        let parts = system.parted(form).into_iter().zip(&model.factors).zip(&system.symbols.algebra);
+        let brackets = parts.map(|((part, factor), xi)| {
+            let bracket = factor.group.ad(*xi).transpose() * part;
+            if factor.side == Side::Left { bracket } else { -bracket }
+        });
+        let brackets = system.symbols.slopes(model.graph.below(&brackets.into_list()));
+        (moved + brackets).transpose() - moved
+    };
+    let is_closed = |own: &[usize]| {
+        let all = model.graph.below(&own.each(|&i| row(i)));
+        let none = model.graph.zero(Shape::square(own.len()));
+        let border = model.graph.beside(&[all, none]);
+        own.iter().all(|&i| {
+            let bordered = model.graph.below(&[model.graph.beside(&[derivative(i), all.transpose()]), border]);
+            identity::rank(bordered) == 2 * own.len()
+        })
+    };
+    let every: Vec<usize> = (0..count).into_list();
+    if is_closed(&every) { every } else { every.into_iter().filter(|&i| is_closed(&[i])).into_list() }
 }
 
 /// s ξ in the charts, for each column ξ.

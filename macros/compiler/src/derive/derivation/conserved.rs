@@ -3,8 +3,8 @@
 use super::{bounds, inputs};
 use clebsch_symbolic::{Elements, IntoList};
 
-use crate::derive::{MOST_LISTED, MechanicsFormulas, Substep};
-use crate::model::{Isotropy, Order, VelocityRows};
+use crate::derive::{ConstraintFormulas, MOST_LISTED, MechanicsFormulas, Substep};
+use crate::model::{Constraint, Isotropy, Order, VelocityRows};
 
 pub(super) fn forces(formulas: &MechanicsFormulas<'_>) -> String {
     let model = &formulas.model;
@@ -61,6 +61,7 @@ pub(super) fn constraint(formulas: &MechanicsFormulas<'_>) -> String {
     };
     let is_steady = !formulas.is_moving(rows) && !formulas.is_moving(values);
     let mean = if is_steady { String::new() } else { format!(", where {mean}") };
+    let places = velocities_of_places(constraint, known);
     let not_symplectic =
         "It is not symplectic. Momenta are conserved along motions that the constraint allows at every configuration.";
     if constraint.places.is_some() {
@@ -69,14 +70,37 @@ pub(super) fn constraint(formulas: &MechanicsFormulas<'_>) -> String {
              The force Aᵀλ of both acts along their rows at both ends of the step (Lagrange–d'Alembert). \
              q⁺ obeys the first. The velocity ξ(F)/h of the step obeys the second{mean}. \
              The velocity of N⁺ obeys both: A·Σ⁻¹·N⁺ = b at the end of the step.\n\
-             {multipliers} The step is time-symmetric, and obeys both to rounding. {not_symplectic}\n"
+             {multipliers} The step is time-symmetric, and obeys both to rounding. {not_symplectic}\n{places}"
         );
     }
     format!(
         "Constraint: {of_velocities}. Its force Aᵀλ acts along its rows at both ends of the step (Lagrange–d'Alembert). The velocity ξ(F)/h of the step obeys it{mean}. \
          So does that of N⁺: A·Σ⁻¹·N⁺ = b at the end of the step.\n\
          {multipliers} The step is time-symmetric, and obeys the constraint to rounding. \
-         {not_symplectic}\n"
+         {not_symplectic}\n{places}"
+    )
+}
+
+/// The equations of velocities that are those of places, with the advice to write these.
+fn velocities_of_places(constraint: &Constraint<'_>, known: &ConstraintFormulas<'_>) -> String {
+    let mut texts: Vec<&str> = Vec::new();
+    let mut first = 0;
+    for equation in constraint.equations.iter().filter(|equation| equation.is_of_velocities) {
+        let mut own = first..first + equation.count;
+        let is_new = !texts.contains(&equation.written.text.as_str());
+        if own.all(|i| known.of_places.contains(&i)) && is_new {
+            texts.push(&equation.written.text);
+        }
+        first += equation.count;
+    }
+    if texts.is_empty() {
+        return String::new();
+    }
+    let subject = if texts.len() == 1 { "is the velocity" } else { "are velocities" };
+    format!(
+        "{} {subject} of places φ(q) = c: the motions that remain are closed under brackets (Frobenius). A step keeps c up to O(h²). \
+         Where a formula for φ is known, write it without the velocity: a step then solves it to rounding.\n",
+        texts.join(", ")
     )
 }
 
