@@ -164,7 +164,7 @@ pub struct Correction<T, const R: usize, const M: usize> {
     pub moved: SMatrix<T, M, R>,
 }
 
-/// The corrections of a configuration, at most. Newton's method takes five from 10 % away.
+/// The corrections of a configuration, at most. Newton's method takes four from 10 % away on a sphere.
 const CORRECTIONS: u32 = 32;
 
 /// A configuration with φ = 0 next to q. Newton's method moves q by x = −s Σ⁻¹Aᵀ S⁻¹φ until φ no longer falls.

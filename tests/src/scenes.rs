@@ -151,7 +151,7 @@ macro_rules! every_scene {
                 [Vector2::new(0.6, -0.8), Vector2::x(), -Vector2::y()], 0.05;
             a_body_in_seven_dimensions: rigid_body7::RigidBody7 { j_d: many() }, SMatrix::identity(), 0.1;
             a_tractor_with_a_trailer: tractor_trailer::TractorTrailer {
-                mass: [1.5, 0.8], inertia: [0.4, 0.25], offset: [0.3, -0.2], hitch: [Vector2::new(-0.4, 0.0), Vector2::new(0.9, 0.0)],
+                mass: [1.5, 0.8], inertia: [0.4, 0.25], offset: [0.3, -0.2], hitch: [Vector2::new(-0.4, 0.0), Vector2::new(0.9, 0.0)]
             }, [Matrix3::identity(), Matrix3::new_translation(&Vector2::new(-1.3, 0.0))], 0.05;
             a_sleigh: chaplygin_sleigh::ChaplyginSleigh { mass: 1.5, inertia: 0.4, offset: 0.6 }, Matrix3::identity(), 0.05;
             a_snakeboard: snakeboard::Snakeboard { mass: 1.2, length: 0.8, rotor: 0.3, wheel: 0.15 },

@@ -82,6 +82,11 @@ impl<A: Slots, B: Slots> Slots for (A, B) {
         a.slots().into_iter().chain(b.slots()).collect()
     }
 }
+impl<A: Slots, B: Slots, C: Slots> Slots for (A, B, C) {
+    fn slots(&mut self) -> Vec<Slot<'_>> {
+        self.0.slots().into_iter().chain(self.1.slots()).chain(self.2.slots()).collect()
+    }
+}
 impl<A: Slots, const N: usize> Slots for [A; N] {
     fn slots(&mut self) -> Vec<Slot<'_>> {
         self.iter_mut().flat_map(Slots::slots).collect()
