@@ -8,7 +8,7 @@ mod sites;
 #[cfg(feature = "alloc")]
 pub use ensemble::{Bodies, Ensemble, Failure};
 pub use integrator::Integrator;
-pub use sites::{SiteError, SiteStorage, Sites};
+pub use sites::{NoJoints, SiteError, SiteStorage, Sites};
 
 /// A stepper with a state that it steps in place: the words that [`Integrator`], [`Sites`] and `Ensemble` share.
 ///

@@ -56,7 +56,7 @@
 //! | solve an implicit equation of one's own | [`implicit`] |
 //! | integrate in another number type | [`Scalar`], and [`Space`] for collections of scalars; [`Real`] for a scalar that has an order |
 //! | step many bodies at once | [many bodies](crate#many-bodies), on lanes and on all cores |
-//! | step N equal sites that are tied to each other | a const generic N: an array of sites is a system, and [`Stepper::sites`] steps them in [`SiteStorage`]; the macro derives [`Power`] |
+//! | step N equal sites that are tied to each other | a const generic N: an array of sites is a system, [`Stepper::sites`] or [`Stepper::joined_sites`] steps them in [`SiteStorage`]; the macro derives [`Power`] |
 //!
 //! # Features
 //!
@@ -154,6 +154,7 @@ mod free_rotation;
 mod free_rotation_4d;
 pub mod group;
 pub mod implicit;
+mod joints;
 #[cfg(feature = "lanes")]
 mod lanes;
 mod linear;
@@ -196,7 +197,7 @@ pub use controlled::{Arrival, BoundsExpansion, Controlled, EndpointExpansion, Ex
 pub use double_double::DoubleDouble;
 #[cfg(feature = "alloc")]
 pub use drive::{Bodies, Ensemble, Failure};
-pub use drive::{Drive, Integrator, SiteError, SiteStorage, Sites};
+pub use drive::{Drive, Integrator, NoJoints, SiteError, SiteStorage, Sites};
 pub use error::Error;
 #[cfg(feature = "lanes")]
 pub use lanes::{F32x8, F32x8Mask, F64x4, F64x4Mask, F64x8, F64x8Mask};

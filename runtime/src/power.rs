@@ -36,7 +36,8 @@ type MomentumMatrix<P, const N: usize> = <<P as Power<N>>::Site as Clebsch>::Mom
 #[derive(Clone, Copy, Debug)]
 pub struct PowerConstants<T, C> {
     pub(crate) h: T,
-    site: C,
+    /// Those of each site, or of the first one where sites differ.
+    pub(crate) site: C,
 }
 
 impl<T: Scalar, C> PowerConstants<T, C> {
@@ -60,8 +61,24 @@ fn remainder<const N: usize>(index: isize) -> usize {
 }
 
 /// The constants of all steps of a site.
-fn site_constants<S: Clebsch>(site: &S, h: S::Scalar) -> Result<scheme::Constants<S>, Error> {
+pub(crate) fn site_constants<S: Clebsch>(site: &S, h: S::Scalar) -> Result<scheme::Constants<S>, Error> {
     S::Scheme::constants(site, h)
+}
+
+/// A site after a step with the momentum n and the input u of its forces.
+#[inline(always)]
+pub(crate) fn moved_site<P: Power<N>, const N: usize>(
+    site: &P::Site,
+    c: &scheme::Constants<P::Site>,
+    t: T<P>,
+    (q, n): (&Point<P, N>, &SiteMomentum<P, N>),
+    u: &SiteInput<P, N>,
+) -> Result<MovedSite<P, N>, Error> {
+    let at = At::new(site, c, t);
+    let left = SiteScheme::<P, N>::left(at, q, n);
+    let held = SiteScheme::<P, N>::held(q, n);
+    let (q, held, _) = SiteScheme::<P, N>::step(at, (q, &held, &left), u)?;
+    Ok((q, SiteScheme::<P, N>::momentum(&q, &held)))
 }
 
 /// N equal sites, as `#[derive(Clebsch)]` declares them by a const generic N.
@@ -226,13 +243,7 @@ pub trait Power<const N: usize>:
         (q, n): (&Point<Self, N>, &SiteMomentum<Self, N>),
         u: &SiteInput<Self, N>,
     ) -> Result<MovedSite<Self, N>, Error> {
-        self.at_site(c, i, |site, c| {
-            let at = At::new(site, c, t);
-            let left = SiteScheme::<Self, N>::left(at, q, n);
-            let held = SiteScheme::<Self, N>::held(q, n);
-            let (q, held, _) = SiteScheme::<Self, N>::step(at, (q, &held, &left), u)?;
-            Ok((q, SiteScheme::<Self, N>::momentum(&q, &held)))
-        })
+        self.at_site(c, i, |site, c| moved_site::<Self, N>(site, c, t, (q, n), u))
     }
 
     /// The same with `kick` added to the momentum. An input that is not given is 0.
@@ -288,15 +299,22 @@ pub trait Power<const N: usize>:
     /// F⁻ℓd, where the kick at the start has the weight `part` of a step.
     #[inline]
     fn power_legendre(&self, h: T<Self>, t: T<Self>, q: &Q<Self>, f: &F<Self>, part: f64) -> Mu<Self> {
-        let kick = self.power_kick(t, q, h * Scalar::from_f64(part));
-        self.each(|site, i| minus(&site.legendre(h, t, &q[i], &f[i]), &kick[i]))
+        let mut momenta = self.power_kick(t, q, h * Scalar::from_f64(part));
+        // not by a closure, as in `power_kick`
+        for i in 0..N {
+            momenta[i] = minus(&self.site(i).legendre(h, t, &q[i], &f[i]), &momenta[i]);
+        }
+        momenta
     }
 
     /// F⁺ℓd, where the kick at the end has the weight `part` of a step.
     #[inline]
     fn power_legendre_next(&self, h: T<Self>, t: T<Self>, q: &Q<Self>, f: &F<Self>, part: f64) -> Mu<Self> {
-        let kick = self.power_kick(t + h, &self.act(f, q), h * Scalar::from_f64(part));
-        self.each(|site, i| plus(&site.legendre_next(h, t, &q[i], &f[i]), &kick[i]))
+        let mut momenta = self.power_kick(t + h, &self.act(f, q), h * Scalar::from_f64(part));
+        for i in 0..N {
+            momenta[i] = plus(&self.site(i).legendre_next(h, t, &q[i], &f[i]), &momenta[i]);
+        }
+        momenta
     }
 
     /// ½ J(q, ∂(U₁ − U₀)) of kicks with these weights of a step.

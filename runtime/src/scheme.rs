@@ -9,6 +9,7 @@
 //! Collocated      Hamilton's equations at the nodes of Gauss and Legendre, of order 16
 //! GreatCircle     points on large spheres in (q, w)
 //! Sites           equal sites, one after the other
+//! JoinedSites     the same, with joints between neighbours
 //! ```
 //! A method names its scheme, [`Method::Scheme`](crate::Method), and the system implements the parts that this scheme calls, [`crate::parts`].
 
@@ -53,6 +54,7 @@ mod composed;
 pub(crate) mod edges;
 mod free_motion;
 mod great_circle;
+mod joined;
 mod kick_drift_kick;
 mod sequence;
 mod sites;
@@ -69,7 +71,7 @@ use core::marker::PhantomData;
 use num_traits::Zero;
 
 pub use composed::{Sizes, Stages, compose};
-pub use sites::{InStorage, Stored};
+pub use sites::{AtSite, InStorage, Stored};
 pub use split::{Kicks, split};
 
 /// The types by which a declaration names its scheme.
@@ -79,6 +81,7 @@ pub mod kinds {
     pub use super::composed::{Composed, OfOrderEight, OfOrderFour, OfOrderSix};
     pub use super::free_motion::AlongFreeMotion;
     pub use super::great_circle::{FreeGreatCircle, GreatCircle};
+    pub use super::joined::{FreeJoinedSites, JoinedSitesOfSecondOrder};
     pub use super::kick_drift_kick::KickDriftKick;
     pub use super::sequence::{Apart, Shared};
     pub use super::sites::{FreeSites, SitesOfFirstOrder, SitesOfSecondOrder};

@@ -161,6 +161,8 @@ macro_rules! every_scene {
             jointed_bodies: jointed_bodies::JointedBodies {
                 second_moments: [inertia(), inertia()], mass: [1.0, 0.7], gravity: 9.81, near: [Vector3::z(), Vector3::z()], far: -Vector3::z()
             }, [hanging(1.0), hanging(3.0)], 0.02;
+            a_hanging_chain: hanging_chain::HangingChain<2> { mass_matrix: four(), weight: 9.81, near: Vector3::z(), far: -Vector3::z() },
+                [hanging(1.0), hanging(3.0)], 0.02;
             suslovs_body: suslov::Suslov { inertia: inertia() }, turned(), 0.1;
             a_sided_pair: sided_pair::SidedPair { }, (turned(), unit()), 0.1;
             a_top_of_eighth_order: eighth_order_top::EighthOrderTop { moments: principal(), weight: 1.3, center: centre() }, turned(), 0.05;

@@ -3,7 +3,7 @@
 use super::Drive;
 use crate::fields::getters;
 use crate::power::{Point, Power, SiteMomentum};
-use crate::scheme::{At, InStorage, Scheme, Stored};
+use crate::scheme::{At, AtSite, InStorage, Scheme, Stored};
 use crate::stepper::check_on_orbit;
 use crate::{Clebsch, Clock, Conserves, Error, Scalar, Space, Stepper, Time};
 use core::fmt::{self, Display, Formatter};
@@ -127,11 +127,48 @@ impl From<SiteError> for Error {
 /// # Ok::<(), clebsch::Error>(())
 /// ```
 #[derive(Clone, Debug)]
-pub struct Sites<P: Clebsch, Points, Momenta, const N: usize> {
+pub struct Sites<P: Clebsch, Points, Momenta, const N: usize, Rooms = NoJoints> {
     stepper: Stepper<P>,
     time: P::Time,
     steps: u64,
     storage: SiteStorage<Points, Momenta>,
+    room: Rooms,
+}
+
+/// The room of sites without joints: none.
+///
+/// ```
+/// # use clebsch::{Clebsch, NoJoints, SiteStorage, Sites};
+/// # use nalgebra::Vector1;
+/// # #[derive(Clebsch, Clone, Debug)]
+/// # #[clebsch(
+/// #     action    = |a: [Translation<1>; N], x: [Vector1; N]| (0..N).map(|i| x[i] + a[i]),
+/// #     cost      = |h, a| (0..N).map(|i| a[i].norm_squared() / (2 * h)).sum(),
+/// #     potential = |x| (0..N).map(|i| (x[(i + 1) % N] - x[i]).norm_squared() / 2).sum(),
+/// # )]
+/// # struct Ring<const N: usize>;
+/// type Storage = Vec<Vector1<f64>>;
+/// let storage = SiteStorage::of(vec![Vector1::zeros(); 8], vec![Vector1::new(2.0); 8]);
+/// let ring: Sites<Ring<8>, Storage, Storage, 8, NoJoints> = Ring::<8>.into_stepper(0.5)?.sites(storage)?;
+/// assert_eq!(ring.steps(), 0);
+/// # Ok::<(), clebsch::Error>(())
+/// ```
+#[derive(Clone, Copy, Debug, Default)]
+pub struct NoJoints;
+
+impl<R> AsMut<[R]> for NoJoints {
+    fn as_mut(&mut self) -> &mut [R] {
+        &mut []
+    }
+}
+
+/// The room that the sites of P need for their joints.
+type Room<P, const N: usize> = <<P as Clebsch>::Scheme as InStorage<P, N>>::Room;
+
+impl From<AtSite> for SiteError {
+    fn from((site, error): AtSite) -> Self {
+        Self { site: Some(site), error }
+    }
 }
 
 /// A slice as the array of N entries that it is.
@@ -163,32 +200,100 @@ impl<P: Clebsch> Stepper<P> {
         Points: AsRef<[Point<P, N>]> + AsMut<[Point<P, N>]>,
         Momenta: AsRef<[SiteMomentum<P, N>]> + AsMut<[SiteMomentum<P, N>]>,
     {
+        const {
+            assert!(
+                size_of::<Room<P, N>>() == 0,
+                "these sites have joints: write `stepper.joined_sites(storage, room)` with the room `vec![stepper.joint(); N]`"
+            );
+        }
+        self.joined_sites(storage, NoJoints)
+    }
+
+    /// The same of sites with joints, whose room is given: [`joint`](Self::joint) for each site. Its content does not matter.
+    ///
+    /// ```
+    /// # use clebsch::{Clebsch, Error, SiteStorage};
+    /// # use nalgebra::Vector2;
+    /// /// Beads on rods of length 1, the first of which is fixed.
+    /// #[derive(Clebsch, Clone, Debug)]
+    /// #[clebsch(
+    ///     action     = |a: [Translation<2>; N], x: [Vector2; N]| (0..N).map(|i| x[i] + a[i]),
+    ///     lagrangian = |v| (0..N).map(|i| v[i].norm_squared() / 2).sum(),
+    ///     constraint = |x| [
+    ///         x[0] == Vector2::zeros(),
+    ///         (1..N).map(|i| (x[i] - x[i - 1]).norm_squared() == 1),
+    ///     ],
+    /// )]
+    /// struct Rope<const N: usize>;
+    ///
+    /// let stepper = Rope::<3>.into_stepper(0.1)?;
+    /// let places = vec![Vector2::zeros(), Vector2::x(), Vector2::x() * 2.0];
+    /// let momenta = vec![Vector2::zeros(), Vector2::y(), Vector2::y() * 2.0];
+    /// let room = vec![stepper.joint(); 3];
+    /// let mut rope = stepper.joined_sites(SiteStorage::of(places, momenta), room)?;
+    /// rope.advance(1000)?;
+    /// let end = rope.configuration();
+    /// assert!(((end[2] - end[1]).norm() - 1.0).abs() < 1e-14);
+    ///
+    /// // the last rod is too long
+    /// let stepper = Rope::<3>.into_stepper(0.1)?;
+    /// let places = vec![Vector2::zeros(), Vector2::x(), Vector2::x() * 2.5];
+    /// let room = vec![stepper.joint(); 3];
+    /// let refused = stepper.joined_sites(SiteStorage::of(places, vec![Vector2::zeros(); 3]), room).unwrap_err();
+    /// assert_eq!(refused.site, Some(2));
+    /// assert!(matches!(refused.error, Error::OffConstraint { .. }));
+    /// # Ok::<(), Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// Those of [`sites`](Self::sites). [`Error::OffConstraint`], [`Error::ConstraintViolated`] and [`Error::DependentConstraints`], with the site.
+    pub fn joined_sites<Points, Momenta, Rooms, const N: usize>(
+        self,
+        storage: SiteStorage<Points, Momenta>,
+        room: Rooms,
+    ) -> Result<Sites<P, Points, Momenta, N, Rooms>, SiteError>
+    where
+        P: Power<N>,
+        Points: AsRef<[Point<P, N>]> + AsMut<[Point<P, N>]>,
+        Momenta: AsRef<[SiteMomentum<P, N>]> + AsMut<[SiteMomentum<P, N>]>,
+        Rooms: AsMut<[Room<P, N>]>,
+    {
         let points = once(&storage.configuration).chain(&storage.more_points).map(|one| one.as_ref().len());
         let momenta = once(&storage.momentum).chain(&storage.more_momenta).map(|one| one.as_ref().len());
         if let Some(found) = points.chain(momenta).find(|&found| found != N) {
             return Err(wrong_length::<N>(found));
         }
-        let mut sites = Sites { stepper: self, time: Time::at(Zero::zero()), steps: 0, storage };
+        let mut sites = Sites { stepper: self, time: Time::at(Zero::zero()), steps: 0, storage, room };
         sites.check()?;
         sites.kick()?;
         Ok(sites)
     }
+
+    /// The room of one joint, as [`joined_sites`](Self::joined_sites) takes it for each site.
+    pub fn joint<const N: usize>(&self) -> Room<P, N>
+    where
+        P: Power<N>,
+    {
+        Default::default()
+    }
 }
 
-impl<P, Points, Momenta, const N: usize> Sites<P, Points, Momenta, N>
+impl<P, Points, Momenta, Rooms, const N: usize> Sites<P, Points, Momenta, N, Rooms>
 where
     P: Power<N>,
     Points: AsRef<[Point<P, N>]> + AsMut<[Point<P, N>]>,
     Momenta: AsRef<[SiteMomentum<P, N>]> + AsMut<[SiteMomentum<P, N>]>,
+    Rooms: AsMut<[Room<P, N>]>,
 {
-    /// Each site as a state of its own.
-    fn check(&self) -> Result<(), SiteError> {
+    /// Each site as a state of its own, and the joints of all of them.
+    fn check(&mut self) -> Result<(), SiteError> {
         let h = self.stepper.step_size();
         for (i, (q, mu)) in self.configuration().iter().zip(self.momentum()).enumerate() {
             let site = self.stepper.system().site(i).into_stepper(h).and_then(|site| site.state(*q, *mu));
             site.map_err(|error| SiteError { site: Some(i), error })?;
         }
-        Ok(())
+        let state = (array(self.storage.configuration.as_ref())?, array(self.storage.momentum.as_ref())?);
+        Ok(P::Scheme::check(self.stepper.at(self.time.now()), state, self.room.as_mut())?)
     }
 
     /// The kick at the configuration, for the steps that start there.
@@ -231,8 +336,8 @@ where
         let from = (array(configuration.as_ref())?, array(momentum.as_ref())?, array(kick.as_ref())?);
         let (q, mu) = (array_mut(next.as_mut())?, array_mut(moved.as_mut())?);
         let (kick, gradient) = (array_mut(next_kick.as_mut())?, array_mut(gradient.as_mut())?);
-        let sum = P::Scheme::step_from(self.stepper.at(self.time.now()), from, u, Stored { q, mu, kick, gradient });
-        let sum = sum.map_err(|(site, error)| SiteError { site: Some(site), error })?;
+        let next_state = Stored { q, mu, kick, gradient };
+        let sum = P::Scheme::step_from(self.stepper.at(self.time.now()), from, u, next_state, self.room.as_mut())?;
         if !sum.is_finite()
             && let Some(error) = not_finite(next.as_ref(), moved.as_ref(), next_kick.as_ref())
         {
@@ -305,11 +410,12 @@ where
     }
 }
 
-impl<P, Points, Momenta, const N: usize> Drive for Sites<P, Points, Momenta, N>
+impl<P, Points, Momenta, Rooms, const N: usize> Drive for Sites<P, Points, Momenta, N, Rooms>
 where
     P: Power<N>,
     Points: AsRef<[Point<P, N>]> + AsMut<[Point<P, N>]>,
     Momenta: AsRef<[SiteMomentum<P, N>]> + AsMut<[SiteMomentum<P, N>]>,
+    Rooms: AsMut<[Room<P, N>]>,
 {
     /// The configurations q and the momenta N of all sites.
     type State<'a>
@@ -349,7 +455,7 @@ fn not_finite<T: Scalar, Q: Space<T>, M: Space<T>>(q: &[Q], mu: &[M], kick: &[M]
     })
 }
 
-impl<P, Points, Momenta, const N: usize> Sites<P, Points, Momenta, N>
+impl<P, Points, Momenta, Rooms, const N: usize> Sites<P, Points, Momenta, N, Rooms>
 where
     P: Power<N> + Clebsch<Time = Clock<<P as Clebsch>::Scalar>>,
 {

@@ -66,3 +66,44 @@ macro_rules! __formulas_of_sites {
         }
     };
 }
+
+/// The constraint of a power: the joints of all sites.
+#[doc(hidden)]
+#[macro_export]
+macro_rules! __formulas_of_joints {
+    ($scalar:ty, $sites:tt, $rows:tt, $dimension:tt) => {
+        fn check_place(
+            &self,
+            t: $scalar,
+            q: &Self::Configuration,
+        ) -> $crate::__private::Result<(), $crate::__private::Error> {
+            $crate::__private::Joined::<$sites, $rows, $dimension>::check_joints(self, t, q)
+        }
+        fn placed(
+            &self,
+            constants: &Self::Constants,
+            t: $scalar,
+            q: &Self::Configuration,
+        ) -> $crate::__private::Result<Self::Configuration, $crate::__private::Error> {
+            $crate::__private::Joined::<$sites, $rows, $dimension>::joined_places(self, constants, t, q)
+        }
+        fn constraint_defect(
+            &self,
+            constants: &Self::Constants,
+            t: $scalar,
+            q: &Self::Configuration,
+            mu: &Self::Momentum,
+        ) -> $crate::__private::Result<$crate::__private::Violation<$scalar>, $crate::__private::Error> {
+            $crate::__private::Joined::<$sites, $rows, $dimension>::defect_of_joints(self, constants, t, q, mu)
+        }
+        fn constrained(
+            &self,
+            constants: &Self::Constants,
+            t: $scalar,
+            q: &Self::Configuration,
+            mu: &Self::Momentum,
+        ) -> $crate::__private::Result<Self::Momentum, $crate::__private::Error> {
+            $crate::__private::Joined::<$sites, $rows, $dimension>::joined_momentum(self, constants, t, q, mu)
+        }
+    };
+}

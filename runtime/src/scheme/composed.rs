@@ -147,27 +147,38 @@ impl<S: Clebsch, M: Method<S>, I: Scheme<S, M>, Z: Sizes<K>, const K: usize> Sch
     }
 }
 
+/// The sites between two steps, the sum of their numbers, and the room of a step.
+type Stage<'a, 'r, S, R> = (Stored<'a, S>, T<S>, &'r mut [R]);
+
 impl<S: Power<N>, I: InStorage<S, N>, Z: Sizes<K>, const K: usize, const N: usize> InStorage<S, N>
     for Composed<I, Z, K>
 {
+    type Room = I::Room;
+
+    fn check(at: AtOf<'_, S, Self>, state: (&Q<S>, &Mu<S>), room: &mut [I::Room]) -> Result<(), AtSite> {
+        I::check(At::new(at.system, &at.constants.whole, at.t), state, room)
+    }
+
     fn start(at: AtOf<'_, S, Self>, state: Stored<'_, S>) {
         I::start(At::new(at.system, at.constants.first(), at.t), state);
     }
 
     #[inline]
-    fn step_in_place<'a>(
+    fn step_in_place<'a, 'r>(
         at: AtOf<'_, S, Self>,
         u: Option<&U<S>>,
         state: Stored<'a, S>,
+        room: &'r mut [I::Room],
     ) -> Result<(Stored<'a, S>, T<S>), AtSite> {
-        let step = |stage: &I::Constants, t, (state, _): (Stored<'a, S>, _)| {
-            I::step_in_place(At::new(at.system, stage, t), u, state)
+        let step = |stage: &I::Constants, t, (state, _, room): Stage<'a, 'r, S, I::Room>| {
+            let (state, sum) = I::step_in_place(At::new(at.system, stage, t), u, state, room)?;
+            Ok((state, sum, room))
         };
-        let scaled = |(state, sum): (Stored<'a, S>, _), ratio| {
+        let scaled = |(state, sum, room): Stage<'a, 'r, S, I::Room>, ratio| {
             state.kick.iter_mut().for_each(|kick| *kick = kick.zip_map(kick, |kick, _| kick * ratio));
-            (state, sum)
+            (state, sum, room)
         };
-        compose(at.constants, at.t, (state, T::<S>::zero()), step, scaled)
+        compose(at.constants, at.t, (state, T::<S>::zero(), room), step, scaled).map(|(state, sum, _)| (state, sum))
     }
 }
 

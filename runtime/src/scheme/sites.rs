@@ -6,6 +6,7 @@ use crate::power::{Power, SiteScheme};
 use crate::space::plus;
 use crate::{Clebsch, Clock, Declared, Error, Space, Time};
 use core::array::from_fn;
+use core::fmt::Debug;
 use core::marker::PhantomData;
 
 /// Half a kick, the moves, half a kick.
@@ -89,6 +90,9 @@ pub type AtSite = (usize, Error);
 
 /// Steps of N sites in storage of others: nothing as large as a state is on the stack.
 pub trait InStorage<S: Power<N>, const N: usize>: Scheme<S> {
+    /// The room that a step needs for each site.
+    type Room: Clone + Debug + Default;
+
     /// Makes the kick that the first step from q takes. The momenta of `state` are room.
     fn start(at: AtOf<'_, S, Self>, state: Stored<'_, S>);
 
@@ -97,7 +101,14 @@ pub trait InStorage<S: Power<N>, const N: usize>: Scheme<S> {
         at: AtOf<'_, S, Self>,
         u: Option<&U<S>>,
         state: Stored<'a, S>,
+        room: &mut [Self::Room],
     ) -> Result<(Stored<'a, S>, T<S>), AtSite>;
+
+    /// Whether q and N obey the joints of all sites; accepted as provided.
+    #[inline]
+    fn check(_at: AtOf<'_, S, Self>, _state: (&Q<S>, &Mu<S>), _room: &mut [Self::Room]) -> Result<(), AtSite> {
+        Ok(())
+    }
 
     /// One step from q, N and a kick to the place of another state. After an error that state is unspecified.
     #[inline]
@@ -106,15 +117,18 @@ pub trait InStorage<S: Power<N>, const N: usize>: Scheme<S> {
         (q, mu, kick): (&Q<S>, &Mu<S>, &Mu<S>),
         u: Option<&U<S>>,
         state: Stored<'_, S>,
+        room: &mut [Self::Room],
     ) -> Result<T<S>, AtSite> {
         state.q.copy_from_slice(q);
         state.mu.copy_from_slice(mu);
         state.kick.copy_from_slice(kick);
-        Self::step_in_place(at, u, state).map(|(_, sum)| sum)
+        Self::step_in_place(at, u, state, room).map(|(_, sum)| sum)
     }
 }
 
 impl<S: Power<N>, K: SiteKicks<S, N>, const N: usize> InStorage<S, N> for SitesInTurn<K, N> {
+    type Room = ();
+
     fn start(At { system, constants, t, .. }: At<'_, S>, Stored { q, mu, kick, gradient }: Stored<'_, S>) {
         system.kick_into(t, q, constants.part(K::START), gradient, kick, mu);
     }
@@ -124,6 +138,7 @@ impl<S: Power<N>, K: SiteKicks<S, N>, const N: usize> InStorage<S, N> for SitesI
         At { system, constants, t, .. }: At<'_, S>,
         u: Option<&U<S>>,
         state: Stored<'a, S>,
+        _: &mut [()],
     ) -> Result<(Stored<'a, S>, T<S>), AtSite> {
         let kick = (K::START != 0.0).then_some(&*state.kick);
         system.drift_in_place(constants, t, state.q, state.mu, kick, u)?;
@@ -138,6 +153,7 @@ impl<S: Power<N>, K: SiteKicks<S, N>, const N: usize> InStorage<S, N> for SitesI
         (q, mu, kick): (&Q<S>, &Mu<S>, &Mu<S>),
         u: Option<&U<S>>,
         next: Stored<'_, S>,
+        _: &mut [()],
     ) -> Result<T<S>, AtSite> {
         let kick = (K::START != 0.0).then_some(kick);
         system.drift_into(constants, t, (q, mu), kick, u, (next.q, next.mu))?;

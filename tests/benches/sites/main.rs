@@ -1,9 +1,10 @@
 //! The benchmark of powers: `cargo bench -p clebsch-tests --bench sites`.
 //!
-//! Nanoseconds of a step for each site of a ring of spins, and for each pair of bodies that attract each other. N goes
-//! from 4 to 100 000. The ways are `Sites`, an array where a stack has room for it, unrolled code with a number for N,
+//! Nanoseconds of a step for each site of a ring of spins, and for each pair of bodies that attract each other. The same
+//! for each link of a chain on ball joints. N goes from 4 to 100 000. The ways are `Sites`, an array where a stack has room for it, unrolled code with a number for N,
 //! and nalgebra by hand. They are timed in turn in the same run.
 
+mod chain;
 #[path = "../steps/timing.rs"]
 mod timing;
 
@@ -160,7 +161,18 @@ fn main() {
     println!("Time of a step for each pair of N bodies, ns; ratio to by hand\n");
     println!("{:>8} {:24} {:>8} {:>8} {:>6}", "N", "", "least", "median", "ratio");
     let growth = [(8, pairs::<8>()), (64, pairs::<64>()), (512, pairs::<512>())];
-    println!("\ntime of a step ∝ N^{:.2} from 64 to 512 bodies", exponent(&growth[1..]));
+    println!("\ntime of a step ∝ N^{:.2} from 64 to 512 bodies\n", exponent(&growth[1..]));
+    println!("Time of a step for each link of a chain on ball joints, ns; ratio to by hand\n");
+    println!("{:>8} {:24} {:>8} {:>8} {:>6}", "N", "", "least", "median", "ratio");
+    let growth = [
+        (2, chains::<2>()),
+        (5, chains::<5>()),
+        (10, chains::<10>()),
+        (30, chains::<30>()),
+        (100, chains::<100>()),
+        (1000, chains::<1000>()),
+    ];
+    println!("\ntime of a step ∝ N^{:.2} from 10 to 1000 links", exponent(&growth[2..]));
 }
 
 /// The exponent of N in the time of a step, from the first to the last.
@@ -265,6 +277,29 @@ fn pairs<const N: usize>() -> f64 {
         Box::new(|rounds| by_sites.borrow_mut().advance(rounds * steps).expect("steps")),
     ];
     report(N, &["by hand", "Sites"], &interleaved(&contestants), steps as f64 * count as f64) * count as f64
+}
+
+/// Times both ways to step a chain of N links from its start; gives the time of a step by `Sites`.
+fn chains<const N: usize>() -> f64 {
+    let stepper = chain::chain::<N>().into_stepper(chain::H).expect("regular");
+    let room = vec![stepper.joint(); N];
+    let start = stepper.joined_sites(chain::storage(N), room).expect("a chain");
+    let steps = (WORK / 20 / N).max(1) as u64;
+    // both move alike
+    let (mut sites, mut hand) = (start.clone(), chain::ByHand::new(N));
+    sites.advance(20).expect("steps");
+    (0..20).for_each(|_| hand.step());
+    for (place, by_hand) in sites.configuration().iter().zip(hand.places()) {
+        let far = (place.fixed_view::<3, 1>(0, 3) - by_hand).norm();
+        assert!(far < 1e-10, "{far:e}");
+    }
+    let by_hand = RefCell::new(hand);
+    let by_sites = RefCell::new(sites);
+    let contestants: Vec<Run<'_>> = vec![
+        Box::new(|rounds| (0..rounds * steps).for_each(|_| by_hand.borrow_mut().step())),
+        Box::new(|rounds| by_sites.borrow_mut().advance(rounds * steps).expect("steps")),
+    ];
+    report(N, &["by hand", "Sites"], &interleaved(&contestants), steps as f64 * N as f64) * N as f64
 }
 
 /// Prints the time of each way for one of so many things; gives the least of the second.

@@ -3,6 +3,7 @@
 
 #![allow(missing_docs)]
 
+mod chains;
 mod conserved;
 mod invariants;
 mod joined;

@@ -76,6 +76,7 @@ struct Numbers<'i> {
     substep: Option<&'i mut usize>,
     equation: Option<&'i mut usize>,
     term: Option<&'i mut usize>,
+    joint: Option<&'i mut usize>,
     place: Option<&'i mut usize>,
     momentum: Option<&'i mut usize>,
 }
@@ -186,6 +187,18 @@ catalogue! {
     Reactions = listed("multipliers", Hot);
     /// The coordinates of a motion to φ = 0; computed as φ, A, S and s Σ⁻¹Aᵀ.
     PlaceCorrection = unlisted("correction of a place", Hot);
+    /// φ of a joint of a power.
+    JointPlaces(joint: usize) = listed("joint", Hot);
+    /// Its rows along motions of the later site and of the one before, and −∂φ/∂t.
+    Joint(joint: usize) = listed("rows of a joint", Hot);
+    /// Its second derivative in time with constant velocities.
+    JointBend(joint: usize) = unlisted("bend of a joint", Hot);
+    /// ξ′ of a site without joints.
+    Acceleration = unlisted("acceleration of a site", Hot);
+    /// Chart coordinates of a small motion of a site.
+    SmallMotion = unlisted("small motion", Hot);
+    /// Σ⁻¹μ.
+    Mobility = unlisted("velocity of a momentum", Hot);
     /// ψ(q, F).
     DiscreteConstraint = listed("constraint of a step", Cold);
     /// Σξ + A.

@@ -195,7 +195,7 @@ fn of_places<'g>(
 }
 
 /// s ξ in the charts, for each column ξ.
-fn coordinates_of_motion<'g>(system: &SystemFormulas<'g>, velocities: Expr<'g>) -> Expr<'g> {
+pub(super) fn coordinates_of_motion<'g>(system: &SystemFormulas<'g>, velocities: Expr<'g>) -> Expr<'g> {
     let shape = velocities.shape();
     let entry = |(i, j): (usize, usize)| {
         let block = system.symbols.blocks.iter().position(|block| block.components().contains(&i));
@@ -207,7 +207,7 @@ fn coordinates_of_motion<'g>(system: &SystemFormulas<'g>, velocities: Expr<'g>) 
 }
 
 /// The changes of t, q and N where no constraint acts, N′ = ± ad*_ξ N + J(q, ∂(A·ξ − V)) + f, with this ξ.
-fn free_motion<'g>(
+pub(super) fn free_motion<'g>(
     model: &Mechanics<'g>,
     system: &SystemFormulas<'g>,
     (pushing, force): (Expr<'g>, Option<&[Expr<'g>]>),
@@ -247,7 +247,7 @@ fn product<'g>(left: Expr<'g>, right: Expr<'g>) -> Expr<'g> {
 }
 
 /// Σ⁻¹, with the zeros that it has because coordinates uncouple.
-fn inverse(inertia: Expr<'_>) -> Expr<'_> {
+pub(super) fn inverse(inertia: Expr<'_>) -> Expr<'_> {
     let (graph, shape) = (inertia.graph(), inertia.shape());
     let whole = inertia_inverse(graph, shape);
     let couples = |i: usize, j: usize| !identity::vanishes(inertia.entry(i, j));
@@ -320,18 +320,31 @@ fn check<'g>(
     (energy, inertia): (&Energy<'g>, Expr<'g>),
 ) -> Result<(), Diagnostics> {
     let spans = &model.spans;
+    check_inertia(model, system, (energy, inertia))?;
+    features::check((Feature::Constraint, Found::somewhere()), |feature| match feature {
+        Feature::ExactDiscretization => exact::is_exact(model).then(|| Found::at(spans.kinetic.place)),
+        Feature::OddVelocity if model.constraint.as_ref().is_some_and(|constraint| constraint.velocities.is_some()) => {
+            let factor = model.factors.get(uneven(model)?)?;
+            Some(Found::at(spans.kinetic.place).named(factor.group.name(model.graph)))
+        }
+        _ => None,
+    })
+}
+
+/// The same, of a constraint on configurations alone.
+pub(super) fn check_inertia<'g>(
+    model: &Mechanics<'g>,
+    system: &SystemFormulas<'g>,
+    (energy, inertia): (&Energy<'g>, Expr<'g>),
+) -> Result<(), Diagnostics> {
+    let spans = &model.spans;
     let of_kinetic = |found: bool| found.then(|| Found::at(spans.kinetic.place));
     features::check((Feature::Constraint, Found::somewhere()), |feature| match feature {
-        Feature::ExactDiscretization => of_kinetic(exact::is_exact(model)),
         Feature::GeneralLagrangian => of_kinetic(energy.general.is_some()),
         Feature::MovingInertia => of_kinetic(system.is_moving(inertia)),
         Feature::FixedConfigurations => {
             let is_fixed = model.isotropy == Isotropy::Fixed && !system.is_free();
             is_fixed.then(|| Found::at(spans.action.place))
-        }
-        Feature::OddVelocity if model.constraint.as_ref().is_some_and(|constraint| constraint.velocities.is_some()) => {
-            let factor = model.factors.get(uneven(model)?)?;
-            Some(Found::at(spans.kinetic.place).named(factor.group.name(model.graph)))
         }
         _ => None,
     })
@@ -342,7 +355,8 @@ pub(super) fn check_adjoint<'g>(
     model: &Mechanics<'g>,
     substeps: &[(i64, DiscreteLagrangian<'g>)],
 ) -> Result<(), Diagnostics> {
-    let is_pair = model.constraint.is_some() && substeps.len() > 1;
+    let is_joined = model.power.as_ref().is_some_and(|power| power.joints.is_some());
+    let is_pair = (model.constraint.is_some() || is_joined) && substeps.len() > 1;
     features::check((Feature::Constraint, Found::somewhere()), |feature| {
         (is_pair && feature == Feature::AdjointPair).then(|| Found::at(model.spans.kinetic.place))
     })

@@ -47,6 +47,7 @@ pub fn derivation(formulas: &MechanicsFormulas<'_>, lowered: &Lowered) -> String
         vertical(formulas),
         conserved::forces(formulas),
         conserved::constraint(formulas),
+        conserved::joints(formulas),
         conserved::conserved(formulas),
     ];
     let scheme = [step::scheme(formulas, lowered), form(formulas, lowered)];
@@ -95,7 +96,8 @@ fn sites(formulas: &MechanicsFormulas<'_>, lowered: &Lowered) -> String {
         count => (format!("sums of {count} formulas"), "each"),
     };
     let terms = if power.terms.is_empty() {
-        "Nothing ties them to each other.".to_string()
+        let joints = power.joints.is_some();
+        if joints { "Joints tie them to each other." } else { "Nothing ties them to each other." }.to_string()
     } else {
         format!(
             "They are tied to each other by the potential, {summed}; {each} is differentiated once, and {added}, in loops: the code does not grow with {length}."

@@ -7,8 +7,9 @@ use clebsch_symbolic::{Chart, Expr, Group, IntoList};
 
 use super::energy::is_multiple_of_identity;
 use super::{
-    Collocation, ConstraintFormulas, DiscreteLagrangian, Energy, FormulaTable, InputStep, MomentumEquation, Quantity,
-    SiteTerm, Splitting, Substep, SymmetricParts, Symmetries, SystemFormulas, Vertical, exact, signature,
+    Collocation, ConstraintFormulas, DiscreteLagrangian, Energy, FormulaTable, InputStep, JointFormulas,
+    MomentumEquation, Quantity, SiteTerm, Splitting, Substep, SymmetricParts, Symmetries, SystemFormulas, Vertical,
+    exact, signature,
 };
 use crate::model::{Isotropy, LeafSpace, Mechanics, Signature, Steered};
 
@@ -91,6 +92,8 @@ pub struct MechanicsFormulas<'g> {
     pub covector: Option<Vec<Expr<'g>>>,
     /// The constraint; `None` where every velocity is allowed.
     pub constraint: Option<ConstraintFormulas<'g>>,
+    /// The joints of a power; `None` where its sites move freely.
+    pub joints: Option<JointFormulas<'g>>,
 }
 
 impl<'g> Deref for MechanicsFormulas<'g> {
@@ -213,7 +216,9 @@ pub(super) fn is_timed(model: &Mechanics<'_>, lagrangian: &DiscreteLagrangian<'_
     let forces = model.force.iter().flat_map(|force| force.of_group.iter().chain(&force.on_configuration).flatten());
     let energies = [lagrangian.kinetic, lagrangian.start, lagrangian.end];
     let terms = model.power.iter().flat_map(|power| power.terms.iter().map(|term| &term.value));
+    let joints = model.power.iter().flat_map(|power| &power.joints).flat_map(|joints| &joints.all);
+    let joints = joints.map(|joint| &joint.term.value);
     let mut constraint = model.constraint.iter().flat_map(|constraint| constraint.parts());
-    energies.iter().chain(forces).chain(terms).any(|part| part.depends_on(model.time))
+    energies.iter().chain(forces).chain(terms).chain(joints).any(|part| part.depends_on(model.time))
         || constraint.any(|part| part.depends_on(model.time))
 }

@@ -25,6 +25,7 @@ mod force;
 mod formula;
 mod formulas;
 mod isotropy;
+mod joints;
 mod latex;
 mod letters;
 mod matrices;
@@ -70,6 +71,7 @@ pub use formula::{Formula, FormulaTable};
 use formulas::is_timed;
 pub use formulas::{Formulas, MechanicsFormulas, SteeredFormulas};
 pub use isotropy::Vertical;
+pub use joints::{JointFormulas, JointRows};
 pub use matrices::MatrixForm;
 pub use power::{Home, SiteTerm, Stencil, stencil};
 use rows::MOST_LISTED;
@@ -107,6 +109,7 @@ fn mechanics(mut model: Mechanics<'_>) -> Result<MechanicsFormulas<'_>, Diagnost
     let covector = force::covector(&model, &system);
     let pushes = (potential_energy, covector.as_deref());
     let constraint = ConstraintFormulas::of(&model, &system, (&energy, inertia), pushes)?;
+    let joints = joints::of(&model, &system, (&energy, inertia), pushes)?;
     let is_timed = is_timed(&model, &lagrangian);
     let quantities = if model.emit.tangent { variation::quantities(&model, is_timed) } else { Vec::new() };
     let variations = variation::Source { system: &system, quantities: &quantities };
@@ -137,8 +140,10 @@ fn mechanics(mut model: Mechanics<'_>) -> Result<MechanicsFormulas<'_>, Diagnost
     let stagger = if is_first { system.impulse((lagrangian.end - lagrangian.start) / 2) } else { None };
     let is_staggered = stagger.is_some() && model.force.is_none() && declared.balanced().is_time_symmetric(&model);
     let links = power::links(&model);
+    let mut tied = joints::entries(&model);
+    tied.extend(power::links(&model));
     let pushes = (covector.as_deref(), constraint.as_ref());
-    let symmetries = symmetry::find(&sources(1), &declared, pushes, &links);
+    let symmetries = symmetry::find(&sources(1), &declared, pushes, &tied);
     check_offers(&model, &symmetries)?;
     let splitting = splitting::splitting(&sources(1), &lagrangian, &substeps);
     let is_exact = potential_energy.is_zero() && splitting::drifts_exactly(&model, &system.symbols, &substeps);
@@ -178,6 +183,7 @@ fn mechanics(mut model: Mechanics<'_>) -> Result<MechanicsFormulas<'_>, Diagnost
         is_exact,
         covector,
         constraint,
+        joints,
         vertical,
     };
     summation::check(&formulas)?;

@@ -31,17 +31,22 @@ impl<'g> SiteTerm<'g> {
     }
 
     fn home(&self, power: &Power<'g>, place: &SiteIndex<'g>) -> Option<Home<'g>> {
-        let SiteIndex { index, wraps } = *place;
-        match (self.term.ranges.as_slice(), Linear::of(index)?.indices.as_slice()) {
-            ([], _) => Some(Home { index: None, wraps, is_everywhere: false }),
-            ([range], [1]) => {
-                let site = index.symbols().into_iter().find(|symbol| symbol.role() == Some(Role::Site(0)))?;
-                let own = (2 * site - index).expand();
-                let whole = (site.graph().integer(0), power.sites);
-                Some(Home { index: Some(own), wraps, is_everywhere: *range == whole && (wraps || own == site) })
-            }
-            _ => None,
+        home(&self.term, power, place)
+    }
+}
+
+/// The term that has a given site at a place.
+pub(super) fn home<'g>(term: &Term<'g>, power: &Power<'g>, place: &SiteIndex<'g>) -> Option<Home<'g>> {
+    let SiteIndex { index, wraps } = *place;
+    match (term.ranges.as_slice(), Linear::of(index)?.indices.as_slice()) {
+        ([], _) => Some(Home { index: None, wraps, is_everywhere: false }),
+        ([range], [1]) => {
+            let site = index.symbols().into_iter().find(|symbol| symbol.role() == Some(Role::Site(0)))?;
+            let own = (2 * site - index).expand();
+            let whole = (site.graph().integer(0), power.sites);
+            Some(Home { index: Some(own), wraps, is_everywhere: *range == whole && (wraps || own == site) })
         }
+        _ => None,
     }
 }
 
@@ -111,7 +116,11 @@ fn is_of_term<'g>(power: &Power<'g>, symbol: Expr<'g>) -> bool {
 
 /// The terms of a power, with their gradients; nothing else has any.
 pub(super) fn links<'g>(model: &Mechanics<'g>) -> Vec<SiteTerm<'g>> {
-    let Some(power) = &model.power else { return Vec::new() };
+    model.power.as_ref().map_or(Vec::new(), |power| of_terms(model, power, &power.terms))
+}
+
+/// Terms with their gradients.
+pub(super) fn of_terms<'g>(model: &Mechanics<'g>, power: &Power<'g>, terms: &[Term<'g>]) -> Vec<SiteTerm<'g>> {
     let link = |term: &Term<'g>| {
         let symbols = term.value.symbols();
         let at = |place: usize, leaf: usize| symbol_at(&symbols, place, leaf);
@@ -124,11 +133,11 @@ pub(super) fn links<'g>(model: &Mechanics<'g>) -> Vec<SiteTerm<'g>> {
         let gradient = read.map(|place| (place, leaves.clone().map(|leaf| slope(place, leaf)).into_list())).into_list();
         SiteTerm { term: term.clone(), gradient }
     };
-    power.terms.each(link)
+    terms.each(link)
 }
 
 /// The symbol of a leaf of the configuration at a place, if it is among some.
-fn symbol_at<'g>(symbols: &[Expr<'g>], place: usize, leaf: usize) -> Option<Expr<'g>> {
+pub(super) fn symbol_at<'g>(symbols: &[Expr<'g>], place: usize, leaf: usize) -> Option<Expr<'g>> {
     let role = Role::At(place, leaf);
     symbols.iter().copied().find(|symbol| symbol.role() == Some(role))
 }

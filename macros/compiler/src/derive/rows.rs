@@ -4,10 +4,10 @@ mod energy;
 mod motions;
 mod steps;
 
-use clebsch_symbolic::{Elements, Expr, IntoList, Property, indexed};
+use clebsch_symbolic::{Elements, Expr, IntoList, Property, Role, indexed};
 
 use super::moves::inverse_by;
-use super::{Formula, FormulaTable, Id, MechanicsFormulas, SteeredFormulas, SystemFormulas};
+use super::{Formula, FormulaTable, Id, JointRows, MechanicsFormulas, SteeredFormulas, SystemFormulas};
 use crate::model::{LeafSpace, Motion};
 
 /// More conserved momenta are told by the first and the last of them.
@@ -134,6 +134,7 @@ impl<'g> MechanicsFormulas<'g> {
         rows.extend(self.rows_of_constraint(&names));
         rows.extend(self.rows_of_lagrangian(&names));
         rows.extend(self.rows_of_terms(&names));
+        rows.extend(self.rows_of_joints(&names));
         rows.extend(self.rows_of_choice(&names));
         rows.extend(self.rows_of_conserved());
         for index in 0..self.substeps.len() {
@@ -183,6 +184,32 @@ impl<'g> MechanicsFormulas<'g> {
         }
         terms.extend(gradients);
         terms
+    }
+
+    /// The joints of a power with their rows, and the velocity of a site.
+    fn rows_of_joints(&self, Names { q, xi, mu, .. }: &Names) -> Vec<Formula<'g>> {
+        let Some(joints) = &self.joints else { return Vec::new() };
+        let (mut equations, mut rows, mut bends) = (Vec::new(), Vec::new(), Vec::new());
+        let declared = self.model.power.iter().flat_map(|power| &power.joints).flat_map(|joints| &joints.all);
+        for (number, (joint, declared)) in joints.all.iter().zip(declared).enumerate() {
+            let JointRows { places, own, before, velocity, bend, .. } = *joint;
+            let symbol = format!("0 = φ_{}({q}), for each {}", number + 1, declared.term.indices());
+            let symbol = symbol.trim_end_matches(", for each ");
+            equations.push(Formula::new(Id::JointPlaces(number), symbol, [places]));
+            let row = Formula::shorter(Id::Joint(number), format!("(A, B)_{}", number + 1), [own, before]);
+            rows.push(row.computed_as(vec![own, before, velocity]));
+            bends.push(Formula::new(Id::JointBend(number), format!("φ_{}″", number + 1), [bend]));
+        }
+        let mut rows: Vec<_> = equations.into_iter().chain(rows).chain(bends).into_list();
+        let shape = joints.mobility.shape();
+        let inertia = self.model.graph.symbol("Σ", self.inertia.shape(), Role::Letter, Property::Symmetric);
+        let momentum = self.model.graph.symbol(mu, shape, Role::Letter, Property::General);
+        let velocity = Formula::new(Id::Mobility, xi.clone(), [inertia.inverse() * momentum]);
+        rows.push(velocity.computed_as(vec![joints.mobility]));
+        rows.push(Formula::new(Id::Acceleration, format!("{xi}′"), [joints.acceleration]));
+        rows.push(Formula::new(Id::SmallMotion, "x", [joints.moved]));
+        rows.push(Formula::new(Id::MomentumOfVelocity, format!("Σ{xi} + A"), [joints.momentum]));
+        rows
     }
 
     /// The conserved momenta by their names, and the values of all of them, with the inverses of configurations by the formulas of their groups.

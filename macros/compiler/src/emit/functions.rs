@@ -137,6 +137,33 @@ functions! {
         fn potential_of_sites(&self, t: T, q: &Sites) -> T { Id::Term(0) }
     }
 
+    /// `Joined`: the joints of neighbouring sites.
+    JOINED(true) {
+        /// The values of the equations whose later site is this one.
+        fn places_at(&self, t: T, q: &Sites, site: Index) -> Places { Id::JointPlaces(0) }
+        /// The rows of the equations whose later site is this one.
+        fn rows_at(&self, t: T, q: &Sites, site: Index) -> Rows { Id::Joint(0) }
+        /// The second derivatives in time of these equations with the constant velocities x of the site and mu of the one before.
+        fn bend_at(&self, t: T, q: &Sites, site: Index, x: &Mu, mu: &Mu) -> Places { Id::JointBend(0) }
+    }
+
+    /// `Mobile`: a site whose velocity follows from its momentum.
+    MOBILE(true) {
+        /// The velocity of a momentum, less that of the momentum 0.
+        fn mobility(c: &C, mu: &Mu) -> Mu { Id::Mobility }
+        /// The momentum of velocity zero.
+        fn momentum_at_rest(&self, t: T, q: &Q) -> Option<Mu> { Id::Gyroscopic }
+        /// The momentum of a velocity.
+        fn momentum_of_velocity(&self, t: T, q: &Q, x: &Mu) -> Mu { Id::MomentumOfVelocity }
+        /// The change of the velocity where no joint and no other site acts.
+        fn acceleration(&self, c: &C, t: T, q: &Q, mu: &Mu, u: &U) -> Mu { Id::Acceleration }
+        /// The configuration after a small motion.
+        fn moved_by(&self, q: &Q, x: &Mu) -> Q { Id::SmallMotion } = {
+            let x = { Locals Value0 };
+            runtime::Clebsch::act(self, &PartsOf::element(&PartsOf::increment(self, &x)), q)
+        }
+    }
+
     /// `VelocityEquation`, of a Lagrangian that is not quadratic.
     VELOCITY(false) {
         /// The Lagrangian of a velocity, its gradient and its Hessian.

@@ -1,5 +1,6 @@
 //! Powers: the site as a system of its own, and the implementation for all of them, a loop over sites for each method.
 
+mod joints;
 mod terms;
 
 use clebsch_symbolic::{Group, Property};
@@ -10,7 +11,7 @@ use super::block::{self, Target, time_type, types_of_system};
 use super::function::Body;
 use super::functions::SITES;
 use super::scheme::composed;
-use super::scope::nested_type;
+use super::scope::{nested_type, size};
 use super::{Emitter, flag};
 use crate::model::{LeafSpace, Order, Parameter, Power};
 use terms::Terms;
@@ -21,8 +22,8 @@ impl<'g> Emitter<'_, 'g> {
         let Some(power) = self.power else { return TokenStream::new() };
         let target = self.declared();
         let (site, sites, whole) = (self.site(), self.sites(power, &target), self.whole_power(power, &target));
-        let conserves = self.conserves();
-        quote!(#site #sites #whole #conserves)
+        let (conserves, joined) = (self.conserves(), self.joined(power, &target));
+        quote!(#site #sites #whole #joined #conserves)
     }
 
     /// The struct of a site: the fields that it reads.
@@ -127,7 +128,17 @@ impl<'g> Emitter<'_, 'g> {
             (false, Order::Second) => (quote!(SitesOfSecondOrder), quote!(-0.5), quote!(-0.5)),
             (false, _) => (quote!(SitesOfFirstOrder), quote!(0.0), quote!(-1.0)),
         };
-        let scheme = composed(self.formulas.stages_of_sites(), quote!(runtime::#scheme<#length>));
+        let (scheme, of_joints) = match &power.joints {
+            None => (quote!(runtime::#scheme<#length>), TokenStream::new()),
+            Some(joints) => {
+                let (rows, dimension) = (size(joints.rows), size(self.dimension));
+                let scheme =
+                    if power.terms.is_empty() { quote!(FreeJoinedSites) } else { quote!(JoinedSitesOfSecondOrder) };
+                let scheme = quote!(runtime::#scheme<#length, #rows, #dimension>);
+                (scheme, quote!(runtime::formulas_of_joints!(T, #length, #rows, #dimension);))
+            }
+        };
+        let scheme = composed(self.formulas.stages_of_sites(), scheme);
         target.derived(
             Some(quote!(runtime::Clebsch)),
             quote! {
@@ -145,6 +156,7 @@ impl<'g> Emitter<'_, 'g> {
                     runtime::Power::power_constants(self, h)
                 }
                 runtime::formulas_of_sites!(T, #length, #start, #end);
+                #of_joints
             },
         )
     }

@@ -62,7 +62,7 @@ impl<'a, 'g> Maker<'a, 'g> {
         // the kernels of methods of the constants
         let is_of_step = match id {
             Id::MomentumAfter(_) => self.of_steps.contains(&id),
-            Id::SplittingKick | Id::SplittingGradient | Id::Guess => true,
+            Id::SplittingKick | Id::SplittingGradient | Id::Guess | Id::Mobility => true,
             _ => id.substep().is_some(),
         };
         let hoisting = if is_of_step { Hoisting::Constants(&mut self.hoisted) } else { Hoisting::Nothing };

@@ -119,7 +119,7 @@ fn kernels<'g>(formulas: &MechanicsFormulas<'g>, form: &Form) -> Result<Kernels<
     maker.of_steps = of_steps(formulas);
     maker.scalars.keeps_matrices = form.keeps_matrices();
     let steps = maker.steps(formulas)?;
-    maker.known_rows([Id::SplittingKick, Id::SplittingGradient]);
+    maker.known_rows([Id::SplittingKick, Id::SplittingGradient, Id::Mobility]);
     maker.collocation(formulas);
     maker.rows([Id::Lift]);
     maker.variations(formulas)?;
@@ -184,6 +184,9 @@ impl<'g> Maker<'_, 'g> {
     fn system(&mut self, formulas: &MechanicsFormulas<'g>) -> Option<Stencil<'g>> {
         self.add(Id::Constants, |scalars, hoisted| hoisted.kernel(scalars, Hoisting::Nothing));
         let gathered = self.terms(formulas);
+        for number in 0..formulas.joints.as_ref().map_or(0, |joints| joints.all.len()) {
+            self.rows([Id::JointPlaces(number), Id::Joint(number), Id::JointBend(number)]);
+        }
         self.rows([Id::Action, Id::MomentumMap]);
         if formulas.collocation.is_some() {
             self.add(Id::MomentumOfStep, |scalars, _| stack(scalars, &formulas.momentum_map, Hoisting::Nothing));
@@ -195,7 +198,7 @@ impl<'g> Maker<'_, 'g> {
         self.rows([Id::MomentumMatrix, Id::MomentumComponents]);
         self.velocity();
         self.known_rows([Id::Gyroscopic, Id::ConservedMomenta, Id::Places, Id::Constraint, Id::MomentumOfVelocity]);
-        self.known_rows([Id::PlaceCorrection, Id::Multipliers, Id::Reactions]);
+        self.known_rows([Id::PlaceCorrection, Id::Multipliers, Id::Reactions, Id::Acceleration, Id::SmallMotion]);
         gathered
     }
 

@@ -76,6 +76,7 @@ const OF_SYSTEM: Names<Id> = &[
     ("places", Id::Places),
     ("constraint", Id::Constraint),
     ("momentum_of_velocity", Id::MomentumOfVelocity),
+    ("mobility", Id::Mobility),
     ("stagger", Id::SynchronizedMomentum),
     ("membership", Id::Membership),
     ("generator", Id::Isotropy),
@@ -230,7 +231,13 @@ impl MechanicsProgram<'_> {
         };
         let others = self.gathered.iter().flat_map(|stencil| &stencil.others).map(of_place);
         let of_site = [("gradient_of_site".to_string(), Id::SiteGradient)];
-        (0..links.len()).flat_map(of_term).chain(of_site).chain(others).into_list()
+        let joints = self.formulas.joints.as_ref().map_or(0, |joints| joints.all.len());
+        let of_joint = |joint: usize| {
+            let (places, rows) = (format!("places_of_joint_{}", joint + 1), format!("rows_of_joint_{}", joint + 1));
+            [(places, Id::JointPlaces(joint)), (rows, Id::Joint(joint))]
+        };
+        let joints = (0..joints).flat_map(of_joint);
+        (0..links.len()).flat_map(of_term).chain(of_site).chain(others).chain(joints).into_list()
     }
 
     /// Whether a step or a method calls a kernel.

@@ -6,6 +6,7 @@ use syn::{BinOp, Expr as Syntax, ExprArray, ExprBinary, ExprMethodCall};
 use super::closures::optional;
 use super::elaborate::Elaborator;
 use super::features::{self, Feature, Found};
+use super::sites::unrolled;
 use super::slots::{CONSTRAINT, Slot};
 use super::typed::{ActedSystem, Velocity};
 use super::value::Value;
@@ -14,9 +15,9 @@ use crate::diagnostic::{Diagnostics, Location, error, refuse};
 use crate::parse::{Closure, Declaration, Kinetic, shortened, spell, tail};
 
 /// One equation of the list, as left side less right side.
-struct Sides<'g> {
-    difference: Expr<'g>,
-    written: Written,
+pub(super) struct Sides<'g> {
+    pub difference: Expr<'g>,
+    pub written: Written,
 }
 
 /// The equations of one closure, and the velocities that they are of; none for equations of the configuration.
@@ -31,10 +32,6 @@ impl<'g> ActedSystem<'_, '_, 'g> {
     pub fn constraint(&mut self, declaration: &Declaration) -> Option<Constraint<'g>> {
         let Declaration { constraints: closures, dials, kinetic, .. } = declaration;
         let graph = self.context.graph;
-        if self.context.power.is_some() {
-            // it has been refused
-            return None;
-        }
         let (mut places, mut rows, mut values) = (Vec::new(), Vec::new(), Vec::new());
         let (mut of_places, mut of_velocities) = (Vec::new(), Vec::new());
         for closure in closures {
@@ -97,7 +94,7 @@ impl<'g> ActedSystem<'_, '_, 'g> {
 }
 
 /// The list that the body ends with.
-fn list<'s>(closure: &'s Closure, diagnostics: &Diagnostics) -> Option<&'s ExprArray> {
+pub(super) fn list<'s>(closure: &'s Closure, diagnostics: &Diagnostics) -> Option<&'s ExprArray> {
     let body = tail(&closure.body);
     match body {
         Syntax::Array(list) if list.elems.is_empty() => {
@@ -113,6 +110,9 @@ fn list<'s>(closure: &'s Closure, diagnostics: &Diagnostics) -> Option<&'s ExprA
         }
         Syntax::Assign(link) => refuse!(diagnostics, body, "a constraint is a list of equations";
             help "write `[{} == {}]`", spell(&link.left), spell(&link.right)),
+        Syntax::MethodCall(call) if call.method == "map" => {
+            refuse!(diagnostics, body, "a constraint is a list of equations"; help "write `[{}]`", spell(body))
+        }
         _ => refuse!(diagnostics, body, "a constraint is a list of equations";
             help "end it with a list, as in `[{}.z == 0]`", last_name(closure)),
     }
@@ -154,7 +154,7 @@ fn element<'g>(elaborator: &mut Elaborator<'_, '_, 'g>, syntax: &Syntax) -> Opti
 }
 
 /// A call `….map(…)`.
-fn sequence(syntax: &Syntax) -> Option<&ExprMethodCall> {
+pub(super) fn sequence(syntax: &Syntax) -> Option<&ExprMethodCall> {
     match syntax {
         Syntax::Paren(inner) => sequence(&inner.expr),
         Syntax::Group(inner) => sequence(&inner.expr),
@@ -164,7 +164,7 @@ fn sequence(syntax: &Syntax) -> Option<&ExprMethodCall> {
 }
 
 /// `a == b` as a − b, a scalar or a vector.
-fn equation<'g>(elaborator: &mut Elaborator<'_, '_, 'g>, syntax: &Syntax) -> Option<Sides<'g>> {
+pub(super) fn equation<'g>(elaborator: &mut Elaborator<'_, '_, 'g>, syntax: &Syntax) -> Option<Sides<'g>> {
     let diagnostics = elaborator.context.diagnostics;
     let text = shortened(syntax);
     match syntax {
@@ -192,6 +192,19 @@ fn equation<'g>(elaborator: &mut Elaborator<'_, '_, 'g>, syntax: &Syntax) -> Opt
             let (a, b) = (left.describe(), right.describe());
             let zeros = [&left, &right].into_iter().filter_map(shape).find(|shape| shape.is_column() && shape.rows > 1);
             let is_zero = [&left, &right].into_iter().any(|side| side.matrix().is_some_and(|side| side.is_zero()));
+            let length = elaborator.context.power.as_ref().map(|sites| sites.length.to_string());
+            if let Some(length) = length {
+                let of_all =
+                    [&left, &right].into_iter().find(|side| matches!(side, Value::Sum(_) | Value::PerSite(..)));
+                match of_all {
+                    Some(Value::Sum(_)) => refuse!(diagnostics, syntax, "the equation has a sum over all sites";
+                        help "{}", unrolled("constraint", length);
+                        note "a joint is of one site, or of two neighbours"),
+                    Some(_) => refuse!(diagnostics, syntax, "the equation is of all sites at once";
+                        help "write one of a site for each, as in `(0..{length}).map(|i| {} == …)`", first_site(syntax)),
+                    None => {}
+                }
+            }
             let error = error!(syntax, "the left side is {a} and the right side is {b}: they cannot be equal");
             let help = match zeros.filter(|_| is_zero && a != b) {
                 Some(shape) => format!("write `Vector{}::zeros()` for 0", shape.rows),
@@ -199,6 +212,14 @@ fn equation<'g>(elaborator: &mut Elaborator<'_, '_, 'g>, syntax: &Syntax) -> Opt
             };
             diagnostics.refuse(error.help(help))
         }
+    }
+}
+
+/// The left side of an equation, or the right one, of the site i.
+fn first_site(equation: &Syntax) -> String {
+    match equation {
+        Syntax::Binary(link) if matches!(*link.left, Syntax::Path(_)) => format!("{}[i]", spell(&link.left)),
+        _ => "q[i]".to_string(),
     }
 }
 

@@ -12,6 +12,7 @@ pub(crate) mod features;
 mod fields;
 mod forces;
 mod groups;
+mod joints;
 mod layout;
 mod momentum;
 mod outline;
@@ -41,7 +42,7 @@ pub(crate) use groups::groups_as_markdown;
 pub use groups::is_large;
 pub use layout::{Access, Layout, Part};
 pub use outline::{Nested, Outline, outline};
-pub use power::{Linear, Range, SiteIndex, Term};
+pub use power::{Joint, Joints, Linear, Range, SiteIndex, Term};
 pub(crate) use shapes::{IN_LOOPS, spelled};
 pub(crate) use slots::arguments_of;
 pub use types::*;
@@ -154,7 +155,7 @@ pub fn model<'g>(graph: &'g Graph, declaration: &Declaration) -> Result<Model<'g
     let power = power.map(|power| {
         let forces = force.iter().flat_map(|force| force.of_group.iter().chain(&force.on_configuration).flatten());
         let read = [kinetic.energy()].into_iter().chain(forces.copied()).into_list();
-        sites::power_of(&mut system, &read, (power, declared_order), formulas.terms)
+        sites::power_of(&mut system, &read, (power, declared_order), (formulas.terms, formulas.joints))
     });
     let isotropy = dials.isotropy.as_ref().map_or(Isotropy::Fixed, |isotropy| isotropy.value);
     Ok(Model::Mechanics(Box::new(Mechanics {
@@ -189,6 +190,8 @@ struct ClosureValues<'g> {
     symmetries: Vec<OfferedSymmetry<'g>>,
     force: Option<Force<'g>>,
     constraint: Option<Constraint<'g>>,
+    /// The constraint of a power.
+    joints: Option<Joints<'g>>,
     input: Space<'g>,
     control: Option<InputChoice<'g>>,
     endpoint: Option<Expr<'g>>,
@@ -218,8 +221,10 @@ impl<'g> ClosureValues<'g> {
         forces::check_dials(declaration, diagnostics);
         let endpoint = optional(declaration.endpoint.as_ref(), |closure| system.endpoint(closure));
         let forces = system.forces(declaration);
+        let is_power = system.context.power.is_some();
         let first = declaration.constraints.first();
-        let constraint = optional(first, |_| system.constraint(declaration));
+        let joints = optional(first.filter(|_| is_power), |_| system.joints(declaration));
+        let constraint = optional(first.filter(|_| !is_power), |_| system.constraint(declaration));
         let (mover, (force, input)) = match system.motion(declaration) {
             Some((motion, input)) => (Some(Mover::Inputs(motion)), (None, input)),
             // the moving closure has an error, and without it nothing is known of the input
@@ -236,6 +241,7 @@ impl<'g> ClosureValues<'g> {
             symmetries,
             force,
             constraint: constraint?,
+            joints: joints?,
             input,
             control,
             endpoint: endpoint?,

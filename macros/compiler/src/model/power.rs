@@ -9,6 +9,8 @@ mod tests;
 
 use clebsch_symbolic::{Expr, IntoList, Rational, Role};
 
+use super::Written;
+
 /// One site that terms read.
 #[derive(Clone, PartialEq, Eq)]
 pub struct SiteIndex<'g> {
@@ -28,6 +30,39 @@ pub struct Term<'g> {
     pub ranges: Vec<Range<'g>>,
     /// The formula.
     pub value: Expr<'g>,
+}
+
+/// The constraint of a power: joints of one site, or of two neighbours.
+#[derive(Clone)]
+pub struct Joints<'g> {
+    /// The joints.
+    pub all: Vec<Joint<'g>>,
+    /// The most rows that have the same site as their later one.
+    pub rows: usize,
+    /// Whether a joint reads the last site and the first one.
+    pub is_ring: bool,
+}
+
+/// An equation φ = 0 for each index of its range.
+#[derive(Clone)]
+pub struct Joint<'g> {
+    /// φ, a column of scalars.
+    pub term: Term<'g>,
+    /// The place of the later site that it reads.
+    pub own: usize,
+    /// The place of the site before; `None` where it reads one site.
+    pub before: Option<usize>,
+    /// The number of its first row among those of its later site.
+    pub first: usize,
+    /// The equation as it was written.
+    pub written: Written,
+}
+
+impl Joint<'_> {
+    /// The number of its rows.
+    pub fn count(&self) -> usize {
+        self.term.value.shape().rows
+    }
 }
 
 impl Term<'_> {

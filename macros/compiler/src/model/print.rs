@@ -6,7 +6,7 @@ use clebsch_symbolic::Group;
 
 use super::scalar::spell_scalar;
 use super::{
-    Isotropy, Kinetic, LeafSpace, Mechanics, Model, Motion, OfferedSymmetry, Order, Parameter, Side, Signature,
+    Isotropy, Joint, Kinetic, LeafSpace, Mechanics, Model, Motion, OfferedSymmetry, Order, Parameter, Side, Signature,
     Steered, System, VelocityRows,
 };
 use crate::parse::joined;
@@ -45,6 +45,11 @@ impl fmt::Display for Mechanics<'_> {
                 let indices = term.indices();
                 let indices = if indices.is_empty() { indices } else { format!(", for {indices}") };
                 writeln!(f, "  term       {}{indices}", term.value)?;
+            }
+            for Joint { term, .. } in power.joints.iter().flat_map(|joints| &joints.all) {
+                let indices = term.indices();
+                let indices = if indices.is_empty() { indices } else { format!(", for {indices}") };
+                writeln!(f, "  constraint {} = 0{indices}", term.value)?;
             }
         }
         if let Some(force) = &self.force {

@@ -8,7 +8,7 @@ use proc_macro2::Ident;
 use syn::Expr as Syntax;
 
 use super::features::{self, Feature, Found};
-use super::power::{Range, SiteIndex, Term};
+use super::power::{Joints, Range, SiteIndex, Term};
 use super::space::Space;
 use super::value::Value;
 use super::{Configuration, Item, Leaf, Order, Parameter, Part, Power, ScalarType, System};
@@ -22,7 +22,7 @@ pub(super) struct Sites<'g> {
     pub count: Expr<'g>,
     /// The configuration of a site.
     space: Space<'g>,
-    pattern: String,
+    pub pattern: String,
     /// The ranges of the sums around the expression that is read, the outermost first.
     pub ranges: Vec<Range<'g>>,
     /// The places that have been met.
@@ -173,11 +173,13 @@ pub(super) fn power_of<'g>(
     system: &mut System<'g>,
     of_site: &[Expr<'g>],
     (sites, order): (Sites<'g>, Order),
-    terms: Vec<Term<'g>>,
+    (terms, joints): (Vec<Term<'g>>, Option<Joints<'g>>),
 ) -> Power<'g> {
     let reads = |expr: Expr<'g>, field: &Parameter<'g>| field.leaves.iter().any(|leaf| expr.depends_on(leaf.symbol));
     let by_site = |field: &&Parameter<'g>| of_site.iter().chain(&system.action).any(|image| reads(*image, field));
-    let by_terms = |field: &&Parameter<'g>| !field.per_site && terms.iter().any(|term| reads(term.value, field));
+    let of_joints = joints.iter().flat_map(|joints| joints.all.iter().map(|joint| joint.term.value));
+    let tied: Vec<Expr<'g>> = terms.iter().map(|term| term.value).chain(of_joints).into_list();
+    let by_terms = |field: &&Parameter<'g>| !field.per_site && tied.iter().any(|value| reads(*value, field));
     let mut parameters: Vec<Parameter<'g>> = system.parameters.iter().filter(by_terms).cloned().into_list();
     for (field, place, leaves) in &sites.entries {
         let field = &system.parameters[*field];
@@ -210,5 +212,5 @@ pub(super) fn power_of<'g>(
     let item = std::mem::replace(&mut system.item, site);
     let Sites { length, count, places, has_own_inputs, .. } = sites;
     system.parameters = copies;
-    Power { item, length, sites: count, places, terms, parameters, copied, is_uniform, has_own_inputs, order }
+    Power { item, length, sites: count, places, terms, joints, parameters, copied, is_uniform, has_own_inputs, order }
 }

@@ -6,7 +6,7 @@ use std::rc::Rc;
 use clebsch_symbolic::{Expr, Graph, Group, Shape};
 use proc_macro2::{Ident, Span};
 
-use super::power::{SiteIndex, Term};
+use super::power::{Joints, SiteIndex, Term};
 use super::{Access, Layout};
 use crate::parse::{Dials, Discretization, Emit, Isotropy, Located, Opaque, Order, Promise, Signature, Summation};
 
@@ -455,6 +455,8 @@ pub struct Power<'g> {
     pub places: Vec<SiteIndex<'g>>,
     /// The potential, a sum of terms.
     pub terms: Vec<Term<'g>>,
+    /// The constraint; `None` where sites move freely.
+    pub joints: Option<Joints<'g>>,
     /// The fields that terms read; those of the model are the fields that the site reads.
     pub parameters: Vec<Parameter<'g>>,
     /// The user's fields that the site has copies of, in the order of the model's parameters.

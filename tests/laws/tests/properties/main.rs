@@ -9,6 +9,7 @@ mod derivatives;
 mod ensembles;
 mod equations;
 mod formulas;
+mod joints;
 mod matrices;
 mod mentions;
 mod methods;

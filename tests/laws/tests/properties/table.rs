@@ -41,6 +41,14 @@ pub const PROPERTIES: &[(&str, &[Property])] = &[
         ("constraints_push_along_their_rows", &["Substep::reaction", "Substep::projection", "Scheme::step_pushed", "Stepper::step_with_reactions", "Reacting::multipliers", "multipliers"]),
         ("reactions_hold_motions_on_constraints", &["Stepper::reactions", "Stepper::reactions_under", "Stepper::step_with_reactions_under", "Reacting::reactions_of_motion", "reactions"]),
     ]),
+    ("tests/laws/tests/properties/joints.rs", &[
+        ("rows_of_joints_are_differences",              &["Joined::places_at", "Joined::rows_at"]),
+        ("velocities_of_sites_are_those_of_momenta",    &["Mobile::mobility", "Mobile::momentum_at_rest", "Mobile::momentum_of_velocity", "Mobile::velocity"]),
+        ("states_and_steps_obey_joints",                &["Joined::check_joints", "Joined::defect_of_joints", "Joined::joined_momentum", "Joined::joined_places", "Stepper::joined_sites", "Stepper::joint"]),
+        ("bends_of_joints_are_second_differences",      &["Joined::bend_at", "Mobile::moved_by"]),
+        ("reactions_keep_joints_closed",                &["Joined::multipliers_of_joints", "Joined::reactions_of_joints", "Mobile::acceleration"]),
+        ("rows_are_put_where_they_belong",              &["Rows::none", "Rows::put", "put_places"]),
+    ]),
     ("tests/laws/tests/properties/derivatives.rs", &[
         ("tangent_maps_are_linear",      &["Tangent::apply", "Tangent::apply_transposed", "Tangent::then", "Tangent::identity", "Sensitivity::zero", "Sensitivity::after"]),
         ("tangent_maps_are_differences", &["Stepper::step_tangent", "Stepper::step_tangent_with", "Stepper::infinitesimal_motion"]),

@@ -4,7 +4,7 @@ use super::{bounds, inputs};
 use clebsch_symbolic::{Elements, IntoList};
 
 use crate::derive::{ConstraintFormulas, MOST_LISTED, MechanicsFormulas, Substep};
-use crate::model::{Constraint, Isotropy, Order, VelocityRows};
+use crate::model::{Constraint, Isotropy, Joint, Order, VelocityRows};
 
 pub(super) fn forces(formulas: &MechanicsFormulas<'_>) -> String {
     let model = &formulas.model;
@@ -101,6 +101,24 @@ fn velocities_of_places(constraint: &Constraint<'_>, known: &ConstraintFormulas<
         "{} {subject} of places φ(q) = c: the motions that remain are closed under brackets (Frobenius). A step keeps c up to O(h²). \
          Where a formula for φ is known, write it without the velocity: a step then solves it to rounding.\n",
         texts.join(", ")
+    )
+}
+
+/// The joints of a power, and how a step obeys them.
+pub(super) fn joints(formulas: &MechanicsFormulas<'_>) -> String {
+    let joints = formulas.model.power.as_ref().and_then(|power| power.joints.as_ref());
+    let Some(joints) = joints else { return String::new() };
+    let text = |joint: &Joint<'_>| match joint.term.indices() {
+        indices if indices.is_empty() => joint.written.text.clone(),
+        indices => format!("{} for {indices}", joint.written.text),
+    };
+    let texts = joints.all.each(text).join(", ");
+    let blocks = if joints.is_ring { "block tridiagonal, with a block in each corner" } else { "block tridiagonal" };
+    format!(
+        "Joints between neighbours: {texts}. Their forces Aᵀλ act along their rows at both ends of the step, and q⁺ obeys them. \
+         The velocity of N⁺ is tangent to them: A·Σ⁻¹·N⁺ = b at the end of the step.\n\
+         The multipliers are found by sweeps over all sites, λ ← λ − S⁻¹φ(q⁺)/h. S = A·Σ⁻¹·Aᵀ at q is {blocks}: a sweep takes O(N) operations. \
+         The step is time-symmetric, symplectic on the momenta that are tangent to the joints, and obeys them to rounding.\n"
     )
 }
 

@@ -80,7 +80,7 @@ pub(super) fn find<'g>(
     if directions.is_empty() {
         return Symmetries::default();
     }
-    let places = constraint.map_or_else(Vec::new, |constraint| places(model, constraint));
+    let places = constraint.map_or_else(|| places_of_joints(model), |constraint| places(model, constraint));
     let matrix = variations(sources, lagrangian, (&directions, &places), (force, constraint), links);
     // the weights of places come first, so that each vector of the basis has a direction of its own
     let found = identity::null_space(matrix).into_each(|vector| vector[places.len()..].to_vec());
@@ -122,6 +122,19 @@ fn places<'g>(model: &Mechanics<'g>, constraint: &ConstraintFormulas<'g>) -> Vec
             all.extend(others.clone().map(|j| Place { row, value: places.value.entry(j, 0) }));
         }
         first += equation.count;
+    }
+    all
+}
+
+/// The same of the joints of a power, whose entries are the first of the terms: those of one joint mix.
+fn places_of_joints<'g>(model: &Mechanics<'g>) -> Vec<Place<'g>> {
+    let joints = model.power.iter().flat_map(|power| &power.joints).flat_map(|joints| &joints.all);
+    let (mut all, mut first) = (Vec::new(), 0);
+    for joint in joints {
+        for row in first..first + joint.count() {
+            all.extend((0..joint.count()).map(|j| Place { row, value: joint.term.value.entry(j, 0) }));
+        }
+        first += joint.count();
     }
     all
 }

@@ -6,11 +6,11 @@ use clebsch_symbolic::{Elements, Expr, IntoList, Role, Shape, joined};
 use proc_macro2::{Ident, TokenStream};
 use quote::{format_ident, quote};
 
-use crate::derive::{Home, Id, SiteTerm, Stencil};
+use crate::derive::{Home, Id, JointRows, SiteTerm, Stencil};
 use crate::emit::Emitter;
 use crate::emit::scope::Scope;
 use crate::lower::{Code, Kernel};
-use crate::model::{Leaf, Linear, Power, SiteIndex};
+use crate::model::{Joint, Leaf, Linear, Power, SiteIndex};
 
 /// The data for the code of all terms.
 pub(super) struct Terms<'e, 'a, 'g> {
@@ -84,6 +84,23 @@ impl<'e, 'a, 'g> Terms<'e, 'a, 'g> {
                 gradient
             }
         }
+    }
+
+    /// A statement for the site that is the later one of a joint.
+    pub(super) fn of_joint(
+        &self,
+        (joint, rows): (&Joint<'g>, &JointRows<'g>),
+        kernel: &Kernel,
+        put: TokenStream,
+    ) -> TokenStream {
+        let found = self.found(joint.own, &rows.home, &joint.term.ranges);
+        self.at_site((&self.power.places, Some(joint.own)), &found, kernel, put)
+    }
+
+    /// The entries of an output of a kernel, row by row.
+    pub(super) fn entries(&self, kernel: &Kernel, output: usize) -> Vec<TokenStream> {
+        let entries = kernel.outputs.get(output).map(|(_, entries)| entries.as_slice()).unwrap_or_default();
+        entries.iter().map(|entry| self.scope.code(entry, false)).into_list()
     }
 
     /// The index `i0` of the term that has a site at a place, from that of the site; leaves where there is no such term.

@@ -54,7 +54,7 @@ impl<'g> Elaborator<'_, '_, 'g> {
     pub(super) fn map(&mut self, call: &ExprMethodCall, parts: Vec<Value<'g>>) -> Option<Value<'g>> {
         let (pattern, closure) = self.closure_of_map(call)?;
         // a mistake in one term is a mistake in all
-        let values = parts.into_iter().map(|part| self.applied(&pattern, closure, part));
+        let values = parts.into_iter().map(|part| self.applied(&pattern, part, |this| this.elaborate(&closure.body)));
         values.collect::<Option<_>>().map(Value::Array)
     }
 
@@ -85,17 +85,17 @@ impl<'g> Elaborator<'_, '_, 'g> {
     }
 
     /// The value of a closure with one argument.
-    pub(super) fn applied(
+    pub(super) fn applied<V>(
         &mut self,
         pattern: &Pattern,
-        closure: &ExprClosure,
         argument: Value<'g>,
-    ) -> Option<Value<'g>> {
+        read: impl FnOnce(&mut Self) -> Option<V>,
+    ) -> Option<V> {
         let errors = self.context.diagnostics.len();
         self.with_names(|this| {
             this.bind(pattern, Some(argument), "an argument");
             let is_bound = this.context.diagnostics.len() == errors;
-            is_bound.then(|| this.elaborate(&closure.body)).flatten()
+            is_bound.then(|| read(this)).flatten()
         })
     }
 

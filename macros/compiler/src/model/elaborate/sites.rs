@@ -40,6 +40,37 @@ impl<'g> Elaborator<'_, '_, 'g> {
 
     /// `.map(|i| …)` of a range: the closure is read once, for all indices.
     pub(super) fn map_of_range(&mut self, call: &ExprMethodCall, range: Range<'g>) -> Option<Value<'g>> {
+        let value = self.for_each(call, range, Self::elaborate)?;
+        Some(Value::Sequence(range, Box::new(value)))
+    }
+
+    /// `(1..N).map(|i| …)`, where `read` reads the body of the closure.
+    pub fn of_range<V>(
+        &mut self,
+        call: &ExprMethodCall,
+        read: impl FnOnce(&mut Self, &Syntax) -> Option<V>,
+    ) -> Option<(Range<'g>, V)> {
+        let range = match self.elaborate(&call.receiver)? {
+            Value::Range(from, to) => (from, to),
+            Value::Array(all) => {
+                refuse!(self, &call.receiver, "`{}` is an array of {}, no range of sites", spell(&call.receiver), all.len();
+                    help "write each equation for itself, or a range, as in `(1..{}).map(|i| …)`", self.context.power.as_ref()?.length)
+            }
+            other => {
+                refuse!(self, &call.receiver, "`{}` is {}, no range of sites", spell(&call.receiver), other.describe();
+                    help "write a range, as in `(1..{}).map(|i| …)`", self.context.power.as_ref()?.length)
+            }
+        };
+        Some((range, self.for_each(call, range, read)?))
+    }
+
+    /// The body of the closure of `map`, read once for all indices of a range.
+    fn for_each<V>(
+        &mut self,
+        call: &ExprMethodCall,
+        range: Range<'g>,
+        read: impl FnOnce(&mut Self, &Syntax) -> Option<V>,
+    ) -> Option<V> {
         let (pattern, closure) = self.closure_of_map(call)?;
         let graph = self.graph();
         let power = self.context.power.as_mut()?;
@@ -50,9 +81,9 @@ impl<'g> Elaborator<'_, '_, 'g> {
         let depth = power.ranges.len();
         let index = graph.symbol(&index_name(depth), Shape::scalar(), Role::Site(depth), Property::General);
         power.ranges.push(range);
-        let value = self.applied(&pattern, closure, Value::Matrix(index));
+        let value = self.applied(&pattern, Value::Matrix(index), |this| read(this, &closure.body));
         self.context.power.as_mut()?.ranges.pop();
-        Some(Value::Sequence(range, Box::new(value?)))
+        value
     }
 
     /// `.sum()` of a value for each index of a range.
@@ -135,7 +166,7 @@ impl<'g> Elaborator<'_, '_, 'g> {
         let is_own = !place.wraps
             && power.ranges.len() == 1
             && place.index.as_symbol().is_some_and(|data| data.role == Role::Site(0));
-        match (of, self.key == "potential") {
+        match (of, ["potential", "constraint"].contains(&self.key)) {
             (_, false) if is_own => Some(own),
             (Each::Configuration, true) => {
                 let number = power.place(place);
@@ -153,7 +184,7 @@ impl<'g> Elaborator<'_, '_, 'g> {
                 let (key, text) = (self.key, spell(&Syntax::Index(index.clone())));
                 refuse!(self, index, "the {key} of a site depends on that site alone, and `{text}` is of another";
                     help "{}", unrolled(key, &name);
-                    note "the equation of a step is solved site by site; in the potential, terms may tie sites to each other")
+                    note "the equation of a step is solved site by site; in the potential and in the constraint, sites may meet")
             }
         }
     }

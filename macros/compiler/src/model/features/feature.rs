@@ -78,6 +78,7 @@ features! {
     Tangent "`emit = [tangent]`",
     Boundary "`emit = [boundary]`",
     Momentum "`emit = [momentum]`",
+    VelocityConstraint "a constraint with a velocity",
     // groups and spaces
     Power "a power",
     Forces "forces",

@@ -150,7 +150,9 @@ pub(super) const ROWS: [Row; 62] = [
         "a power has no {refused}",
         "sites without configurations do not act on each other",
         "declare one site, and step an array of its states"),
-    row(&[Constraint], &[Power], "a power has no {refused} yet", LATER, ALL_SITES),
+    row(&[VelocityConstraint], &[Power],
+        "a power has no constraint with a velocity yet", LATER,
+        "write a number in place of the const generic; equations of places alone are joints"),
     row(&[Method], &[Power], "a power has no other methods yet", LATER, ALL_SITES),
     // groups
     row(&[Symmetry], &[LargeGroup],

@@ -1,0 +1,142 @@
+//! Joints between neighbouring sites: the values and the rows of the equations whose later site is a given one.
+
+use clebsch_symbolic::IntoList;
+use proc_macro2::TokenStream;
+use quote::quote;
+
+use super::terms::Terms;
+use crate::derive::{Id, JointRows};
+use crate::emit::Emitter;
+use crate::emit::block::Target;
+use crate::emit::function::{Body, no_words};
+use crate::emit::functions::{JOINED, MOBILE};
+use crate::emit::scope::size;
+use crate::model::{Joint, Power};
+
+impl<'g> Emitter<'_, 'g> {
+    /// The implementations of `Mobile` for a site and of `Joined` and `Constrained` for all of them, where there are joints.
+    pub(super) fn joined(&self, power: &Power<'g>, target: &Target) -> TokenStream {
+        let Some(joints) = &power.joints else { return TokenStream::new() };
+        let (length, dimension, most) = (&self.length, size(self.dimension), size(joints.rows));
+        let constants = Some(quote!(c));
+        let of_site = self.functions(MOBILE, (0, 0), &no_words, |function, kernel| {
+            let scope = if ["mobility", "acceleration"].contains(&function.name) {
+                self.scope(self.receiver(), constants.clone())
+            } else {
+                self.scope_of_system()
+            };
+            let words = |word: &str| {
+                let parts = || {
+                    let (system, parts) = (self.target.of_type(), self.trait_of_parts("Parts", &[]));
+                    quote!(<#system as #parts>)
+                };
+                (word == "PartsOf").then(parts)
+            };
+            function.written(&scope, kernel, &words)
+        });
+        let mobile = self.target.derived(Some(quote!(runtime::Mobile<#dimension>)), of_site);
+        let is_ring = joints.is_ring;
+        let terms = Terms::new(self, power);
+        let formulas = self.formulas.joints.iter().flat_map(|joints| &joints.all);
+        let numbered: Vec<_> = joints.all.iter().zip(formulas).enumerate().into_list();
+        let places = || -> TokenStream {
+            let statement = |&(number, (joint, rows)): &(usize, (&Joint<'g>, &JointRows<'g>))| {
+                let kernel = self.program.kernel(Id::JointPlaces(number));
+                let (first, values) = (size(joint.first), terms.entries(kernel, 0));
+                terms.of_joint((joint, rows), kernel, quote!(runtime::put_places(&mut places, #first, [#(#values),*]);))
+            };
+            numbered.iter().map(statement).collect()
+        };
+        let bend = || -> TokenStream {
+            let statement = |&(number, (joint, rows)): &(usize, (&Joint<'g>, &JointRows<'g>))| {
+                let kernel = self.program.kernel(Id::JointBend(number));
+                let (first, values) = (size(joint.first), terms.entries(kernel, 0));
+                terms.of_joint((joint, rows), kernel, quote!(runtime::put_places(&mut places, #first, [#(#values),*]);))
+            };
+            numbered.iter().map(statement).collect()
+        };
+        let rows = || -> TokenStream {
+            let statement = |&(number, (joint, rows)): &(usize, (&Joint<'g>, &JointRows<'g>))| {
+                let kernel = self.program.kernel(Id::Joint(number));
+                let nested = |output: usize| {
+                    let entries = terms.entries(kernel, output);
+                    let rows = entries.chunks(self.dimension).map(|row| quote!([#(#row),*]));
+                    quote!([#(#rows),*])
+                };
+                let (first, own, before, velocity) =
+                    (size(joint.first), nested(0), nested(1), terms.entries(kernel, 2));
+                terms.of_joint((joint, rows), kernel, quote!(rows.put(#first, #own, #before, [#(#velocity),*]);))
+            };
+            numbered.iter().map(statement).collect()
+        };
+        let words = |word: &str| match word {
+            "Sites" => Some(quote!([Q; #length])),
+            "Index" => Some(quote!(::core::primitive::usize)),
+            "Places" => Some(quote!(runtime::SVector<T, #most>)),
+            "Rows" => Some(quote!(runtime::JointRows<T, #most, #dimension>)),
+            _ => None,
+        };
+        let functions = self.functions(JOINED, (0, 0), &words, |function, _| {
+            let of_places =
+                |statements: TokenStream| quote!(let mut places = runtime::Space::<T>::origin(); #statements places);
+            Some(Body::from(match function.name {
+                "places_at" => {
+                    let code = of_places(places());
+                    quote!(let _ = (t, q, site); #code)
+                }
+                "bend_at" => {
+                    let code = of_places(bend());
+                    quote!(let _ = (t, q, site, x, mu); #code)
+                }
+                _ => {
+                    let statements = rows();
+                    quote!(let _ = (t, q, site); let mut rows = runtime::JointRows::none(); #statements rows)
+                }
+            }))
+        });
+        let joined = target.derived(
+            Some(quote!(runtime::Joined<#length, #most, #dimension>)),
+            quote!(const IS_RING: ::core::primitive::bool = #is_ring; #functions),
+        );
+        let constrained = target.derived(
+            Some(quote!(runtime::Constrained)),
+            quote! {
+                type Reactions = [runtime::SVector<T, #most>; #length];
+
+                fn momentum_of_velocity(
+                    &self,
+                    t: T,
+                    q: &Self::Configuration,
+                    x: &Self::Momentum,
+                ) -> Self::Momentum {
+                    runtime::Power::each(self, |site, i| runtime::Mobile::momentum_of_velocity(site, t, &q[i], &x[i]))
+                }
+            },
+        );
+        let reacting = target.derived(
+            Some(quote!(runtime::Reacting)),
+            quote! {
+                fn multipliers(
+                    &self,
+                    c: &Self::Constants,
+                    t: T,
+                    q: &Self::Configuration,
+                    mu: &Self::Momentum,
+                ) -> Self::Reactions {
+                    runtime::Joined::<#length, #most, #dimension>::multipliers_of_joints(self, c, t, q, mu)
+                }
+                fn reactions_of_motion(
+                    &self,
+                    c: &Self::Constants,
+                    t: T,
+                    q: &Self::Configuration,
+                    mu: &Self::Momentum,
+                    u: &Self::Input,
+                ) -> ::core::result::Result<Self::Reactions, runtime::Error> {
+                    runtime::Joined::<#length, #most, #dimension>::reactions_of_joints(self, c, t, q, mu, u)
+                }
+            },
+        );
+        quote!(#mobile #joined #constrained #reacting)
+    }
+}

@@ -1,0 +1,249 @@
+//! Joints between neighbouring sites: their rows are differences of their equations, and states and steps obey them.
+
+use crate::arbitrary::{cases, vector};
+use clebsch::__private::{Joined, JointRows, Mobile, Power, put_places};
+use clebsch::{Clebsch, Constrained, Error, SiteStorage};
+use clebsch_tests::oracle::near::assert_near;
+use nalgebra::{Matrix3, SVector, Vector2, Vector3};
+use proptest::prelude::*;
+
+/// Bodies in the plane on pins. The first pin moves. Their velocity is turned by a field: the momentum of velocity
+/// zero is not 0. The last body slides on the line y = x.
+#[derive(Clebsch, Clone, Debug)]
+#[clebsch(
+    action     = |F: [SE<2>; N], q: [SE<2>; N]| (0..N).map(|i| q[i] * F[i]),
+    lagrangian = |xi| (0..N).map(|i| (self.inertia[i] * xi[i].x.powi(2) + self.mass[i] * (xi[i].y.powi(2) + xi[i].z.powi(2))) / 2 + self.spin * xi[i].x).sum(),
+    potential  = |q| (0..N).map(|i| self.mass[i] * q[i].translation().y).sum(),
+    constraint = |t, q| [
+        q[0].translation() == Vector2::new(self.speed * t, t.powi(2) / 2),
+        (1..N).map(|i| q[i].rotation() * self.arm + q[i].translation() == q[i - 1].translation() - q[i - 1].rotation() * self.arm),
+        q[N - 1].translation().x == q[N - 1].translation().y,
+    ],
+)]
+pub struct Crane<const N: usize> {
+    pub inertia: [f64; N],
+    pub mass: [f64; N],
+    pub spin: f64,
+    pub speed: f64,
+    pub arm: Vector2<f64>,
+}
+
+fn crane() -> Crane<3> {
+    Crane { inertia: [0.2, 0.3, 0.1], mass: [1.0, 0.7, 0.4], spin: 0.3, speed: 0.4, arm: Vector2::new(0.5, 0.1) }
+}
+
+fn placed(angle: f64, place: Vector2<f64>) -> Matrix3<f64> {
+    Matrix3::new(angle.cos(), -angle.sin(), place.x, angle.sin(), angle.cos(), place.y, 0.0, 0.0, 1.0)
+}
+
+/// The motion exp(ξ) − I to first order, applied from the right.
+fn moved(q: &Matrix3<f64>, xi: Vector3<f64>, size: f64) -> Matrix3<f64> {
+    q + q * Matrix3::new(0.0, -xi.x, xi.y, xi.x, 0.0, xi.z, 0.0, 0.0, 0.0) * size
+}
+
+/// A crane whose joints are closed at t = 0 for a first angle: the other two follow from the line y = x.
+fn closed(crane: &Crane<3>, first: f64) -> Option<[Matrix3<f64>; 3]> {
+    let arm = |angle: f64| placed(angle, Vector2::zeros()).fixed_view::<2, 2>(0, 0) * crane.arm;
+    let second = first + 0.8;
+    let place = |angle: f64, joint: Vector2<f64>| placed(angle, joint - arm(angle));
+    let middle = place(second, -arm(first));
+    let joint = middle.fixed_view::<2, 1>(0, 2) - arm(second);
+    // x − y of the last body vanishes at some angle, found by halving
+    let off = |angle: f64| {
+        let last = place(angle, joint);
+        last[(0, 2)] - last[(1, 2)]
+    };
+    let (mut low, mut high) = (0.0, std::f64::consts::PI);
+    if off(low) * off(high) > 0.0 {
+        return None;
+    }
+    for _ in 0..200 {
+        let half = (low + high) / 2.0;
+        if off(low) * off(half) <= 0.0 { high = half } else { low = half }
+    }
+    Some([placed(first, Vector2::zeros()), middle, place(low, joint)])
+}
+
+proptest! {
+    #![proptest_config(cases(32))]
+
+    #[test]
+    fn rows_of_joints_are_differences(angles in vector::<3>(2.0), places in vector::<6>(1.0), xi in vector::<3>(1.0), t in -1.0_f64..1.0) {
+        let (crane, small) = (crane(), 1e-6);
+        let q: [Matrix3<f64>; 3] = std::array::from_fn(|i| placed(angles[i], Vector2::new(places[2 * i], places[2 * i + 1])));
+        for site in 0..3 {
+            let rows: JointRows<f64, 3, 3> = crane.rows_at(t, &q, site);
+            let count = if site == 2 { 3 } else { 2 };
+            prop_assert_eq!(rows.are_there, [true, true, count == 3]);
+            let along = |moving: usize| {
+                let at = |size: f64| {
+                    let mut q = q;
+                    q[moving] = moved(&q[moving], xi, size);
+                    crane.places_at(t, &q, site)
+                };
+                (at(small) - at(-small)) / (2.0 * small)
+            };
+            assert_near(&(rows.own * xi), &along(site), 1e-8, "along the site");
+            if site > 0 {
+                assert_near(&(rows.before * xi), &along(site - 1), 1e-8, "along the site before");
+            }
+            let later = (crane.places_at(t + small, &q, site) - crane.places_at(t - small, &q, site)) / (2.0 * small);
+            assert_near(&rows.velocity, &-later, 1e-8, "with the time");
+        }
+    }
+
+    /// Σ⁻¹(Σξ + A − A) is ξ.
+    #[test]
+    fn velocities_of_sites_are_those_of_momenta(angle in -3.0_f64..3.0, xi in vector::<3>(1.0), mu in vector::<3>(1.0)) {
+        let crane = crane();
+        let site = crane.site(1);
+        let (q, constants) = (placed(angle, Vector2::new(0.1, 0.2)), site.constants(0.1)?);
+        let momentum = site.momentum_of_velocity(0.0, &q, &xi);
+        assert_near(&momentum, &Vector3::new(0.3 * xi.x + 0.3, 0.7 * xi.y, 0.7 * xi.z), 1e-15, "the momentum");
+        assert_near(&site.velocity(&constants, 0.0, &q, &momentum), &xi, 1e-14, "the velocity");
+        assert_near(&site.momentum_at_rest(0.0, &q).unwrap_or_default(), &(Vector3::x() * 0.3), 1e-15, "at rest");
+        let kinetic = <<Crane<3> as Power<3>>::Site as Mobile<3>>::mobility(&constants, &mu).dot(&mu);
+        let expected = mu.x * mu.x / 0.3 + (mu.y * mu.y + mu.z * mu.z) / 0.7;
+        prop_assert!((kinetic - expected).abs() < 1e-14, "{} {}", kinetic, expected);
+    }
+
+    /// A projected momentum is a state; its steps close the joints at their times, in storage of others too.
+    #[test]
+    fn states_and_steps_obey_joints(first in -0.5_f64..0.5, mu in vector::<9>(0.3)) {
+        let crane = crane();
+        let Some(q) = closed(&crane, first) else { return Ok(()) };
+        let stepper = crane.stepper(0.01)?;
+        let mu: [Vector3<f64>; 3] = std::array::from_fn(|i| mu.fixed_rows::<3>(3 * i).into());
+        crane.check_joints(0.0, &q)?;
+        let constants = crane.constants(0.01)?;
+        let projected = crane.joined_momentum(&constants, 0.0, &q, &mu)?;
+        let start = stepper.project(q, mu)?;
+        for (a, b) in projected.iter().zip(&start.momentum()) {
+            assert_near(a, b, 1e-12, "the momentum");
+        }
+        let placed = crane.joined_places(&constants, 0.0, &q)?;
+        prop_assert_eq!(&placed, start.configuration());
+        let defect = crane.defect_of_joints(&constants, 0.0, &q, &projected)?;
+        prop_assert!(defect.largest < 1e-12, "{:?}", defect);
+        let start = stepper.state(q, projected)?;
+        let end = stepper.advance(&start, 5)?;
+        for site in 0..3 {
+            let open = crane.places_at(end.time(), end.configuration(), site).amax();
+            prop_assert!(open < 1e-13, "{}", open);
+        }
+        let storage = SiteStorage::of(q, projected);
+        let mut sites = stepper.clone().joined_sites(storage, std::array::from_fn::<_, 3, _>(|_| stepper.joint()))?;
+        sites.advance(5)?;
+        prop_assert_eq!(sites.configuration(), end.configuration());
+        prop_assert_eq!(sites.momentum(), &end.momentum());
+
+        // from velocities
+        let velocities = std::array::from_fn(|i| crane.site(i).velocity(&crane.site(i).constants(0.01).expect("constants"), 0.0, &q[i], &projected[i]));
+        let moving = stepper.state_moving(q, velocities)?;
+        for (a, b) in moving.momentum().iter().zip(&projected) {
+            assert_near(a, b, 1e-14, "the momentum");
+        }
+        prop_assert_eq!(crane.momentum_of_velocity(0.0, &q, &velocities), moving.momentum());
+
+        let mut open = q;
+        open[1][(0, 2)] += 1e-3;
+        let is_refused = matches!(crane.check_joints(0.0, &open), Err(Error::OffConstraint { .. }));
+        prop_assert!(is_refused);
+        let refused: Result<_, Error> = stepper.state(q, std::array::from_fn(|i| projected[i] + Vector3::repeat(0.1)));
+        let is_refused = matches!(refused, Err(Error::ConstraintViolated { .. }));
+        prop_assert!(is_refused, "{:?}", refused);
+    }
+
+    /// Each entry in its place, from the row that is named; rows behind the last have no place.
+    #[test]
+    fn rows_are_put_where_they_belong(own in vector::<4>(1.0), before in vector::<4>(1.0), first in 0_usize..6) {
+        let mut rows = JointRows::<f64, 4, 2>::none();
+        prop_assert_eq!((rows.own.amax(), rows.before.amax(), rows.are_there), (0.0, 0.0, [false; 4]));
+        let nested = |v: &SVector<f64, 4>| [[v[0], v[1]], [v[2], v[3]]];
+        rows.put(first, nested(&own), nested(&before), [own[0], before[0]]);
+        let mut places = SVector::<f64, 4>::zeros();
+        put_places(&mut places, first, [own[0], before[0]]);
+        for i in 0..4_usize {
+            let number = i.checked_sub(first).filter(|number| *number < 2);
+            let entry = |v: &SVector<f64, 4>, j: usize| number.map_or(0.0, |number| v[2 * number + j]);
+            prop_assert_eq!(rows.are_there[i], number.is_some());
+            for j in 0..2 {
+                prop_assert_eq!((rows.own[(i, j)], rows.before[(i, j)]), (entry(&own, j), entry(&before, j)));
+            }
+            let value = number.map_or(0.0, |number| [own[0], before[0]][number]);
+            prop_assert_eq!((rows.velocity[i], places[i]), (value, value));
+        }
+    }
+
+    /// φ″ with constant velocities is the second difference along q exp(sξ), and small motions are first differences.
+    #[test]
+    fn bends_of_joints_are_second_differences(angles in vector::<3>(2.0), places in vector::<6>(1.0), xi in vector::<9>(1.0), t in -1.0_f64..1.0) {
+        let (crane, small) = (crane(), 1e-3);
+        let q: [Matrix3<f64>; 3] = std::array::from_fn(|i| placed(angles[i], Vector2::new(places[2 * i], places[2 * i + 1])));
+        let xi: [Vector3<f64>; 3] = std::array::from_fn(|i| xi.fixed_rows::<3>(3 * i).into());
+        // to second order; the third cancels
+        let at = |s: f64| std::array::from_fn(|i| {
+            let once = moved(&q[i], xi[i], s) - q[i];
+            q[i] + once + (moved(&once, xi[i], s) - once) / 2.0
+        });
+        for site in 0..3 {
+            let along = |s: f64| crane.places_at(t + s, &at(s), site);
+            let expected = (along(small) - 2.0 * along(0.0) + along(-small)) / (small * small);
+            // no row of the first site reads one before
+            let before = if site == 0 { 0 } else { site - 1 };
+            assert_near(&crane.bend_at(t, &q, site, &xi[site], &xi[before]), &expected, 1e-5, "the bend");
+            let (tiny, body) = (1e-7, crane.site(site));
+            let motion = (body.moved_by(&q[site], &(xi[site] * tiny)) - body.moved_by(&q[site], &(xi[site] * -tiny))) / (2.0 * tiny);
+            assert_near(&motion, &(moved(&q[site], xi[site], 1.0) - q[site]), 1e-7, "the motion");
+        }
+    }
+
+    /// With the reactions the joints stay closed: φ″ = 0. The accelerations of bodies alone are differences of their steps.
+    #[test]
+    fn reactions_keep_joints_closed(first in -0.5_f64..0.5, mu in vector::<9>(0.3), kappa in vector::<9>(1.0)) {
+        let crane = crane();
+        let Some(q) = closed(&crane, first) else { return Ok(()) };
+        let constants = crane.constants(0.01)?;
+        let mu: [Vector3<f64>; 3] = std::array::from_fn(|i| mu.fixed_rows::<3>(3 * i).into());
+        let rows: [JointRows<f64, 3, 3>; 3] = std::array::from_fn(|site| crane.rows_at(0.0, &q, site));
+        // Aᵀκ, and κ again
+        let push = |kappa: &[SVector<f64, 3>; 3]| -> [Vector3<f64>; 3] {
+            std::array::from_fn(|i| {
+                let next = if i < 2 { rows[i + 1].before.transpose() * kappa[i + 1] } else { Vector3::zeros() };
+                rows[i].own.transpose() * kappa[i] + next
+            })
+        };
+        let kappa: [SVector<f64, 3>; 3] = std::array::from_fn(|i| SVector::from_fn(|k, _| if rows[i].are_there[k] { kappa[3 * i + k] } else { 0.0 }));
+        let found = crane.multipliers_of_joints(&constants, 0.0, &q, &push(&kappa));
+        for (found, kappa) in found.iter().zip(&kappa) {
+            assert_near(found, kappa, 1e-9, "the multipliers");
+        }
+        let lambda = crane.reactions_of_joints(&constants, 0.0, &q, &mu, &())?;
+        let (pushes, weight) = (push(&lambda), crane.power_kick(0.0, &q, -1.0));
+        let (mut velocities, mut accelerations) = ([Vector3::zeros(); 3], [Vector3::zeros(); 3]);
+        for i in 0..3 {
+            let site = crane.site(i);
+            let c = site.constants(0.01)?;
+            velocities[i] = site.velocity(&c, 0.0, &q[i], &mu[i]);
+            let free = site.acceleration(&c, 0.0, &q[i], &mu[i], &());
+            let after = |h: f64| -> Result<Vector3<f64>, Error> {
+                let stepper = site.into_stepper(h)?;
+                let next = stepper.step(&stepper.state(q[i], mu[i])?)?;
+                Ok(site.velocity(&c, h, next.configuration(), &next.momentum()))
+            };
+            assert_near(&free, &((after(1e-4)? - after(-1e-4)?) / 2e-4), 1e-5, "the acceleration");
+            let by = |push: &Vector3<f64>| <<Crane<3> as Power<3>>::Site as Mobile<3>>::mobility(&c, push);
+            accelerations[i] = free + by(&(pushes[i] + weight[i]));
+        }
+        for site in 0..3 {
+            let before = if site == 0 { 0 } else { site - 1 };
+            let mut change = rows[site].own * accelerations[site] + crane.bend_at(0.0, &q, site, &velocities[site], &velocities[before]);
+            if site > 0 {
+                change += rows[site].before * accelerations[before];
+            }
+            for k in (0..3).filter(|&k| rows[site].are_there[k]) {
+                prop_assert!(change[k].abs() < 1e-9, "site {}, row {}: {:e}", site, k, change[k]);
+            }
+        }
+    }
+}
