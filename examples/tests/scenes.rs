@@ -98,7 +98,7 @@ fn defaults_hold_all_their_claims() {
 
 /// Scenes of plans, which short runs do not suit, and those with a constraint, whose steps have order 2 alone.
 /// They are a name, flags, and the columns of the CSV file.
-const PLANS: [(&str, &[&str], &str); 7] = [
+const PLANS: [(&str, &[&str], &str); 8] = [
     (
         "slew",
         &["--least", "effort"],
@@ -108,6 +108,7 @@ const PLANS: [(&str, &[&str], &str); 7] = [
     ("sleigh", &[], "step,time,x,y,heading,omega,v,omega1,omega2,omega3"),
     ("rattleback", &[], "step,time,R11,R12,R13,R21,R22,R23,R31,R32,R33,x1,x2,x3,w1,w2,w3"),
     ("snakeboard", &[], "step,time,x,y,heading,rotor,wheel,speed"),
+    ("chain", &[], "step,time,x,y,z,speed,height,tension"),
     ("double_pendulum", &[], "step,time,x1,y1,z1,x2,y2,z2,a1,a2,a3,b1,b2,b3"),
     ("quadrotor", &[], "step,time,R11,R12,R13,R21,R22,R23,R31,R32,R33,x1,x2,x3,v1,v2,v3,pi1,pi2,pi3,u1,u2,u3,u4"),
 ];
@@ -211,6 +212,9 @@ fn other_flags_hold_all_their_claims() {
         ("snakeboard", &["--rotor", "0", "--steps", "130"]),
         ("double_pendulum", &["--bars", "0.3,0.4,0.5", "--ground", "0.6", "--crank", "0", "--steps", "400"]),
         ("double_pendulum", &["--gravity", "0", "--upper", "0,0,1", "--steps", "300"]),
+        ("chain", &["--links", "5", "--hand", "0.3,0.1,0.2", "--width", "0.1", "--steps", "1600"]),
+        ("chain", &["--links", "40", "--hand", "0,0,0", "--lean", "0", "--steps", "200"]),
+        ("chain", &["--links", "10", "--gravity", "0", "--time", "--steps", "900"]),
         ("ensemble", &["--bodies", "13", "--inertia", "1,1.5,2", "--tilt", "20", "--spin", "1", "--seed", "3"]),
         ("inertia_estimation", &["--noise", "2000", "--step-size", "0.05", "--steps", "12000", "--seed", "2"]),
         ("inertia_estimation", &["--spin", "0,0,0", "--step-size", "0.1", "--steps", "6000", "--guess", "1,1,1"]),
@@ -340,6 +344,9 @@ fn mistakes_are_explained() {
         ("double_pendulum", &["--bars", "0.1,0.1,0.1"], "the loop cannot be closed"),
         ("double_pendulum", &["--ground", "0"], "`0` is not above zero"),
         ("double_pendulum", &["--step-size", "0.1"], "was not reached"),
+        ("chain", &["--links", "7"], "possible values: 5, 10, 20, 40"),
+        ("chain", &["--width", "0"], "`0` is not above zero"),
+        ("chain", &["--step-size", "0.2"], "was not reached"),
         ("sphere_geodesics", &["--step-size", "2"], "step 1 was not reached"),
         ("sphere_geodesics", &["--sphere", "5"], "possible values: 3, 7, 20, 100"),
         ("sphere_geodesics", &["--position", "1,0,0,0"], "a point of S7 has 8 coordinates, 4 were given"),
