@@ -156,7 +156,10 @@ struct Repelled {
 fn slopes_that_vanish_are_refused() {
     let stepper = Repelled { mass: 1.0, spring: -16.0 }.into_stepper(0.5).expect("a regular inertia");
     let state = stepper.state([1.0].into(), [2.0].into()).expect("a state");
-    assert!(matches!(stepper.step(&state), Err(Error::Unsolvable { .. })), "{:?}", stepper.step(&state));
+    // the slope m/h² − |k|/4 vanishes at this step, and at no shorter one
+    let refused = stepper.step(&state);
+    let Err(Error::StepTooLong { step_size, solvable_step: Some(longest) }) = refused else { panic!("{refused:?}") };
+    assert!(step_size == 0.5 && (0.485..0.5).contains(&longest), "{longest}");
     let stepper = Repelled { mass: 1.0, spring: -16.0 }.into_stepper(0.25).expect("a regular inertia");
     let next = stepper.step(&stepper.state([1.0].into(), [2.0].into()).expect("a state")).expect("a solvable step");
     // (4 − 1) a = 2 + 16·0.25/2

@@ -311,7 +311,10 @@ where
             assert!(h / bound < 1.0, "{h} is beyond {bound}");
             assert_near(&next.momentum(), &Vector1::new(expected), 1e-12 * expected.abs(), "the step");
         }
-        Err(Error::Unsolvable { solvable_step: Some(longest), .. }) => {
+        Err(
+            Error::Unsolvable { solvable_step: Some(longest), .. }
+            | Error::StepTooLong { solvable_step: Some(longest), .. },
+        ) => {
             assert!(h / bound > 1.0, "{h} is within {bound}");
             let part = longest / bound;
             assert!((0.97..=1.0).contains(&part), "{longest} for {bound}");
