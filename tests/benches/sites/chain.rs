@@ -26,12 +26,18 @@ pub struct Chain<const N: usize> {
     pub far: Vector3<f64>,
 }
 
-/// Principal moments of a link of 0.5 kg and 0.3 m.
-const INERTIA: Vector3<f64> = Vector3::new(3.85e-3, 3.87e-3, 2.2e-4);
-const MASS: f64 = 0.5;
-const GRAVITY: f64 = 9.81;
-const NEAR: Vector3<f64> = Vector3::new(0.0, 0.0, -0.15);
-const FAR: Vector3<f64> = Vector3::new(0.0, 0.0, 0.15);
+/// Principal moments of a link, kg·m².
+pub const INERTIA: Vector3<f64> = Vector3::new(3.85e-3, 3.87e-3, 2.2e-4);
+/// Kilograms.
+pub const MASS: f64 = 0.5;
+/// m/s²
+pub const GRAVITY: f64 = 9.81;
+/// From the centre of a link to a joint, metres.
+pub const HALF: f64 = 0.15;
+/// The joint with the link before, in the frame of the link.
+pub const NEAR: Vector3<f64> = Vector3::new(0.0, 0.0, -HALF);
+/// The joint with the link after.
+pub const FAR: Vector3<f64> = Vector3::new(0.0, 0.0, HALF);
 /// The step size.
 pub const H: f64 = 0.002;
 

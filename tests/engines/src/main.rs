@@ -4,54 +4,18 @@
 //! and moves for ten seconds. It prints the widest gap of a joint and the largest change of the energy. The time of a step
 //! for each link is the least of three runs.
 
-use clebsch::{Clebsch, SiteStorage};
-use nalgebra::{Matrix3, Matrix4, Rotation3, Vector3, Vector6};
+#[path = "../../benches/sites/chain.rs"]
+#[allow(dead_code, reason = "the chain by hand is for the benchmark")]
+mod chain;
+
+use chain::{FAR, GRAVITY, HALF, INERTIA, MASS, NEAR, places};
+use clebsch::Clebsch;
+use nalgebra::{Rotation3, Vector3};
 use rapier3d_f64::prelude::*;
 use std::time::Instant;
 
-/// Links that hang from the origin, with frames at the centres of mass.
-#[derive(Clebsch, Clone, Debug)]
-#[clebsch(
-    action     = |F: [SE<3>; N], q: [SE<3>; N]| (0..N).map(|i| q[i] * F[i]),
-    cost       = |h, F| (0..N).map(|i| {
-        let turn = F[i].rotation() - I;
-        ((turn * self.second_moments * turn.transpose()).trace() + self.mass * F[i].translation().norm_squared()) / (2 * h)
-    }).sum(),
-    potential  = |q| (0..N).map(|i| self.gravity * self.mass * q[i].translation().z).sum(),
-    constraint = |q| [
-        q[0].rotation() * self.near + q[0].translation() == Vector3::zeros(),
-        (1..N).map(|i| q[i].rotation() * self.near + q[i].translation() == q[i - 1].rotation() * self.far + q[i - 1].translation()),
-    ],
-)]
-struct Chain<const N: usize> {
-    #[clebsch(diagonal)]
-    second_moments: Matrix3<f64>,
-    mass: f64,
-    gravity: f64,
-    near: Vector3<f64>,
-    far: Vector3<f64>,
-}
-
-const INERTIA: [f64; 3] = [3.85e-3, 3.87e-3, 2.2e-4];
-const MASS: f64 = 0.5;
-const GRAVITY: f64 = 9.81;
-const HALF: f64 = 0.15;
+/// The duration, seconds.
 const TIME: f64 = 10.0;
-
-/// Attitudes and places, nearly level.
-fn places(n: usize) -> Vec<(Matrix3<f64>, Vector3<f64>)> {
-    let mut joint = Vector3::zeros();
-    let link = |i: usize| {
-        let i = i as f64;
-        let turn =
-            *Rotation3::from_euler_angles(0.0, std::f64::consts::FRAC_PI_2 + 0.05 * (0.7 * i).sin(), 0.1 * i.cos())
-                .matrix();
-        let place = joint + turn * Vector3::z() * HALF;
-        joint = place + turn * Vector3::z() * HALF;
-        (turn, place)
-    };
-    (0..n).map(link).collect()
-}
 
 struct Report {
     gap: f64,
@@ -60,19 +24,9 @@ struct Report {
 }
 
 fn ours<const N: usize>(h: f64) -> Report {
-    let inertia = Vector3::from(INERTIA);
-    let second_moments = Matrix3::from_diagonal(&(-inertia).add_scalar(inertia.sum() / 2.0));
-    let half = Vector3::z() * HALF;
-    let chain = Chain::<N> { second_moments, mass: MASS, gravity: GRAVITY, near: -half, far: half };
-    let placed = |(turn, place): (Matrix3<f64>, Vector3<f64>)| {
-        let mut placed = turn.to_homogeneous();
-        placed.fixed_view_mut::<3, 1>(0, 3).copy_from(&place);
-        placed
-    };
-    let start: Vec<Matrix4<f64>> = places(N).into_iter().map(placed).collect();
-    let stepper = chain.into_stepper(h).expect("regular");
+    let stepper = chain::chain::<N>().into_stepper(h).expect("regular");
     let room = vec![stepper.joint(); N];
-    let sites = stepper.joined_sites(SiteStorage::of(start, vec![Vector6::zeros(); N]), room).expect("a chain");
+    let sites = stepper.joined_sites(chain::storage(N), room).expect("a chain");
     let energy = sites.energy().expect("sites");
     let (steps, samples) = ((TIME / h).round() as u64, 1000);
     let mut report = Report { gap: 0.0, energy: 0.0, nanoseconds: f64::INFINITY };
@@ -85,8 +39,8 @@ fn ours<const N: usize>(h: f64) -> Report {
             spent += begun.elapsed().as_secs_f64();
             let at = |i: usize, point: Vector3<f64>| sites.configuration()[i].transform_point(&point.into()).coords;
             for i in 0..N {
-                let before = if i > 0 { at(i - 1, half) } else { Vector3::zeros() };
-                report.gap = report.gap.max((at(i, -half) - before).norm());
+                let before = if i > 0 { at(i - 1, FAR) } else { Vector3::zeros() };
+                report.gap = report.gap.max((at(i, NEAR) - before).norm());
             }
             report.energy = report.energy.max((sites.energy().expect("sites") - energy).abs());
         }
