@@ -250,7 +250,7 @@ impl<P: Clebsch> Stepper<P> {
     pub fn joined_sites<Points, Momenta, Rooms, const N: usize>(
         self,
         storage: SiteStorage<Points, Momenta>,
-        room: Rooms,
+        mut room: Rooms,
     ) -> Result<Sites<P, Points, Momenta, N, Rooms>, SiteError>
     where
         P: Power<N>,
@@ -261,6 +261,11 @@ impl<P: Clebsch> Stepper<P> {
         let points = once(&storage.configuration).chain(&storage.more_points).map(|one| one.as_ref().len());
         let momenta = once(&storage.momentum).chain(&storage.more_momenta).map(|one| one.as_ref().len());
         if let Some(found) = points.chain(momenta).find(|&found| found != N) {
+            return Err(wrong_length::<N>(found));
+        }
+        // sites without joints need no room
+        let found = room.as_mut().len();
+        if size_of::<Room<P, N>>() > 0 && found != N {
             return Err(wrong_length::<N>(found));
         }
         let mut sites = Sites { stepper: self, time: Time::at(Zero::zero()), steps: 0, storage, room };

@@ -44,8 +44,8 @@ impl<S: Joined<N, R, M>, K: SiteKicks<S, N>, const N: usize, const R: usize, con
         let found = room.len();
         let Ok(room) = room.try_into() else { return Err((0, Error::NumberOfSites { found, sites: N })) };
         Joints::<S, N, R, M>::check(at.system, at.t, q)?;
-        let violation = Joints::new(at.system, at.constants, room)?.defect(at.t, q, mu)?;
-        violation.check().map_err(|error| (0, error))
+        let (violation, site) = Joints::new(at.system, at.constants, room)?.defect(at.t, q, mu)?;
+        violation.check().map_err(|error| (site, error))
     }
 }
 

@@ -1,7 +1,7 @@
 //! Joints between the sites of a power: chains, rings and moving ends, against the same systems unrolled, and against
 //! RATTLE with a dense matrix.
 
-use clebsch::{Clebsch, Error, SiteStorage, Space, Stepper};
+use clebsch::{Clebsch, Error, F64x4, Scalar, SiteStorage, Space, Stepper};
 use clebsch_tests::fixtures::{hanging_chain::HangingChain, jointed_bodies::JointedBodies};
 use nalgebra::{DMatrix, DVector, Matrix3, Matrix4, Rotation3, SVector, Vector2, Vector3, Vector6};
 
@@ -247,6 +247,29 @@ fn a_rope_in_single_precision_keeps_its_rods() -> Result<(), Error> {
     let most = f32::EPSILON * 5.0 * 2.0 * 3.0_f32.sqrt();
     for (a, b) in state.configuration().iter().zip(&state.configuration()[1..]) {
         assert!(((a - b).norm() - 0.5).abs() < most, "{}", (a - b).norm() - 0.5);
+    }
+    Ok(())
+}
+
+/// Four ropes with hands of their own, in the lanes of one: sweeps end where they end in all lanes.
+#[test]
+fn ropes_in_lanes_are_ropes_alone() -> Result<(), Error> {
+    let number = F64x4::from;
+    let swings = [0.2, 0.1, 0.0, -0.3];
+    let rope = |swing: f64| Rope::<f64, 4> { mass: 0.3, gravity: 9.81, rod: 0.5, swing, drag: 0.1 };
+    let (mass, gravity, rod, drag) = (number([0.3; 4]), number([9.81; 4]), number([0.5; 4]), number([0.1; 4]));
+    let all = Rope::<F64x4, 4> { mass, gravity, rod, swing: number(swings), drag }.into_stepper(number([0.01; 4]))?;
+    let places = zigzag::<4>(0.5);
+    let wide = places.map(|place| place.map(|x| number([x; 4])));
+    let hand = Vector3::new(number(swings), number([0.0; 4]), number([0.0; 4]));
+    let end = all.advance(&all.state_moving(wide, [hand; 4])?, 100)?;
+    for (lane, swing) in swings.into_iter().enumerate() {
+        let stepper = rope(swing).into_stepper(0.01)?;
+        let alone = stepper.advance(&stepper.state_moving(places, [Vector3::x() * swing; 4])?, 100)?;
+        for (one, other) in end.configuration().iter().zip(alone.configuration()) {
+            let far = (one.map(|x| x.lane(lane)) - other).norm();
+            assert!(far < 1e-11, "lane {lane}: {far:e}");
+        }
     }
     Ok(())
 }
@@ -519,13 +542,17 @@ fn sites_with_joints_are_states_in_storage() -> Result<(), Error> {
     let Error::OffConstraint { violation, .. } = refused.error else { panic!("{refused}") };
     assert!((violation - 1e-3).abs() < 1e-12, "{violation}");
 
-    let storage = SiteStorage::of(places.to_vec(), vec![Vector6::from_element(0.1); 7]);
+    // link 5 moves, and both of its joints are violated
+    let mut momenta = vec![Vector6::zeros(); 7];
+    momenta[5] = Vector6::from_element(0.1);
+    let storage = SiteStorage::of(places.to_vec(), momenta);
     let refused = stepper.clone().joined_sites(storage, vec![stepper.joint(); 7]).unwrap_err();
     assert!(matches!(refused.error, Error::ConstraintViolated { .. }), "{refused}");
+    assert!(matches!(refused.site, Some(5 | 6)), "{refused}");
 
     let storage = SiteStorage::of(places.to_vec(), vec![Vector6::zeros(); 7]);
     let refused = stepper.clone().joined_sites(storage, vec![stepper.joint(); 6]).unwrap_err();
-    assert_eq!(refused.error, Error::NumberOfSites { found: 6, sites: 7 });
+    assert_eq!((refused.site, refused.error), (None, Error::NumberOfSites { found: 6, sites: 7 }));
     Ok(())
 }
 

@@ -1,0 +1,435 @@
+//! The multipliers of joints, by block elimination from the first site to the last.
+
+use super::blocks::{Backward, Elimination, Forward, Place};
+use super::{Joined, JointOf, Mobile};
+use crate::constraint::{Violation, check_place};
+use crate::parts::{Mu, Q, T};
+use crate::power::{Constants, SiteScheme, moved_site, site_constants};
+use crate::scheme::{self, AtSite, Scheme};
+use crate::space::larger;
+use crate::{Error, Mask, Scalar, Space};
+use nalgebra::{SMatrix, SVector};
+use num_traits::{One, Zero};
+
+/// The most sweeps of a step.
+const SWEEPS: u32 = 200;
+/// A sweep that leaves so many rounding errors of φ is the last.
+const ROUNDING: f64 = 1.0;
+/// So many may stay, if a sweep does not decrease them.
+const STALLED: f64 = 1024.0;
+/// The corrections of a configuration, at most.
+const CORRECTIONS: u32 = 32;
+/// Sweeps end where they make φ so many times as large as the least one.
+const GROWTH: f64 = 1e3;
+
+/// The least pivot of a step, as a part of its entry of S.
+#[inline(always)]
+pub(crate) fn least_of_steps<T: Scalar>() -> T {
+    T::EPSILON * T::from_f64(64.0)
+}
+
+/// The site before: that of the first is the last.
+#[inline(always)]
+fn before<const N: usize>(site: usize) -> usize {
+    if site == 0 { N.saturating_sub(1) } else { site - 1 }
+}
+
+/// The site after.
+#[inline(always)]
+fn after<const N: usize>(site: usize) -> usize {
+    if site + 1 < N { site + 1 } else { 0 }
+}
+
+/// Whether a number is larger than another; NaN is the largest.
+fn is_worse(ratio: f64, worst: f64) -> bool {
+    !worst.is_nan() && (ratio.is_nan() || ratio > worst)
+}
+
+/// The joints of a power at one configuration, in the room of its sites.
+pub(crate) struct Joints<'a, P: Joined<N, R, M>, const N: usize, const R: usize, const M: usize> {
+    system: &'a P,
+    constants: &'a Constants<P, N>,
+    room: &'a mut [JointOf<P, N, R, M>; N],
+}
+
+impl<'a, P: Joined<N, R, M>, const N: usize, const R: usize, const M: usize> Joints<'a, P, N, R, M> {
+    /// Of a power with these constants.
+    ///
+    /// # Errors
+    /// Those of the constants of a site, where sites differ.
+    pub fn new(
+        system: &'a P,
+        constants: &'a Constants<P, N>,
+        room: &'a mut [JointOf<P, N, R, M>; N],
+    ) -> Result<Self, AtSite> {
+        const { assert!(N > 1 || !P::IS_RING, "a ring of joints has at least two sites") };
+        if !P::IS_UNIFORM {
+            for (i, joint) in room.iter_mut().enumerate() {
+                let made = site_constants(&system.site(i), constants.h).map_err(|error| (i, error))?;
+                joint.constants = Some(made);
+            }
+        }
+        Ok(Self { system, constants, room })
+    }
+
+    /// Whether a site has one before it.
+    #[inline(always)]
+    fn has_before(site: usize) -> bool {
+        site > 0 || P::IS_RING
+    }
+
+    /// The result of `give` for a site and its constants.
+    #[inline(always)]
+    fn of_site<V>(&self, site: usize, give: impl FnOnce(&P::Site, &scheme::Constants<P::Site>) -> V) -> V {
+        let constants = self.room[site].constants.as_ref().unwrap_or(&self.constants.site);
+        give(&self.system.site(site), constants)
+    }
+
+    /// Σ⁻¹Aᵀ of rows of a site.
+    #[inline(always)]
+    fn moved_by(&self, site: usize, rows: &SMatrix<T<P>, R, M>) -> SMatrix<T<P>, M, R> {
+        self.of_site(site, |_, c| {
+            let c = SiteScheme::<P, N>::whole(c);
+            let mut columns: SMatrix<T<P>, M, R> = Space::origin();
+            for i in 0..R {
+                columns.set_column(i, &<P::Site as Mobile<M>>::mobility(c, &rows.row(i).transpose()));
+            }
+            columns
+        })
+    }
+
+    /// The place of the block of a site.
+    #[inline(always)]
+    fn place(site: usize) -> Place {
+        Place { site, sites: N, is_ring: P::IS_RING }
+    }
+
+    /// The rows at q, and the factors of S. A pivot of at most the part `least` of its entry is 0.
+    ///
+    /// # Errors
+    /// [`Error::DependentConstraints`], with the first site that has such a pivot.
+    pub fn at(&mut self, t: T<P>, q: &Q<P>, least: T<P>) -> Result<(), AtSite> {
+        let (mut number, mut elimination) = (0, Elimination::new());
+        let mut last = Space::origin();
+        if P::IS_RING && N > 0 {
+            last = self.moved_by(N - 1, &self.system.rows_at(t, q, N - 1).own);
+        }
+        for i in 0..N {
+            let rows = self.system.rows_at(t, q, i);
+            let own = self.moved_by(i, &rows.own);
+            let (mut diagonal, mut coupling) = (rows.own * own, Space::origin());
+            if Self::has_before(i) {
+                diagonal += rows.before * self.moved_by(before::<N>(i), &rows.before);
+                coupling = rows.before * last;
+            }
+            let size = T::<P>::one() + larger(q[i].max_abs(), q[before::<N>(i)].max_abs());
+            let joint = &mut self.room[i];
+            for k in 0..R {
+                if !rows.are_there[k] {
+                    diagonal[(k, k)] = T::<P>::one();
+                }
+                number += usize::from(rows.are_there[k]);
+                let entries = rows.own.row(k);
+                let all = entries.iter().chain(rows.before.row(k).iter()).fold(T::<P>::zero(), |sum, x| sum + x.abs());
+                joint.rounding[k] = T::<P>::EPSILON * size * all;
+            }
+            joint.rows = rows;
+            joint.metric = diagonal.diagonal();
+            elimination.add(&mut joint.block, (diagonal, coupling), Self::place(i), least);
+            last = own;
+        }
+        match elimination {
+            Elimination { zeros: 0, .. } => Ok(()),
+            Elimination { zeros, first, .. } => {
+                Err((first, Error::DependentConstraints { rank: number.saturating_sub(zeros), rows: number }))
+            }
+        }
+    }
+
+    /// A_iᵀx_i + B_{i+1}ᵀx_{i+1}, the push of all joints on a site.
+    #[inline(always)]
+    fn push(&self, site: usize, x: impl Fn(&JointOf<P, N, R, M>) -> &SVector<T<P>, R>) -> SVector<T<P>, M> {
+        let joint = &self.room[site];
+        let mut push = joint.rows.own.transpose() * x(joint);
+        let next = after::<N>(site);
+        if Self::has_before(next) {
+            let joint = &self.room[next];
+            push += joint.rows.before.transpose() * x(joint);
+        }
+        push
+    }
+
+    /// Aᵀλ of the move, or Aᵀμ of the projection after it.
+    pub fn pushes(&self, is_after: bool) -> Mu<P> {
+        let mut pushes = [Space::origin(); N];
+        // not by a closure: one that is not inlined does not know that its index is below N
+        for i in 0..N {
+            pushes[i] = self.push(i, |joint| if is_after { &joint.block.right } else { &joint.multipliers });
+        }
+        pushes
+    }
+
+    /// Moves all sites from (q, N) with multipliers so that φ(t + h, q⁺) = 0.
+    ///
+    /// # Errors
+    /// Those of the step of a site, [`Error::DependentConstraints`] and [`Error::NotConverged`].
+    pub fn moved(
+        &mut self,
+        t: T<P>,
+        (q, mu): (&Q<P>, &Mu<P>),
+        u: Option<&P::Input>,
+        (next, moved): (&mut Q<P>, &mut Mu<P>),
+    ) -> Result<(), AtSite> {
+        let h = self.constants.part(1.0);
+        self.at(t, q, least_of_steps())?;
+        self.room.iter_mut().for_each(|joint| joint.multipliers = Space::origin());
+        let mut least = f64::INFINITY;
+        for sweep in 1..=SWEEPS {
+            let (site, worst) = self.sweep(t, (q, mu), u, (&mut *next, &mut *moved))?;
+            if worst <= ROUNDING || (worst >= least && worst <= STALLED) {
+                return Ok(());
+            }
+            // false for NaN
+            let may_go_on = worst < least.max(1.0) * GROWTH && sweep < SWEEPS;
+            if !may_go_on {
+                let residual = (worst * T::<P>::EPSILON.to_f64()).min(f64::MAX);
+                return Err((site, Error::NotConverged { residual, iterations: sweep }));
+            }
+            least = least.min(worst);
+            let (mut backward, per_step) = (Backward::new(), h.recip());
+            for i in (0..N).rev() {
+                let joint = &mut self.room[i];
+                joint.multipliers -= backward.add(&mut joint.block, Self::place(i)) * per_step;
+            }
+        }
+        Ok(())
+    }
+
+    /// Moves all sites with the multipliers that are known. Returns the largest φ(t + h, q⁺), in its rounding errors, and
+    /// its site, and eliminates φ from the first site on.
+    ///
+    /// # Errors
+    /// Those of the step of a site.
+    #[inline(always)]
+    fn sweep(
+        &mut self,
+        t: T<P>,
+        (q, mu): (&Q<P>, &Mu<P>),
+        u: Option<&P::Input>,
+        (next, moved): (&mut Q<P>, &mut Mu<P>),
+    ) -> Result<(usize, f64), AtSite> {
+        let end = t + self.constants.part(1.0);
+        let (mut site, mut worst, mut forward) = (0, 0.0, Forward::new());
+        for i in 0..N {
+            let n = mu[i] + self.push(i, |joint| &joint.multipliers);
+            let u = u.map_or_else(Space::origin, |u| *P::input_of_site(u, i));
+            let step = |site: &_, c: &_| moved_site::<P, N>(site, c, t, (&q[i], &n), &u);
+            (next[i], moved[i]) = self.of_site(i, step).map_err(|error| (i, error))?;
+            if !P::IS_RING {
+                self.violation(end, next, i, (&mut site, &mut worst), &mut forward);
+            }
+        }
+        // the joint of the first site of a ring reads the last one
+        if P::IS_RING {
+            (0..N).for_each(|i| self.violation(end, next, i, (&mut site, &mut worst), &mut forward));
+        }
+        Ok((site, worst))
+    }
+
+    /// φ of one site.
+    #[inline(always)]
+    fn violation(
+        &mut self,
+        t: T<P>,
+        q: &Q<P>,
+        i: usize,
+        (site, worst): (&mut usize, &mut f64),
+        forward: &mut Forward<T<P>, R>,
+    ) {
+        let places = self.system.places_at(t, q, i);
+        let joint = &mut self.room[i];
+        for k in 0..R {
+            if !joint.rows.are_there[k] {
+                continue;
+            }
+            let ratio = places[k].abs() / joint.rounding[k];
+            for lane in 0..T::<P>::LANES {
+                let ratio = ratio.lane(lane).to_f64();
+                if is_worse(ratio, *worst) {
+                    (*site, *worst) = (i, ratio);
+                }
+            }
+        }
+        forward.add(&mut joint.block, places, Self::place(i));
+    }
+
+    /// Eliminates the right sides −∂φ/∂t − A ξ at (q, N). Returns the violation, and the site where it is largest.
+    fn slip(&mut self, t: T<P>, q: &Q<P>, mu: &Mu<P>) -> (Violation<T<P>>, usize) {
+        let (mut violation, mut worst, mut forward) = (Violation::<T<P>>::none(), 0, Forward::new());
+        let velocity = |of: &Self, i: usize| {
+            of.of_site(i, |site, c| site.velocity(SiteScheme::<P, N>::whole(c), t, &q[i], &mu[i]))
+        };
+        let mut last = Space::origin();
+        if P::IS_RING && N > 0 {
+            last = velocity(self, N - 1);
+        }
+        for i in 0..N {
+            let own = velocity(self, i);
+            let joint = &mut self.room[i];
+            let mut slip = joint.rows.velocity - joint.rows.own * own;
+            let mut energy = mu[i].dot(&own).abs();
+            if Self::has_before(i) {
+                slip -= joint.rows.before * last;
+                energy += mu[before::<N>(i)].dot(&last).abs();
+            }
+            for k in 0..R {
+                let size = (joint.metric[k] * energy).sqrt() + joint.rows.velocity[k].abs();
+                if violation.largest.below(slip[k].abs()).any() {
+                    worst = i;
+                }
+                violation.largest = larger(violation.largest, slip[k].abs());
+                violation.size = larger(violation.size, size);
+            }
+            forward.add(&mut joint.block, slip, Self::place(i));
+            last = own;
+        }
+        (violation, worst)
+    }
+
+    /// Brings the velocity of N to the joints at q, by N + Aᵀμ. Returns the sum of all numbers of Aᵀμ.
+    ///
+    /// # Errors
+    /// [`Error::DependentConstraints`].
+    pub fn projected(&mut self, t: T<P>, q: &Q<P>, mu: &mut Mu<P>, least: T<P>) -> Result<T<P>, AtSite> {
+        self.at(t, q, least)?;
+        self.slip(t, q, mu);
+        let (mut sum, mut backward) = (T::<P>::zero(), Backward::new());
+        for i in (0..N).rev() {
+            let joint = &mut self.room[i];
+            backward.add(&mut joint.block, Self::place(i));
+        }
+        for i in 0..N {
+            let push = self.push(i, |joint| &joint.block.right);
+            mu[i] += push;
+            sum += push.sum();
+        }
+        Ok(sum)
+    }
+
+    /// The multipliers of a push, as the solutions of the blocks.
+    ///
+    /// # Errors
+    /// [`Error::DependentConstraints`].
+    pub fn multipliers(&mut self, t: T<P>, q: &Q<P>, push: &Mu<P>) -> Result<(), AtSite> {
+        self.at(t, q, least_of_steps())?;
+        let mut moved = [Space::origin(); N];
+        for i in 0..N {
+            let push = &push[i];
+            moved[i] = self.of_site(i, |_, c| <P::Site as Mobile<M>>::mobility(SiteScheme::<P, N>::whole(c), push));
+        }
+        self.solve_along(&moved, &[Space::origin(); N]);
+        Ok(())
+    }
+
+    /// The multipliers of the motion, as the solutions of the blocks.
+    ///
+    /// # Errors
+    /// [`Error::DependentConstraints`].
+    pub fn reactions(&mut self, t: T<P>, (q, mu): (&Q<P>, &Mu<P>), u: &P::Input) -> Result<(), AtSite> {
+        self.at(t, q, T::<P>::EPSILON.sqrt())?;
+        let kick = self.system.power_kick(t, q, -T::<P>::one());
+        let mut velocities = [Space::origin(); N];
+        let mut accelerations = [Space::origin(); N];
+        for i in 0..N {
+            let (q, mu, kick, u) = (&q[i], &mu[i], &kick[i], P::input_of_site(u, i));
+            (velocities[i], accelerations[i]) = self.of_site(i, |site, c| {
+                let c = SiteScheme::<P, N>::whole(c);
+                let free = site.acceleration(c, t, q, mu, u);
+                (site.velocity(c, t, q, mu), -(free + <P::Site as Mobile<M>>::mobility(c, kick)))
+            });
+        }
+        let mut bends = [Space::origin(); N];
+        for i in 0..N {
+            bends[i] = -self.system.bend_at(t, q, i, &velocities[i], &velocities[before::<N>(i)]);
+        }
+        self.solve_along(&accelerations, &bends);
+        Ok(())
+    }
+
+    /// Solves S x = A v + w with v of each site and w of its rows.
+    fn solve_along(&mut self, along: &[SVector<T<P>, M>; N], more: &[SVector<T<P>, R>; N]) {
+        let (mut forward, mut backward) = (Forward::new(), Backward::new());
+        for i in 0..N {
+            let joint = &mut self.room[i];
+            let mut right = more[i] + joint.rows.own * along[i];
+            if Self::has_before(i) {
+                right += joint.rows.before * along[before::<N>(i)];
+            }
+            forward.add(&mut joint.block, right, Self::place(i));
+        }
+        for i in (0..N).rev() {
+            backward.add(&mut self.room[i].block, Self::place(i));
+        }
+    }
+
+    /// Moves q to φ = 0 by motions −Σ⁻¹Aᵀ S⁻¹φ, until φ no longer falls.
+    ///
+    /// # Errors
+    /// [`Error::FarFromConstraint`], or [`Error::DependentConstraints`].
+    pub fn placed(&mut self, t: T<P>, q: &mut Q<P>) -> Result<(), AtSite> {
+        let mut last = f64::INFINITY;
+        for corrections in 0..=CORRECTIONS {
+            self.at(t, q, T::<P>::EPSILON.sqrt())?;
+            let (mut site, mut worst, mut forward) = (0, 0.0, Forward::new());
+            (0..N).for_each(|i| self.violation(t, q, i, (&mut site, &mut worst), &mut forward));
+            let most = T::<P>::EPSILON.to_f64().sqrt().recip();
+            if worst <= ROUNDING || (worst <= most && worst >= last / 2.0) {
+                return Ok(());
+            }
+            if !worst.is_finite() || corrections == CORRECTIONS {
+                let violation = self.system.places_at(t, q, site).max_abs();
+                let violation = (0..T::<P>::LANES).map(|lane| violation.lane(lane).to_f64()).fold(0.0, f64::max);
+                return Err((site, Error::FarFromConstraint { violation: violation.min(f64::MAX), corrections }));
+            }
+            last = worst;
+            let mut backward = Backward::new();
+            for i in (0..N).rev() {
+                backward.add(&mut self.room[i].block, Self::place(i));
+            }
+            for i in 0..N {
+                let push = self.push(i, |joint| &joint.block.right);
+                q[i] = self.of_site(i, |site, c| {
+                    let motion = <P::Site as Mobile<M>>::mobility(SiteScheme::<P, N>::whole(c), &push);
+                    site.moved_by(&q[i], &-motion)
+                });
+            }
+        }
+        Ok(())
+    }
+
+    /// Whether φ(t, q) = 0, as [`check_place`](crate::constraint::check_place) asks.
+    ///
+    /// # Errors
+    /// [`Error::OffConstraint`].
+    pub fn check(system: &P, t: T<P>, q: &Q<P>) -> Result<(), AtSite> {
+        for i in 0..N {
+            let (places, rows) = (system.places_at(t, q, i), system.rows_at(t, q, i));
+            let size = larger(q[i].max_abs(), q[before::<N>(i)].max_abs());
+            let entries = rows.own.zip_map(&rows.before, |a, b| a.abs() + b.abs());
+            check_place(&places, &entries, &size).map_err(|error| (i, error))?;
+        }
+        Ok(())
+    }
+
+    /// By how much the velocity of N violates the joints at q, and the site where it does most.
+    ///
+    /// # Errors
+    /// [`Error::DependentConstraints`].
+    pub fn defect(&mut self, t: T<P>, q: &Q<P>, mu: &Mu<P>) -> Result<(Violation<T<P>>, usize), AtSite> {
+        self.at(t, q, T::<P>::EPSILON.sqrt())?;
+        Ok(self.slip(t, q, mu))
+    }
+}
+
+#[cfg(test)]
+mod tests;
