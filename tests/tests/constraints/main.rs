@@ -5,6 +5,7 @@
 
 mod chains;
 mod conserved;
+mod coordinates;
 mod invariants;
 mod joined;
 mod order;

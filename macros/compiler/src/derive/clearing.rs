@@ -1,7 +1,7 @@
 //! Residuals freed of denominators, by maps that are regular near the identity: components of the result vanish where those of the
 //! residual do.
 
-use clebsch_symbolic::{Chart, Expr, Fraction, Graph, Group, Operation, View, WordTerm, integer};
+use clebsch_symbolic::{Chart, Expr, Fraction, Graph, Group, Operation, View, WordTerm, both, integer};
 
 use super::{ChartBlock, SystemFormulas};
 use crate::model::{Factor, Side};
@@ -69,6 +69,21 @@ fn skew_matrix<'g>(graph: &'g Graph, turn: Group, mut term: WordTerm<'g>) -> Exp
     let scale = term.scale(graph);
     let product = || term.word.into_iter().reduce(|a, b| a * b).unwrap_or(graph.integer(1));
     scale * known.unwrap_or_else(|| turn.momentum_matrix(product()))
+}
+
+/// The rows of a rotation in the plane or in space, times 1 + |x|². It frees (I ∓ Z)⁻¹ = I ± (Z ± Z²)/(1 + |x|²) of
+/// fractions, and mixes no rows. The rows as they are if fractions remain.
+pub(super) fn by_square<'g>(system: &SystemFormulas<'g>, block: &ChartBlock<'g>, rows: Expr<'g>) -> Expr<'g> {
+    let (group, graph, x) = (system.model.factors[block.factor].group, system.model.graph, block.coordinates);
+    if !matches!(group, Group::SpecialOrthogonal(2 | 3)) || system.symbols.charts[block.factor] != Chart::Cayley {
+        return rows;
+    }
+    let (identity, square) = (group.identity(graph), graph.integer(1) + x.norm_squared());
+    let inverse = |z: Expr<'g>| ((identity - z).inverse(), identity + (z + z * z) / square);
+    let scaled = rows.substitute(&both([x, -x], |x| inverse(group.wedge(x)))).expand();
+    let scaled = scaled.times_each(square).expand();
+    let is_free = !scaled.has_inverse() && scaled.least_exponent(square).is_none_or(|least| least >= integer(0));
+    if is_free { scaled } else { rows }
 }
 
 /// The residual of unit quaternions, times the power of 1 + |x|² that frees it of fractions.

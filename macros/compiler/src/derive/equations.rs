@@ -9,11 +9,18 @@ use super::equation::{DISTRIBUTED, Form, Momentum, MomentumEquation, Solution, S
 use super::letters::Letters;
 use super::{ChartBlock, ConstraintFormulas, exact, structure, tangent};
 
-/// Equations, and the force of a constraint for each factor.
-type WithReaction<'g> = (Vec<MomentumEquation<'g>>, Option<Vec<Expr<'g>>>);
+/// The equations of a substep, with the part of its constraint in them.
+pub(super) struct Equations<'g> {
+    /// The equations, in the order in which they are solved.
+    pub equations: Vec<MomentumEquation<'g>>,
+    /// The force of the constraint for each factor; `None` if there is none.
+    pub reaction: Option<Vec<Expr<'g>>>,
+    /// The coordinates that the constraint holds at zero: they have no equation.
+    pub still: Vec<usize>,
+}
 
-/// The equations of a substep, and the force of its constraint. Where the products of exponentials take much work, D(x) = F − I of these is substituted late.
-pub(super) fn equations<'g>(sources: &Sources<'_, 'g>, momentum: &Momentum<'_, 'g>) -> WithReaction<'g> {
+/// The equations of a substep. Where the products of exponentials take much work, D(x) = F − I of these is substituted late.
+pub(super) fn equations<'g>(sources: &Sources<'_, 'g>, momentum: &Momentum<'_, 'g>) -> Equations<'g> {
     if !sources.symbols.charts.contains(&Chart::Exponential) {
         return in_charts(sources, momentum);
     }
@@ -24,13 +31,13 @@ pub(super) fn equations<'g>(sources: &Sources<'_, 'g>, momentum: &Momentum<'_, '
 /// The work for the equations of a substep in the exponential chart, products distributed.
 const EXPONENTIALS: u64 = 2_000_000;
 
-fn in_charts<'g>(sources: &Sources<'_, 'g>, momentum: &Momentum<'_, 'g>) -> WithReaction<'g> {
+fn in_charts<'g>(sources: &Sources<'_, 'g>, momentum: &Momentum<'_, 'g>) -> Equations<'g> {
     let (model, symbols) = (sources.model, &sources.symbols);
     let is_free_rotation = |block: &ChartBlock<'g>| exact::is_free_rotation(model, block.factor);
     let letters = Letters::new(sources, momentum);
-    let (mut residuals, reaction) = match momentum.constraint {
+    let (mut residuals, reaction, still) = match momentum.constraint {
         Some(constraint) => constrained(sources, momentum, (constraint, &letters)),
-        None => (unconstrained(sources, momentum, &letters), None),
+        None => (unconstrained(sources, momentum, &letters), None, Vec::new()),
     };
     if !momentum.is_forced {
         substitute_explicit(sources, &mut residuals);
@@ -45,8 +52,9 @@ fn in_charts<'g>(sources: &Sources<'_, 'g>, momentum: &Momentum<'_, 'g>) -> With
     let equations = structure::connected(residuals.len(), |i, j| depends(i, j) || depends(j, i))
         .into_iter()
         .map(|group| equation(sources, momentum, &residuals, group))
+        .filter_map(|equation| structure::without_still(sources, equation, &still))
         .flat_map(|equation| structure::specialised(sources, equation));
-    (equations.into_list(), reaction)
+    Equations { equations: equations.into_list(), reaction, still }
 }
 
 /// The residuals of all blocks where every velocity is allowed.
@@ -74,21 +82,57 @@ fn unconstrained<'g>(
     residuals
 }
 
-/// The residuals of all blocks with a constraint, and its force for each factor. Products are not distributed, so that
-/// S⁻¹ is computed once in a step.
+/// The residuals of all blocks with a constraint, its force for each factor, and the coordinates that stay zero. Products
+/// are not distributed, so that S⁻¹ is computed once in a step.
+///
+/// If each row says that a coordinate is zero, the others have their momentum equations as they are, y = 0. The force of
+/// the constraint is then y in the coordinates that are zero.
 fn constrained<'g>(
     sources: &Sources<'_, 'g>,
     momentum: &Momentum<'_, 'g>,
     (constraint, letters): (&ConstraintFormulas<'g>, &Letters<'_, 'g>),
-) -> (Vec<Residual<'g>>, Option<Vec<Expr<'g>>>) {
+) -> (Vec<Residual<'g>>, Option<Vec<Expr<'g>>>, Vec<usize>) {
+    let (graph, symbols) = (sources.model.graph, &sources.symbols);
     let factors = (0..sources.model.factors.len()).map(|k| residual(sources, momentum, (k, letters)).0);
-    let difference = letters.replaced(sources.model.graph.below(&factors.into_list()));
+    let difference = letters.replaced(graph.below(&factors.into_list()));
     let between = letters.replaced(constraint.between.substitute(&letters.elements).expand());
-    let whole = constraint.residual(difference, between);
-    let rows = |block: &ChartBlock<'g>| whole.block(block.offset, 0, block.coordinates.shape());
-    let residual = |block: &ChartBlock<'g>| Residual { rows: rows(block), slope: None, cleared: false, is_near: true };
-    let reaction = sources.parted(constraint.reaction(difference));
-    (sources.symbols.blocks.each(residual), Some(reaction))
+    let still = still(sources, constraint, between);
+    let are_all = still.len() == between.shape().rows;
+    let (whole, reaction) = if are_all {
+        let entry = |(i, j)| if still.contains(&i) { difference.entry(i, j) } else { graph.integer(0) };
+        let shape = difference.shape();
+        (difference, graph.stack(shape, shape.positions().map(entry).into_list()))
+    } else {
+        (constraint.residual(difference, between), constraint.reaction(difference))
+    };
+    let rows = |block: &ChartBlock<'g>| {
+        let rows = whole.block(block.offset, 0, block.coordinates.shape());
+        if are_all { clearing::by_square(sources, block, rows) } else { rows }
+    };
+    let is_near = momentum.couples || !are_all;
+    let residual = |block: &ChartBlock<'g>| Residual { rows: rows(block), slope: None, cleared: false, is_near };
+    (symbols.blocks.each(residual), Some(sources.parted(reaction)), still)
+}
+
+/// The coordinates that stay zero in a step: those of rows ξ_i = 0. There A has one entry, a number, b is zero, and ψ
+/// vanishes with x_i.
+///
+/// Their equations go with them. Where the others hold, A Σ⁻¹ρ = ψ leaves ρ_i = 0.
+fn still<'g>(sources: &Sources<'_, 'g>, constraint: &ConstraintFormulas<'g>, between: Expr<'g>) -> Vec<usize> {
+    let Shape { rows, columns } = constraint.rows.shape();
+    let component = |row: usize| {
+        let entry = |i: usize| constraint.rows.entry(row, i);
+        let mut others = (0..columns).filter(|&i| !identity::vanishes(entry(i)));
+        let (only, None) = (others.next()?, others.next()) else { return None };
+        let at_zero = (&[only][..], sources.model.graph.zero(Shape::vector(1)));
+        let is_still = entry(only).as_number().is_some()
+            && identity::vanishes(constraint.values.entry(row, 0))
+            && identity::vanishes(structure::put_in(sources, at_zero, between.entry(row, 0)));
+        is_still.then_some(only)
+    };
+    let mut still: Vec<usize> = (0..rows).filter_map(component).into_list();
+    still.sort_unstable();
+    still
 }
 
 /// The residual of one block.

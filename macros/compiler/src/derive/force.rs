@@ -73,14 +73,19 @@ fn moving<'g>(model: &Mechanics<'g>, part: Expr<'g>) -> Vec<(Expr<'g>, Expr<'g>)
 
 /// ξ(F)/h of a step or of a part of it, for each factor.
 pub(super) fn velocities_of_step<'g>(model: &Mechanics<'g>, part: Expr<'g>) -> Vec<Expr<'g>> {
+    let discretization = discretization_of_velocity(model);
+    indexed(model.factors.len(), |k| velocity::of_element(model, k, part, discretization))
+}
+
+/// The map F ↦ ξ(F) of the velocity of a step, which forces and constraints take.
+pub(super) fn discretization_of_velocity(model: &Mechanics<'_>) -> Discretization {
     let of_constraint = || model.constraint.as_ref()?.discretization;
     let chosen = model.kinetic.discretization().or_else(of_constraint).unwrap_or(Discretization::Cayley);
     let has_cayley =
         model.factors.iter().all(|factor| factor.group.is_translation() || factor.group.has_cayley_chart(model.graph));
-    let discretization = match chosen {
+    match chosen {
         Discretization::Exponential | Discretization::Projection => chosen,
         _ if has_cayley => Discretization::Cayley,
         _ => Discretization::Exponential,
-    };
-    indexed(model.factors.len(), |k| velocity::of_element(model, k, part, discretization))
+    }
 }

@@ -198,6 +198,11 @@ impl MechanicsFormulas<'_> {
         self.is_moving(self.inertia)
     }
 
+    /// Whether each row of the constraint says that a coordinate of a step is zero.
+    pub(super) fn has_no_multiplier(&self, substep: &Substep<'_>) -> bool {
+        self.constraint.as_ref().is_some_and(|constraint| substep.still.len() == constraint.rows.shape().rows)
+    }
+
     /// Whether the solution of an equation is given in terms of the coordinates of others, which are solved before it.
     pub(super) fn is_solved_after_others(&self, equation: &MomentumEquation<'_>) -> bool {
         let holds = |formula: Expr<'_>| self.symbols.blocks.iter().any(|block| formula.depends_on(block.coordinates));

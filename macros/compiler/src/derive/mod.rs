@@ -96,7 +96,9 @@ pub fn derive(model: Model<'_>) -> Result<Formulas<'_>, Diagnostics> {
 
 fn mechanics(mut model: Mechanics<'_>) -> Result<MechanicsFormulas<'_>, Diagnostics> {
     variation::check(&model)?;
-    let mut system = system(model.system.clone(), model.kinetic.discretization());
+    let has_rows = model.constraint.as_ref().is_some_and(|constraint| constraint.velocities.is_some());
+    let of_rows = has_rows.then(|| force::discretization_of_velocity(&model));
+    let mut system = system(model.system.clone(), of_rows.or_else(|| model.kinetic.discretization()));
     if let Kinetic::Lagrangian { energy, .. } = &mut model.kinetic {
         *energy = cross::shortened(*energy);
     }

@@ -1,7 +1,8 @@
 //! The start of iterations, and equations in the form in which they are solved.
 
-use clebsch_symbolic::{Elements, Expr, IntoElements, IntoList, Shape, both};
+use clebsch_symbolic::{Elements, Expr, IntoElements, IntoList, Shape, both, indexed};
 
+use super::constraint;
 use super::exact::{by_inertia, inertia_inverse};
 use super::symbols::{at_zero, entries, rows_at};
 use super::{MatrixForm, MechanicsFormulas, MomentumEquation, Solution, Substep};
@@ -28,10 +29,34 @@ impl<'g> MechanicsFormulas<'g> {
         let momenta = entries(&self.symbols.momenta);
         let momentum: Vec<Expr<'g>> = components.each(|&component| momenta[component]);
         let inverse = || block(inertia_inverse(graph, self.inertia.shape()));
-        let velocity = by_inertia(inertia, inverse, &momentum);
+        let velocity = if substep.still.is_empty() {
+            by_inertia(inertia, inverse, &momentum)
+        } else {
+            let all = self.velocity_without(&substep.still, &momenta);
+            components.each(|&component| all[component])
+        };
         let coordinate =
             |(velocity, component): (Expr<'g>, usize)| self.step_of_component(component, substep.divisor) * velocity;
         velocity.into_iter().take(count).zip(components).map(coordinate).into_list()
+    }
+
+    /// The velocity of a momentum where some of its components are zero: Σ⁻¹μ with the μ_i that make these zero.
+    fn velocity_without(&self, still: &[usize], momenta: &[Expr<'g>]) -> Vec<Expr<'g>> {
+        let (graph, inverse) = (self.model.graph, constraint::inverse(self.inertia));
+        let moving: Vec<usize> = (0..momenta.len()).filter(|i| !still.contains(i)).into_list();
+        let moved = |i: usize| {
+            let terms = moving.iter().map(|&j| inverse.entry(i, j) * momenta[j]);
+            graph.total(Shape::scalar(), terms)
+        };
+        let shape = Shape::square(still.len());
+        let own = graph.stack(shape, shape.positions().map(|(i, j)| inverse.entry(still[i], still[j])).into_list());
+        let right = graph.stack(Shape::vector(still.len()), still.each(|&i| moved(i)));
+        let push = if own.shape().is_scalar() { right / own } else { own.inverse() * right };
+        let pushed = |i: usize| {
+            let terms = still.iter().enumerate().map(|(k, &j)| inverse.entry(i, j) * push.entry(k, 0));
+            moved(i) - graph.total(Shape::scalar(), terms)
+        };
+        indexed(momenta.len(), pushed)
     }
 
     /// The same for all components of each block at once, as matrix code computes it; `None` if there is none.

@@ -34,6 +34,25 @@ pub(super) fn specialised<'g>(sources: &Sources<'_, 'g>, equation: MomentumEquat
     })
 }
 
+/// The equation without coordinates that stay zero; `None` if these are all.
+pub(super) fn without_still<'g>(
+    sources: &Sources<'_, 'g>,
+    equation: MomentumEquation<'g>,
+    still: &[usize],
+) -> Option<MomentumEquation<'g>> {
+    let is_still = |i: &usize| still.contains(&equation.components[*i]);
+    let (gone, left): (Vec<usize>, Vec<usize>) = (0..equation.components.len()).partition(is_still);
+    if gone.is_empty() {
+        return Some(equation);
+    }
+    let component = |i: usize| equation.components[i];
+    let (gone, own) = (gone.into_each(component), left.each(|&i| component(i)));
+    let zero = sources.model.graph.zero(Shape::vector(gone.len()));
+    let residual = put_in(sources, (&gone, zero), rows_at(equation.residual, &left));
+    let residual = if equation.form.is_near { residual } else { residual.expand() };
+    (!own.is_empty()).then(|| MomentumEquation::new(sources, own, residual, equation.form))
+}
+
 /// The work to look for the structure of a Jacobian. One that takes more is taken as it is.
 const SEARCH: u64 = 700_000;
 
@@ -165,21 +184,7 @@ impl<'a, 'b, 'g> Reduced<'a, 'b, 'g> {
 
     /// An expression with values for some coordinates.
     fn with(&self, components: &[usize], values: Expr<'g>, expression: Expr<'g>) -> Expr<'g> {
-        let symbols = &self.sources.symbols;
-        let value = |block: &ChartBlock<'g>| {
-            let known = |component: usize| components.iter().position(|other| *other == component);
-            let first = known(block.offset).filter(|_| block.components().all(|component| known(component).is_some()));
-            let entry = |component: usize| match known(component) {
-                Some(row) => values.entry(row, 0),
-                None => block.coordinates.entry(component - block.offset, 0),
-            };
-            match first {
-                Some(first) => values.block(first, 0, block.coordinates.shape()),
-                None => values.graph().stack(block.coordinates.shape(), block.components().map(entry).into_list()),
-            }
-        };
-        let blocks = symbols.blocks_of(components).into_iter().map(|i| &symbols.blocks[i]);
-        expression.substitute(&blocks.map(|block| (block.coordinates, value(block))).into_list())
+        put_in(self.sources, (components, values), expression)
     }
 
     /// Whether a path from the identity leads to the solution, or none is needed, and the orientation at its start is
@@ -236,4 +241,27 @@ impl<'a, 'b, 'g> Reduced<'a, 'b, 'g> {
         let part = Reduced::new(sources, MomentumEquation { is_inertial: whole.is_inertial, ..part });
         part.substituted().unwrap_or_else(|| part.whole())
     }
+}
+
+/// An expression with values for some coordinates.
+pub(super) fn put_in<'g>(
+    sources: &Sources<'_, 'g>,
+    (components, values): (&[usize], Expr<'g>),
+    expression: Expr<'g>,
+) -> Expr<'g> {
+    let symbols = &sources.symbols;
+    let value = |block: &ChartBlock<'g>| {
+        let known = |component: usize| components.iter().position(|other| *other == component);
+        let first = known(block.offset).filter(|_| block.components().all(|component| known(component).is_some()));
+        let entry = |component: usize| match known(component) {
+            Some(row) => values.entry(row, 0),
+            None => block.coordinates.entry(component - block.offset, 0),
+        };
+        match first {
+            Some(first) => values.block(first, 0, block.coordinates.shape()),
+            None => values.graph().stack(block.coordinates.shape(), block.components().map(entry).into_list()),
+        }
+    };
+    let blocks = symbols.blocks_of(components).into_iter().map(|i| &symbols.blocks[i]);
+    expression.substitute(&blocks.map(|block| (block.coordinates, value(block))).into_list())
 }

@@ -3,6 +3,7 @@
 use clebsch_symbolic::{Chart, Elements, Expr, IntoList, identity, indexed};
 
 use super::equation::{Momentum, MomentumEquation, Solution, Sources};
+use super::equations::Equations;
 use super::force::total;
 use super::symbols::{at_zero, identities, images};
 use super::trivialisation::{self, Covector};
@@ -41,6 +42,8 @@ pub struct Substep<'g> {
     pub force: Option<EdgeForce<'g>>,
     /// The force Aᵀλ of the constraint, a function of q, x and the momentum μ to be solved for; `None` if there is none.
     pub reaction: Option<Vec<Expr<'g>>>,
+    /// The coordinates that the constraint holds at zero: they have no equation.
+    pub still: Vec<usize>,
     /// Aᵀμ, which brings the momentum after the step to the constraint at q⁺; `None` if there is none.
     pub projection: Option<Vec<Expr<'g>>>,
     /// Second derivatives of the discrete Lagrangian, where they are asked for.
@@ -95,7 +98,7 @@ impl<'g> Substep<'g> {
         let unchanged: Vec<bool> = indexed(model.factors.len(), |k| agree(model, (&before, &after), k));
         let momentum =
             Momentum { before, coupling, rest: rest.clone(), couples: lagrangian.couples, is_forced, constraint };
-        let (equations, reaction) = equations::equations(&sources, &momentum);
+        let Equations { equations, reaction, still } = equations::equations(&sources, &momentum);
         // impulses are functions of the time of the configuration, K of the time at which the step starts
         let earlier = |rest: &Vec<Expr<'g>>| rest.each(|part| sources.later(*part, -begins));
         let ends = begins + model.step_size / sources.divisor;
@@ -117,6 +120,7 @@ impl<'g> Substep<'g> {
             end: sources.impulse(lagrangian.end),
             equations,
             reaction,
+            still,
             projection: constraint.map(|constraint| sources.parted(constraint.projection())),
             rest,
             force,

@@ -1,6 +1,6 @@
 //! How a step solves its equations, one after the other.
 
-use clebsch_symbolic::IntoList;
+use clebsch_symbolic::{IntoList, integer};
 use proc_macro2::{Ident, Literal, TokenStream};
 use quote::{format_ident, quote};
 
@@ -18,6 +18,7 @@ impl Emitter<'_, '_> {
             return quote!(#free_motion::follow(self, c, &#kept, mu).map(|(d, _)| d));
         }
         if let [solve] = &step.solves[..]
+            && solve.dimension == self.dimension
             && !matches!(solve.solution, Solution::FreeRotation | Solution::Explicit)
         {
             return self.found(solve, None);
@@ -49,8 +50,8 @@ impl Emitter<'_, '_> {
         let entry = |component: &usize| {
             let position = |solve: &Solve| solve.components.iter().position(|other| other == component);
             let found = step.solves.iter().find_map(|solve| Some((solve.number, position(solve)?)));
-            // by construction: every component belongs to one equation
-            let (number, position) = found.unwrap_or((0, 0));
+            // a coordinate without an equation stays zero
+            let Some((number, position)) = found else { return self.scope_of_step().number(&integer(0)) };
             let (solution, position) = (solution_name(number), size(position));
             quote!(#solution[#position])
         };
@@ -67,7 +68,8 @@ impl Emitter<'_, '_> {
         let solutions = solutions.collect();
         let components: Vec<usize> = (0..self.dimension).into_list();
         let entries = components.iter().map(entry);
-        let x = if step.solves.len() == 1 { quote!(x1) } else { quote!(runtime::vector([#(#entries),*])) };
+        let is_all = step.solves.first().is_some_and(|solve| solve.dimension == self.dimension);
+        let x = if is_all { quote!(x1) } else { quote!(runtime::vector([#(#entries),*])) };
         let weights = (0..self.formulas.weighted().len()).map(weight_name);
         let result = if weights.len() == 0 { x } else { quote!((#x, [#(#weights),*])) };
         (solutions, result)

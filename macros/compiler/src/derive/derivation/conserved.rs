@@ -45,7 +45,11 @@ pub(super) fn constraint(formulas: &MechanicsFormulas<'_>) -> String {
         own.join(", ")
     };
     let (of_places, of_velocities) = (texts(false), texts(true));
-    let multipliers = "The multipliers λ are no unknowns of the momentum equation: they are found from its residual.";
+    let multipliers = if formulas.substeps.first().is_some_and(|substep| formulas.has_no_multiplier(substep)) {
+        "Each of its rows is a coordinate of the step, so there is no multiplier to be found."
+    } else {
+        "The multipliers λ are no unknowns of the momentum equation: they are found from its residual."
+    };
     let Some(VelocityRows { rows, values }) = constraint.velocities else {
         return format!(
             "Constraint on places: {of_places}. Its force Aᵀλ acts along its rows at both ends of the step, and q⁺ obeys it. \

@@ -13,7 +13,7 @@ pub(super) fn part<'g>(formulas: &MechanicsFormulas<'g>, equation: &MomentumEqua
     if equation.residual.shape().rows == whole {
         return names;
     }
-    format!("{names} in the coordinates {}", formulas.coordinates_of(equation))
+    format!("{names} in the coordinates {}", formulas.coordinates_of(&equation.components))
 }
 
 /// How an equation is solved, and in which chart.

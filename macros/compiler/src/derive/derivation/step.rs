@@ -54,6 +54,10 @@ fn equations(formulas: &MechanicsFormulas<'_>, lowered: &Lowered) -> String {
         }
     };
     for (substep, iterations) in formulas.substeps.iter().zip(&lowered.iterations).take(formulas.stepped) {
+        if !substep.still.is_empty() {
+            let still = formulas.coordinates_of(&substep.still);
+            tell(format!("At zero by the constraint, without an equation: {still}.\n"));
+        }
         for (equation, iteration) in substep.equations.iter().zip(iterations) {
             let (part, how) = (part(formulas, equation), how(formulas, equation, iteration));
             tell(format!("The momentum equation for {part} {how}.\n"));

@@ -3,7 +3,7 @@
 use clebsch_symbolic::{Elements, Expr, IntoList, Property, Role, both};
 
 use super::Names;
-use crate::derive::{Formula, Id, MechanicsFormulas, MomentumEquation, Solution};
+use crate::derive::{Formula, Id, MechanicsFormulas, Solution};
 
 impl<'g> MechanicsFormulas<'g> {
     /// Kicks are functions of the time at which the step starts, as their methods are.
@@ -55,7 +55,15 @@ impl<'g> MechanicsFormulas<'g> {
         let substep = &self.substeps[index];
         let mut rows = Vec::new();
         rows.extend(substep.reaction.clone().map(|reaction| {
-            Formula::new(Id::Reaction(index), "Aᵀλ", reaction).in_words(
+            let row = Formula::new(Id::Reaction(index), "Aᵀλ", reaction);
+            if self.has_no_multiplier(substep) {
+                let still = self.coordinates_of(&substep.still);
+                return row.in_words(
+                    format!("r({f}) − {mu} in {still}, else zero"),
+                    format!("r({f}) - {mu} \\text{{ in }} {still},\\text{{ else zero}}"),
+                );
+            }
+            row.in_words(
                 format!("Aᵀ·S⁻¹·A·Σ⁻¹·(r({f}) − {mu}), S = A·Σ⁻¹·Aᵀ"),
                 format!("A^T S^{{-1}} A \\Sigma^{{-1}} (r({f}) - {mu}),\\quad S = A \\Sigma^{{-1}} A^T"),
             )
@@ -92,7 +100,20 @@ impl<'g> MechanicsFormulas<'g> {
             row.title = "equation (explicit)";
         }
         let mut jacobian = Formula::new(Id::Jacobian(index, number), &symbol, [equation.directional]);
-        if substep.reaction.is_some() {
+        let has_multipliers = substep.reaction.is_some() && !self.has_no_multiplier(substep);
+        if self.constraint.is_some() && !has_multipliers && equation.residual.has_inverse() {
+            let (own, still) = (self.coordinates_of(&equation.components), self.coordinates_of(&substep.still));
+            let [rows, rows_latex] = match substep.still[..] {
+                [] => both(["", ""], String::from),
+                _ => [
+                    format!(" in {own}, with {still} = 0"),
+                    format!(" \\text{{ in }} {own},\\text{{ with }} {still} = 0"),
+                ],
+            };
+            row = row.in_words(format!("r({x}) − {mu}{rows}"), format!("r({x}) - {mu}{rows_latex}"));
+            jacobian = jacobian.in_words(format!("Dr·{delta}{rows}"), format!("Dr\\,{delta}{rows_latex}"));
+        }
+        if has_multipliers {
             row = row.in_words(
                 format!("y − Aᵀ·S⁻¹·(A·Σ⁻¹·y − ψ), y = r({x}) − {mu}"),
                 format!("y - A^T S^{{-1}} (A \\Sigma^{{-1}} y - \\psi),\\quad y = r({x}) - {mu}"),
@@ -107,29 +128,36 @@ impl<'g> MechanicsFormulas<'g> {
             let symbol = format!("{symbol} = ⟨{delta}^·B, E⟩ with B({x})");
             Formula::new(Id::JacobianFactor(index, number), symbol, [factor])
         }));
-        let coordinates = self.coordinates_of(equation);
+        let coordinates = self.coordinates_of(&equation.components);
         rows.extend(equation.formula.map(|x| Formula::new(Id::Solution(index, number), &coordinates, [x])));
         if self.is_predicted(equation) {
             let inertia = self.model.graph.symbol("Σ", self.inertia.shape(), Role::Letter, Property::Symmetric);
             let printed = self.predictor_by_blocks(substep, equation, inertia.inverse());
-            let row = Formula::shorter(Id::Predictor(index, number), coordinates, printed);
+            let mut row = Formula::shorter(Id::Predictor(index, number), &coordinates, printed);
+            if !substep.still.is_empty() {
+                let still = self.coordinates_of(&substep.still);
+                row = row.in_words(
+                    format!("s·h·(Σ without {still})⁻¹·{mu}, s = d{x}/dξ"),
+                    format!("s h (\\Sigma \\text{{ without }} {still})^{{-1}} {mu},\\quad s = d{x}/d\\xi"),
+                );
+            }
             rows.push(row.computed_as(self.predictor(substep, equation)));
         }
         rows
     }
 
-    /// The coordinates of an equation by their names: `x₁`, and `x[0], x[1]` where it holds not all of a vector.
-    pub fn coordinates_of(&self, equation: &MomentumEquation<'g>) -> String {
+    /// Coordinates by their names: `x₁`, and `x[0], x[1]` where they are not all of a vector.
+    pub fn coordinates_of(&self, components: &[usize]) -> String {
         let name = |i: usize| {
             let block = &self.symbols.blocks[i];
-            let held: Vec<usize> = block.components().filter(|c| equation.components.contains(c)).into_list();
+            let held: Vec<usize> = block.components().filter(|c| components.contains(c)).into_list();
             let entry = |component: &usize| format!("{}[{}]", block.coordinates, component - block.offset);
             if held.len() == block.dimension() {
                 return block.coordinates.to_string();
             }
             held.each(entry).join(", ")
         };
-        let names = self.symbols.blocks_of(&equation.components).into_iter().map(name);
+        let names = self.symbols.blocks_of(components).into_iter().map(name);
         names.into_list().join(", ")
     }
 
