@@ -173,7 +173,10 @@ impl<S: Scene> Trial for Of<S> {
             "projected" => self.mu = stepper.project(q, mu)?.momentum(),
             "inverse_legendre" => {
                 let f = stepper.inverse_legendre_at(zero, &q, &mu)?;
-                return Ok(f.all_finite() && self.is_on_space(&stepper.act(&f, &q)));
+                let moved = stepper.act(&f, &q);
+                // an entry near the largest number overflows when a finite F moves it: the step is refused for it
+                let overflows = || stepper.state(q, mu).and_then(|start| stepper.step(&start)).is_err();
+                return Ok(f.all_finite() && (self.is_on_space(&moved) || !moved.all_finite() && overflows()));
             }
             "cotangent_state" => self.cotangent = Some(stepper.cotangent_state(q, q)?),
             "covector" => self.cotangent = Some(stepper.cotangent_state(S::configuration(), q)?),
@@ -194,7 +197,8 @@ impl<S: Scene> Trial for Of<S> {
             }
             "step" => return self.step(stepper),
             "another step size" => {
-                let other = stepper.system().stepper(S::Scalar::from_f64(0.1))?;
+                // a fixed one would be too long for the fastest scenes
+                let other = stepper.system().stepper(S::step_size() * S::Scalar::from_ratio(1, 2))?;
                 return self.step(&other);
             }
             "step_with" => return Ok(self.is_sound(&stepper.step_with(&self.start(), &self.input)?)),
