@@ -8,6 +8,7 @@ mod conserved;
 mod coordinates;
 mod invariants;
 mod joined;
+mod moving;
 mod order;
 mod places;
 mod reactions;

@@ -89,8 +89,8 @@ impl<'g> ConstraintFormulas<'g> {
         (potential, force): (Expr<'g>, Option<&[Expr<'g>]>),
     ) -> Result<Option<ConstraintFormulas<'g>>, Diagnostics> {
         let Some(constraint) = &model.constraint else { return Ok(None) };
-        check(model, system, (energy, inertia))?;
-        let inverse = inverse(inertia);
+        check(model, system, energy)?;
+        let inverse = inverse(system, inertia);
         let places = constraint.places.map(|value| PlaceFormulas::new(system, value, inverse));
         let (mut rows, mut values, mut between) = (Vec::new(), Vec::new(), Vec::new());
         if let Some(PlaceFormulas { value, rows: of_places, .. }) = places {
@@ -112,7 +112,8 @@ impl<'g> ConstraintFormulas<'g> {
         let gyroscopic = system.symbols.slope(energy.gyroscopic);
         let momenta = model.graph.below(&system.symbols.momenta);
         let velocity = inverse * (momenta - gyroscopic);
-        let free = free_motion(model, system, (energy.gyroscopic - potential, force), velocity);
+        let pushing = if system.is_moving(inertia) { energy.kinetic } else { model.graph.integer(0) };
+        let free = free_motion(model, system, (pushing + energy.gyroscopic - potential, force), velocity);
         Ok(Some(ConstraintFormulas {
             rows,
             values,
@@ -206,7 +207,7 @@ pub(super) fn coordinates_of_motion<'g>(system: &SystemFormulas<'g>, velocities:
     velocities.graph().stack(shape, shape.positions().map(entry).into_list())
 }
 
-/// The changes of t, q and N where no constraint acts, N′ = ± ad*_ξ N + J(q, ∂(A·ξ − V)) + f, with this ξ.
+/// The changes of t, q and N where no constraint acts, N′ = ± ad*_ξ N + J(q, ∂(T + A·ξ − V)) + f, with this ξ.
 pub(super) fn free_motion<'g>(
     model: &Mechanics<'g>,
     system: &SystemFormulas<'g>,
@@ -246,17 +247,30 @@ fn product<'g>(left: Expr<'g>, right: Expr<'g>) -> Expr<'g> {
     left.graph().stack(shape, shape.positions().map(entry).into_list())
 }
 
-/// Σ⁻¹, with the zeros that it has because coordinates uncouple.
-pub(super) fn inverse(inertia: Expr<'_>) -> Expr<'_> {
+/// Σ⁻¹, with the zeros that it has because coordinates uncouple. One that changes with the configuration or the time is a
+/// formula; else it is a constant of the stepper.
+pub(super) fn inverse<'g>(system: &SystemFormulas<'g>, inertia: Expr<'g>) -> Expr<'g> {
     let (graph, shape) = (inertia.graph(), inertia.shape());
+    let moves = system.is_moving(inertia);
     let whole = inertia_inverse(graph, shape);
     let couples = |i: usize, j: usize| !identity::vanishes(inertia.entry(i, j));
     let sets = structure::connected(shape.rows, |i, j| couples(i, j) || couples(j, i));
-    let set = |i: usize| sets.iter().find(|set| set.contains(&i));
-    let entry = |(i, j): (usize, usize)| match set(i) {
-        Some(set) if !set.contains(&j) => graph.integer(0),
-        Some(set) if set.len() == 1 => graph.integer(1) / inertia.entry(i, i).expand(),
-        _ => whole.entry(i, j),
+    let inverses = sets.each(|set| {
+        let shape = Shape::square(set.len());
+        let own = |(i, j): (usize, usize)| inertia.entry(set[i], set[j]).expand();
+        let solved = || graph.stack(shape, shape.positions().map(own).into_list()).inverse();
+        (moves && set.len() > 1).then(solved)
+    });
+    let set = |i: usize| sets.iter().zip(&inverses).find(|(set, _)| set.contains(&i));
+    let entry = |(i, j): (usize, usize)| {
+        let Some((set, inverse)) = set(i) else { return whole.entry(i, j) };
+        let position = |component: usize| set.iter().position(|other| *other == component);
+        match (position(i).zip(position(j)), inverse) {
+            (None, _) => graph.integer(0),
+            (Some(_), _) if set.len() == 1 => graph.integer(1) / inertia.entry(i, i).expand(),
+            (Some((row, column)), Some(inverse)) => inverse.entry(row, column),
+            (Some(_), None) => whole.entry(i, j),
+        }
     };
     graph.stack(shape, shape.positions().map(entry).into_list())
 }
@@ -314,13 +328,9 @@ fn check_rows<'g>(constraint: &Constraint<'g>, all: Expr<'g>) -> Result<(), Diag
 }
 
 /// The features of the kinetic energy and of the action that do not go with a constraint.
-fn check<'g>(
-    model: &Mechanics<'g>,
-    system: &SystemFormulas<'g>,
-    (energy, inertia): (&Energy<'g>, Expr<'g>),
-) -> Result<(), Diagnostics> {
+fn check<'g>(model: &Mechanics<'g>, system: &SystemFormulas<'g>, energy: &Energy<'g>) -> Result<(), Diagnostics> {
     let spans = &model.spans;
-    check_inertia(model, system, (energy, inertia))?;
+    check_inertia(model, system, energy)?;
     features::check((Feature::Constraint, Found::somewhere()), |feature| match feature {
         Feature::ExactDiscretization => exact::is_exact(model).then(|| Found::at(spans.kinetic.place)),
         Feature::OddVelocity if model.constraint.as_ref().is_some_and(|constraint| constraint.velocities.is_some()) => {
@@ -335,13 +345,12 @@ fn check<'g>(
 pub(super) fn check_inertia<'g>(
     model: &Mechanics<'g>,
     system: &SystemFormulas<'g>,
-    (energy, inertia): (&Energy<'g>, Expr<'g>),
+    energy: &Energy<'g>,
 ) -> Result<(), Diagnostics> {
     let spans = &model.spans;
     let of_kinetic = |found: bool| found.then(|| Found::at(spans.kinetic.place));
     features::check((Feature::Constraint, Found::somewhere()), |feature| match feature {
         Feature::GeneralLagrangian => of_kinetic(energy.general.is_some()),
-        Feature::MovingInertia => of_kinetic(system.is_moving(inertia)),
         Feature::FixedConfigurations => {
             let is_fixed = model.isotropy == Isotropy::Fixed && !system.is_free();
             is_fixed.then(|| Found::at(spans.action.place))

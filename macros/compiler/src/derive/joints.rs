@@ -10,6 +10,7 @@ use super::energy::Energy;
 use super::power::{SiteTerm, home, of_terms, symbol_at};
 use super::{Home, SystemFormulas};
 use crate::diagnostic::{Diagnostics, bail};
+use crate::model::features::{self, Feature, Found};
 use crate::model::{Joint, Mechanics, Term};
 
 /// The formulas of the joints of a power.
@@ -55,7 +56,11 @@ pub(super) fn of<'g>(
 ) -> Result<Option<JointFormulas<'g>>, Diagnostics> {
     let Some(power) = &model.power else { return Ok(None) };
     let Some(joints) = &power.joints else { return Ok(None) };
-    check_inertia(model, system, (energy, inertia))?;
+    check_inertia(model, system, energy)?;
+    features::check((Feature::Joints, Found::somewhere()), |feature| {
+        let moves = feature == Feature::MovingInertia && system.is_moving(inertia);
+        moves.then(|| Found::at(model.spans.kinetic.place))
+    })?;
     let momenta = model.graph.below(&system.symbols.momenta);
     let gyroscopic = system.symbols.slope(energy.gyroscopic);
     let mut all = Vec::new();
@@ -64,7 +69,7 @@ pub(super) fn of<'g>(
         check_rows(joint, &rows)?;
         all.push(rows);
     }
-    let inverse = inverse(inertia);
+    let inverse = inverse(system, inertia);
     let velocity = inverse * (momenta - gyroscopic);
     let free = free_motion(model, system, (energy.gyroscopic - potential, force), velocity);
     Ok(Some(JointFormulas {

@@ -42,7 +42,7 @@ impl<'g> MechanicsFormulas<'g> {
 
     /// The velocity of a momentum where some of its components are zero: Σ⁻¹μ with the μ_i that make these zero.
     fn velocity_without(&self, still: &[usize], momenta: &[Expr<'g>]) -> Vec<Expr<'g>> {
-        let (graph, inverse) = (self.model.graph, constraint::inverse(self.inertia));
+        let (graph, inverse) = (self.model.graph, constraint::inverse(self, self.inertia));
         let moving: Vec<usize> = (0..momenta.len()).filter(|i| !still.contains(i)).into_list();
         let moved = |i: usize| {
             let terms = moving.iter().map(|&j| inverse.entry(i, j) * momenta[j]);

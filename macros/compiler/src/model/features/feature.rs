@@ -79,6 +79,7 @@ features! {
     Boundary "`emit = [boundary]`",
     Momentum "`emit = [momentum]`",
     VelocityConstraint "a constraint with a velocity",
+    Joints "joints between the sites of a power",
     // groups and spaces
     Power "a power",
     Forces "forces",

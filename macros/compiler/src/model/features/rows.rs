@@ -15,7 +15,7 @@ const WITHOUT_MATRICES: &[Feature] =
 
 /// The refused features, the others, the message, the reason, and the replacement.
 #[rustfmt::skip]
-pub(super) const ROWS: [Row; 62] = [
+pub(super) const ROWS: [Row; 63] = [
     // inputs move the configuration
     row(&[Dynamics], &[Controls],
         "there are `controls` and `dynamics`, but one thing moves a configuration", "",
@@ -91,9 +91,12 @@ pub(super) const ROWS: [Row; 62] = [
         "a constraint needs a discrete Lagrangian that is a formula and its own adjoint",
         "its force acts at both ends of a step that is the same forwards and backwards",
         "write a `lagrangian`, with `discretization = moser_veselov` or without `discretization`"),
-    row(&[GeneralLagrangian, MovingInertia], &[Constraint],
-        "a constraint needs a kinetic energy with a constant inertia for now", LATER,
-        "write a kinetic energy that is a constant quadratic form of the velocity"),
+    row(&[GeneralLagrangian], &[Constraint],
+        "a constraint needs a kinetic energy that is quadratic in the velocity for now", LATER,
+        "write a kinetic energy that is a quadratic form of the velocity"),
+    row(&[MovingInertia], &[Joints],
+        "the sites of joints need a kinetic energy with a constant inertia for now", LATER,
+        "write a kinetic energy that is a constant quadratic form of the velocity, or a number in place of the const generic"),
     row(&[FixedConfigurations], &[Constraint],
         "a constraint needs an action in which only the identity fixes a configuration",
         "the forces of a constraint would leave the momenta that motions of the configuration can have",
