@@ -22,7 +22,7 @@ use crate::linear::Solution;
 use crate::matrices::total;
 use crate::orientation::Orientation;
 use crate::space::larger;
-use crate::{Error, Mask, Scalar};
+use crate::{Error, Mask, Scalar, Space};
 use nalgebra::SVector;
 
 /// An implicit equation ρ(ξ; μ) = 0 for M unknowns ξ, given N components of momentum, the target μ.
@@ -120,6 +120,14 @@ pub trait Equation<T: Scalar, const M: usize, const N: usize = M> {
         false
     }
 
+    /// The size of a motion ξ that is lost to rounding times ε, if ρ compares places: 1 + |q|.
+    ///
+    /// Zero by the provided method: then ξ may be as small as it likes, and is right to its own last digits.
+    #[inline]
+    fn extent(&self) -> T {
+        T::zero()
+    }
+
     /// The sign of det Dρ which every solution on the branch has; `None` where it is singular.
     ///
     /// The provided method makes one linearisation, at ξ = 0 and μ = 0. It is called in every solve, so a constant is
@@ -136,6 +144,12 @@ pub trait Equation<T: Scalar, const M: usize, const N: usize = M> {
 #[inline]
 pub fn tolerance<T: Scalar>(part: f64) -> T {
     T::from_f64(part.max(T::Lane::EPSILON.to_f64() / 4.0))
+}
+
+/// 1 + |q|, for [`Equation::extent`].
+#[inline]
+pub fn extent<T: Scalar>(q: &impl Space<T>) -> T {
+    T::one() + q.max_abs()
 }
 
 /// The sign of det Dρ at ξ = 0 and μ = 0, from a linearisation.
@@ -273,7 +287,8 @@ fn newton<T: Scalar, E: Equation<T, M, N>, const M: usize, const N: usize>(
         if made > 1 && others.any() {
             // copies on the cold path only: a value that is passed by reference lies in memory in every iteration
             let (rest, linear, from, rest_before) = (residual, jacobian, old, residual_before);
-            let arrived = others & is_round_off(&rest, &linear, &from);
+            let arrived =
+                others & is_round_off(&rest, &linear, &[from, start, SVector::from_element(equation.extent())]);
             let strays = predicted.below(size(&(xi - start))) | !is_much_smaller::<T, M>(&rest, &rest_before);
             (solved, open) = (solved | arrived, open & !arrived & !(others & strays));
             if !open.any() {
@@ -318,14 +333,17 @@ fn select<T: Scalar, const M: usize>(mask: T::Mask, yes: &SVector<T, M>, no: &SV
     yes.zip_map(no, |yes, no| T::select(mask, yes, no))
 }
 
-/// Whether the residual is no more than the rounding of the terms that it is made of, of size |Dρ||ξ|.
+/// Whether the residual is no more than the rounding of the terms that it is made of. Their sizes are those of motions
+/// times |Dρ|: ξ for r(ξ), the predictor for μ, 1 + |q| for places. A constraint may take up all of μ. Then the solution
+/// is zero, and the others are left.
 #[cold]
 fn is_round_off<T: Scalar, const M: usize>(
     residual: &SVector<T, M>,
     jacobian: &impl Jacobian<T, M>,
-    xi: &SVector<T, M>,
+    terms: &[SVector<T, M>; 3],
 ) -> T::Mask {
-    size(residual).at_most(T::from_f64(8.0) * T::EPSILON * jacobian.size_of_terms(xi))
+    let terms = terms.iter().fold(T::zero(), |sum, term| sum + jacobian.size_of_terms(term));
+    size(residual).at_most(T::from_f64(8.0) * T::EPSILON * terms)
 }
 
 /// Whether the residual shrank to less than a quarter: progress too, where corrections grow as stiff directions settle before soft ones.

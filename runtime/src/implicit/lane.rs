@@ -92,6 +92,10 @@ impl<T: Scalar, E: Equation<T, M, N>, const M: usize, const N: usize> Equation<T
         E::limit()
     }
 
+    fn extent(&self) -> T::Lane {
+        self.equation.extent().lane(self.lane)
+    }
+
     fn orientation(&self) -> Option<Orientation> {
         match self.equation.orientation() {
             Some(orientation) => Some(orientation.lane(self.lane)),

@@ -4,7 +4,7 @@ use clebsch::{Clebsch, Error, Space};
 use clebsch_tests::fixtures::{
     chaplygin_sleigh::ChaplyginSleigh, jointed_bodies::JointedBodies, snakeboard::Snakeboard, suslov::Suslov,
 };
-use nalgebra::{Matrix3, Matrix4, Rotation3, SVector, Vector3};
+use nalgebra::{Matrix2, Matrix3, Matrix4, Rotation3, SVector, Vector2, Vector3};
 
 pub mod rods {
     use clebsch::Clebsch;
@@ -21,6 +21,33 @@ pub mod rods {
         pub mass: f64,
         pub gravity: f64,
         pub length: f64,
+    }
+
+    /// A plate that turns about a pin, without weight.
+    #[derive(Clebsch, Clone, Debug)]
+    #[clebsch(
+        action     = |F: SE<2>, q: SE<2>| q * F,
+        lagrangian = |v| (self.inertia * v.x.powi(2) + self.mass * (v.y.powi(2) + v.z.powi(2))) / 2,
+        constraint = |q| [q.rotation() * self.pin + q.translation() == Vector2::zeros()],
+    )]
+    pub struct Plate {
+        pub inertia: f64,
+        pub mass: f64,
+        pub pin: nalgebra::Vector2<f64>,
+    }
+
+    /// A door that is locked at an angle, and pulled.
+    #[derive(Clebsch, Clone, Debug)]
+    #[clebsch(
+        action     = |F: SO<2>, q: SO<2>| q * F,
+        lagrangian = |w| self.inertia * w.x.powi(2) / 2,
+        potential  = |q| -self.pull * q[(0, 0)],
+        constraint = |q| [q[(1, 0)] == self.open],
+    )]
+    pub struct Door {
+        pub inertia: f64,
+        pub pull: f64,
+        pub open: f64,
     }
 
     /// A body on a ball joint, by the velocity of the joint.
@@ -122,6 +149,36 @@ fn places_and_velocities_stay_on_the_constraint() -> Result<(), Error> {
     let bob = Bob { mass: 0.7, gravity: 9.81, length: 1.3 };
     let ratio = band(&bob, 0.01)? / band(&bob, 0.005)?;
     assert!((ratio - 4.0).abs() < 0.1, "{ratio}");
+    Ok(())
+}
+
+/// A place is known to rounding, and motions may be smaller than that.
+#[test]
+fn joints_may_rest_or_move_by_less_than_rounding() -> Result<(), Error> {
+    let pin = Vector2::new(0.3, 0.4);
+    for number in 0..40 {
+        let (sin, cos) = (0.1 * f64::from(number)).sin_cos();
+        let turn = Matrix2::new(cos, -sin, sin, cos);
+        let start = Matrix3::new_translation(&-(turn * pin)) * turn.to_homogeneous();
+        let stepper = rods::Plate { inertia: 0.2, mass: 1.1, pin }.into_stepper(0.05)?;
+        for speed in [0.0, 1e-18, 1e-16, 1e-14, 1e-13, 1e-12, 1e-10, 1e-8] {
+            let moving = Vector3::new(speed, pin.y * speed, -pin.x * speed);
+            let late = stepper.advance(&stepper.state_moving(start, moving)?, 50)?;
+            let gap = late.configuration().transform_point(&pin.into());
+            assert!(gap.coords.norm() < 1e-15, "{gap}");
+            // it turns by 2 atan(hω/2) a step, as momenta are known to ε Σ/h
+            let angle = turn.transpose() * late.configuration().fixed_view::<2, 2>(0, 0);
+            assert!((angle[(1, 0)] - 2.5 * speed).abs() < 1e-13, "{speed:e}: {angle}");
+        }
+
+        // the lock carries the pull: N′ = −V′ + A λ, with V = −k cos θ and A = cos θ
+        let (angle, pull) = (0.03 * f64::from(number), 1.0 + 0.1 * f64::from(number));
+        let stepper = rods::Door { inertia: 1.3, pull, open: angle.sin() }.into_stepper(0.05)?;
+        let turn = Matrix2::new(angle.cos(), -angle.sin(), angle.sin(), angle.cos());
+        let (late, lock) = stepper.step_with_reactions(&stepper.state(turn, nalgebra::Vector1::new(0.0))?)?;
+        assert!((late.configuration() - turn).amax() < 1e-15, "{}", late.configuration());
+        assert!((lock.x - pull * angle.tan()).abs() < 1e-12, "{lock}");
+    }
     Ok(())
 }
 

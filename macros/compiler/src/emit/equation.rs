@@ -108,7 +108,7 @@ impl<'e, 'a, 'g> EquationType<'e, 'a, 'g> {
             let held = self.emitter.held_by_equation(self.solve).into_iter().map(|(name, _)| format_ident!("{name}"));
             let reads = match function.name {
                 "prepare" => self.prepares(),
-                name => name != "orientation" && function.arguments.contains("self"),
+                name => !["orientation", "extent"].contains(&name) && function.arguments.contains("self"),
             };
             Some(body.after(reads.then(|| quote!(let &Self(#(#held),*) = self;))))
         })
@@ -157,6 +157,12 @@ impl<'e, 'a, 'g> EquationType<'e, 'a, 'g> {
                 _ => return None,
             },
             "has_poles" if is_newton && solve.has_poles => function.written(scope, None, words)?,
+            "extent" if is_newton => Body::from({
+                let place = emitter.held_by_equation(solve).iter().position(|(name, _)| *name == "q")?;
+                emitter.formulas.constraint.as_ref()?.places.as_ref()?;
+                let place = syn::Index::from(place);
+                quote!(runtime::extent(self.#place))
+            }),
             "tolerance" if is_newton => Body::from({
                 let tolerance = emitter.tolerance()?;
                 quote!(runtime::tolerance(#tolerance))
