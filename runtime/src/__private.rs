@@ -8,6 +8,9 @@ pub mod keys;
 pub use crate::__formulas_of_joints as formulas_of_joints;
 pub use crate::__formulas_of_sites as formulas_of_sites;
 pub use crate::collocation::{GAUSS_16, SWEEPS, collocate};
+pub use crate::constraint::edge::{
+    ConstrainedSubstep, ConstraintAtEnd, ConstraintAtStart, PassedEdge, slopes_with_constraint, with_constraint,
+};
 pub use crate::constraint::{
     Correction, Violation, check_place, constrained, multipliers, placed, reactions, violation,
 };

@@ -64,12 +64,29 @@ impl<S: Clebsch, B: Method<S>> Stepper<S, B> {
     /// let extremal = boundary.solve(&q0, &target, Guess::Geodesic, &mut path)?;
     /// ```
     /// Its paths are of steps of order 1 or 2; a composed step runs back in some of its steps, and does not compile here.
+    /// Neither does a system with a constraint, whose multipliers are no unknowns of these problems:
+    ///
+    /// ```compile_fail,E0080
+    /// # use clebsch::Clebsch;
+    /// # #[derive(Clebsch, Clone, Debug)]
+    /// # #[clebsch(
+    /// #     action     = |a: Translation<2>, x: Vector2| x + a,
+    /// #     lagrangian = |v| self.mass * v.norm_squared() / 2,
+    /// #     constraint = |x| [x.norm() == 1],
+    /// #     emit       = [tangent],
+    /// # )]
+    /// # struct Bob { mass: f64 }
+    /// let stepper = Bob { mass: 2.0 }.into_stepper(0.1)?;
+    /// let boundary = stepper.boundary();
+    /// # Ok::<(), clebsch::Error>(())
+    /// ```
     #[inline]
     pub fn boundary<const M: usize>(&self) -> Boundary<'_, S, M, B>
     where
         S: Variational<M, Scalar: Real>,
         B: Differentiated<S, M>,
     {
+        const { assert!(!S::IS_CONSTRAINED, "a system with a constraint has no problems with fixed endpoints yet") };
         const { assert!(B::ORDER <= 2, "paths of least action are of steps of order 2: write `order = 2`") };
         Boundary { stepper: self, time: S::Scalar::zero() }
     }

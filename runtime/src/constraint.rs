@@ -1,5 +1,7 @@
 //! Constraints A ξ = b on the velocity: violations, the momenta that obey them, and states from velocities.
 
+pub(crate) mod edge;
+
 use crate::linear::entry;
 use crate::parts::{F, Mu, Q, T};
 use crate::space::larger;

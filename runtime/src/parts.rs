@@ -2,6 +2,7 @@
 //!
 //! A *scheme* is the order in which these parts are called, in [`scheme`](crate::scheme), the same for every declaration. The macro writes parts alone.
 
+use crate::constraint::edge::PassedEdge;
 use crate::sums::Sums;
 use crate::{Carried, Clebsch, Declared, Edge, Ends, Error, Method, Momenta, Space};
 
@@ -266,6 +267,7 @@ pub trait Varied<const M: usize>: Parts {
     type Slopes;
 }
 
+#[allow(unused_variables, reason = "provided methods take what others need")]
 /// Substep K, differentiated: the discrete Lagrangian of an edge from q to `next` = Φ_F(q), F = I + D, with its derivatives along M directions.
 pub trait VariedSubstep<const K: usize, const M: usize, B: Method<Self> = Declared>: Substep<K, B> + Varied<M> {
     /// ℓd with both Legendre transforms.
@@ -279,4 +281,23 @@ pub trait VariedSubstep<const K: usize, const M: usize, B: Method<Self> = Declar
 
     /// ∂F⁻ℓd and ∂F⁺ℓd with respect to the quantities that are fixed during a step.
     fn slopes(&self, c: &B::Constants, t: T<Self>, ends: Ends<'_, Self>) -> Self::Slopes;
+
+    /// The edge with the force of a constraint, in a step from the momentum N. `None` where rows depend on each other.
+    #[inline(always)]
+    fn passed(
+        &self,
+        c: &B::Constants,
+        t: T<Self>,
+        ends: Ends<'_, Self>,
+        mu: &Mu<Self>,
+        edge: Carried<T<Self>, M>,
+    ) -> Option<PassedEdge<T<Self>, M>> {
+        Some(PassedEdge { edge, balance: None })
+    }
+
+    /// The slopes of that edge.
+    #[inline(always)]
+    fn slopes_passed(&self, c: &B::Constants, t: T<Self>, ends: Ends<'_, Self>, mu: &Mu<Self>) -> Option<Self::Slopes> {
+        Some(self.slopes(c, t, ends))
+    }
 }

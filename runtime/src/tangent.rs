@@ -1,10 +1,11 @@
 //! Tangent maps: the derivatives of a step, exact for the step as it is, not for the motion that it approximates.
 
+use crate::constraint::edge::PassedEdge;
 use crate::linear::divided;
 use crate::parameters::check_finite;
 use crate::parts::{Q, U};
 use crate::scheme::Scheme;
-use crate::scheme::edges::{AtFixedElement, ByQuantities, Drift, Edges};
+use crate::scheme::edges::{Drift, Edges, Passing, PassingByQuantities};
 use crate::{
     Carried, Clebsch, Differentiated, Error, Method, Scalar, Sensitive, Space, State, Stepper, Time, Variational,
 };
@@ -33,6 +34,9 @@ pub struct Variation<T, const M: usize> {
 /// is + for the body momenta of a right action and − for the spatial ones of a left action. Tangent maps of unforced
 /// steps preserve the form. If motions fix the configuration, the directions η of 𝔤_q do nothing to q. The map is then
 /// that of the body that has them as motions.
+///
+/// With a constraint the map is the derivative of the step as it is, for every variation. Its images obey the constraint.
+/// It preserves the form if the constraint is on places alone, and on the motions η that obey it.
 ///
 /// ```
 /// # use clebsch::Clebsch;
@@ -167,13 +171,23 @@ pub(crate) fn times<T: Scalar, const R: usize, const M: usize, const K: usize>(
 #[inline]
 pub(crate) fn of_edge<T: Scalar, const M: usize>(edge: &Carried<T, M>) -> Option<Tangent<T, M>> {
     let inverse = divided(&edge.before_by_end, &SMatrix::identity())?;
-    let turned = times(&inverse, &edge.before);
-    Some(Tangent {
+    Some(by_inverse(edge, &inverse, inverse))
+}
+
+/// The tangent map of an edge with (∂F⁻ℓd/∂η′)⁻¹, and ∂ζ/∂ν.
+#[inline]
+fn by_inverse<T: Scalar, const M: usize>(
+    edge: &Carried<T, M>,
+    inverse: &SMatrix<T, M, M>,
+    by_momentum: SMatrix<T, M, M>,
+) -> Tangent<T, M> {
+    let turned = times(inverse, &edge.before);
+    Tangent {
         motion_by_motion: edge.adjoint - turned,
-        motion_by_momentum: inverse,
+        motion_by_momentum: by_momentum,
         momentum_by_motion: edge.after - times(&edge.after_by_end, &turned),
-        momentum_by_momentum: times(&edge.after_by_end, &inverse),
-    })
+        momentum_by_momentum: times(&edge.after_by_end, &by_momentum),
+    }
 }
 
 /// For derivatives that overflow.
@@ -191,6 +205,8 @@ struct Passed<S: Clebsch, const M: usize> {
     increment: S::Element,
     next: S::Configuration,
     edge: Carried<S::Scalar, M>,
+    /// (∂F⁻ℓd/∂η′)⁻¹
+    inverse: SMatrix<S::Scalar, M, M>,
     tangent: Tangent<S::Scalar, M>,
 }
 
@@ -204,6 +220,7 @@ where
     /// One step with its derivative with respect to the state: (q⁺, N⁺) and the tangent map there.
     ///
     /// The map is exact up to round-off, by the implicit function theorem on the solved step: one linear system of M unknowns, no iteration.
+    /// With a constraint of R equations two of R unknowns come to it.
     ///
     /// # Errors
     /// As [`step`](Stepper::step), and [`Error::SingularTangent`] at the very edge of solvability.
@@ -224,7 +241,7 @@ where
         S: Variational<M>,
         B: Differentiated<S, M>,
     {
-        let (q, mu, tangent) = self.pass_all(state, u, |_, _, _| {})?;
+        let (q, mu, tangent) = self.pass_all(state, u, |_, _, _| Some(()))?;
         Ok((self.stepped(state, q, mu)?, finite_tangent(tangent)?))
     }
 
@@ -257,15 +274,17 @@ where
         B: Differentiated<S, M>,
     {
         let mut sensitivity = Sensitivity::zero();
-        let (q, mu, tangent) = self.pass_all(state, u, |number, q, Passed { increment, next, edge, tangent }| {
+        let (q, mu, tangent) = self.pass_all(state, u, |number, (q, mu), passed| {
+            let Passed { increment, next, edge, inverse, tangent } = passed;
             let at = self.at(state.time.now());
-            let (before, after) = B::Scheme::visit(at, number, ByQuantities((q, increment, next, u)));
+            let (before, after) = B::Scheme::visit(at, number, PassingByQuantities((q, increment, next, u), mu))?;
             let columns = (S::STEP_SIZE, S::TIME);
             let [before, after] =
                 [before, after].map(|slopes| B::Scheme::slopes_of_step(at.constants, number, slopes, columns));
-            let motion = -times(&tangent.motion_by_momentum, &before);
+            let motion = -times(inverse, &before);
             let of_edge = Sensitivity { motion, momentum: after + times(&edge.after_by_end, &motion) };
             sensitivity = sensitivity.after(tangent, &of_edge);
+            Some(())
         })?;
         if !(sensitivity.motion, sensitivity.momentum).all_finite() {
             return Err(Error::NotFinite { name: "the sensitivity of the step" });
@@ -289,12 +308,13 @@ where
     S: Variational<M> + Clebsch<Scalar = T, Momentum = SVector<T, M>>,
     B: Differentiated<S, M>,
 {
-    /// (q⁺, N⁺), edge by edge, with the tangent map. `seen` is told each edge with its number and the configuration where it starts.
+    /// (q⁺, N⁺), edge by edge, with the tangent map. `seen` is told each edge with its number and the state where it starts.
+    /// It returns `None` where a linear system is singular.
     fn pass_all(
         &self,
         state: &State<S, B>,
         u: &S::Input,
-        mut seen: impl FnMut(usize, &S::Configuration, &Passed<S, M>),
+        mut seen: impl FnMut(usize, (&S::Configuration, &SVector<T, M>), &Passed<S, M>) -> Option<()>,
     ) -> Result<(S::Configuration, SVector<T, M>, Tangent<T, M>), Error> {
         let (mut q, mut mu) = (*state.configuration(), state.momentum());
         let mut tangent = Tangent::identity();
@@ -302,7 +322,7 @@ where
             // the error of an edge is that of the step that it is a part of
             let told = |error| if T::LANES == 1 { self.refusal(state, u, 0, error) } else { error };
             let passed = self.pass(number, state.time.now(), &q, &mu, u).map_err(told)?;
-            seen(number, &q, &passed);
+            seen(number, (&q, &mu), &passed).ok_or_else(|| self.singular(true))?;
             tangent = if number == 0 { passed.tangent } else { tangent.then(&passed.tangent) };
             (q, mu) = (passed.next, passed.edge.momentum);
         }
@@ -313,13 +333,22 @@ where
         check_finite("the input", u)?;
         let increment = B::Scheme::visit(self.at(t), number, Drift(q, mu, u))?;
         let next = S::advance(&self.system, q, &increment);
-        let edge = B::Scheme::visit(self.at(t), number, AtFixedElement((q, &increment, &next, u)));
-        let Some(tangent) = of_edge(&edge) else {
-            let is_finite = edge.before_by_end.all_finite();
-            let step_size = self.step_size().to_f64();
-            return Err(if is_finite { Error::SingularTangent { step_size } } else { DERIVATIVE });
+        let Some(PassedEdge { edge, balance }) =
+            B::Scheme::visit(self.at(t), number, Passing((q, &increment, &next, u), mu))
+        else {
+            return Err(self.singular(true));
         };
-        Ok(Passed { increment, next, edge, tangent })
+        let Some(inverse) = divided(&edge.before_by_end, &SMatrix::identity()) else {
+            return Err(self.singular(edge.before_by_end.all_finite()));
+        };
+        let by_momentum = balance.map_or(inverse, |balance| times(&inverse, &balance));
+        let tangent = by_inverse(&edge, &inverse, by_momentum);
+        Ok(Passed { increment, next, edge, inverse, tangent })
+    }
+
+    /// For a linear system without a solution.
+    fn singular(&self, is_finite: bool) -> Error {
+        if is_finite { Error::SingularTangent { step_size: self.step_size().to_f64() } } else { DERIVATIVE }
     }
 
     fn stepped(&self, state: &State<S, B>, q: S::Configuration, mu: SVector<T, M>) -> Result<State<S, B>, Error> {

@@ -15,6 +15,8 @@ use nalgebra::{SMatrix, SVector};
 /// F_k ↦ exp(η_{k+1}) F_k exp(−η_k), for a right one F_k ↦ exp(−η_k) F_k exp(η_{k+1}). An edge is given by the
 /// increment D = F − I (for translations F itself), which small steps do not cancel.
 ///
+/// With a constraint an edge is that of ℓd alone, without the force of the constraint; derivatives of steps have it.
+///
 /// Components of η are those of 𝔤 in the basis that [`group`](crate::group) documents, M of them.
 ///
 /// ```
@@ -43,6 +45,9 @@ pub trait Variational<const M: usize>:
     /// The number of edges in a step: 2 if a discrete Lagrangian is composed with its adjoint, else 1. A composed step
     /// has the edges of all its steps.
     const EDGES: usize = <Self::Scheme as Edges<Self, M>>::EDGES;
+    /// Whether a constraint acts in steps.
+    #[doc(hidden)]
+    const IS_CONSTRAINED: bool = false;
 
     /// The increments of τ(η) and τ(−η), which share most terms: τ(0) = I, dτ = id there, and τ(−η) = τ(η)⁻¹ for Cayley's map and the exponential.
     fn retractions(&self, eta: &Self::Momentum) -> [Self::Element; 2];

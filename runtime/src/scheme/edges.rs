@@ -5,6 +5,7 @@ use super::great_circle::GreatCircle;
 use super::sequence::{CarryKick, InSequence};
 use super::substep::solve_before_kick;
 use super::{At, AtOf, Scheme, adjoint_pair, free_motion, kick_drift_kick};
+use crate::constraint::edge::PassedEdge;
 use crate::parts::{F, Mu, Parts, Q, Substep, U, Varied, VariedSubstep};
 use crate::{Carried, Clebsch, Declared, Edge, Ends, Error, Method, Momenta};
 use nalgebra::SMatrix;
@@ -81,6 +82,36 @@ asked! {
     "An edge with its first derivatives." FirstDerivatives: Clebsch, momenta -> Momenta<S::Scalar, M>;
     "The derivatives of an edge along motions that leave F as it is." AtFixedElement: Clebsch, carried -> Carried<S::Scalar, M>;
     "The derivatives of an edge with respect to the quantities that are fixed during a step." ByQuantities: Varied<M>, slopes -> S::Slopes;
+}
+
+/// An edge as a step from the momentum N passes it: with its derivatives, and with the force of a constraint.
+pub struct Passing<'a, S: Clebsch>(pub Ends<'a, S>, pub &'a Mu<S>);
+
+impl<S: Clebsch, B: Method<S>, const M: usize> Visit<S, M, B> for Passing<'_, S> {
+    type Output = Option<PassedEdge<S::Scalar, M>>;
+
+    #[inline(always)]
+    fn at<const K: usize>(self, At { system, constants, t, .. }: At<'_, S, B>) -> Self::Output
+    where
+        S: VariedSubstep<K, M, B>,
+    {
+        system.passed(constants, t, self.0, self.1, system.carried(constants, t, self.0))
+    }
+}
+
+/// The slopes of such an edge.
+pub struct PassingByQuantities<'a, S: Clebsch>(pub Ends<'a, S>, pub &'a Mu<S>);
+
+impl<S: Varied<M>, B: Method<S>, const M: usize> Visit<S, M, B> for PassingByQuantities<'_, S> {
+    type Output = Option<S::Slopes>;
+
+    #[inline(always)]
+    fn at<const K: usize>(self, At { system, constants, t, .. }: At<'_, S, B>) -> Self::Output
+    where
+        S: VariedSubstep<K, M, B>,
+    {
+        system.slopes_passed(constants, t, self.0, self.1)
+    }
 }
 
 /// Schemes with one edge.

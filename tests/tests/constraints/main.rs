@@ -6,6 +6,7 @@
 mod chains;
 mod conserved;
 mod coordinates;
+mod derived;
 mod invariants;
 mod joined;
 mod moving;

@@ -309,6 +309,14 @@ catalogue! {
     Carried(substep: usize) = unlisted("", Hot);
     /// The derivatives of F⁻ℓd and of F⁺ℓd with respect to the quantities that are fixed during a step.
     EdgeSlopes(substep: usize) = unlisted("", Hot);
+    /// A and A Σ⁻¹ at q; ∂(Aᵀκ) and ∂ψ for motions that leave F as it is; ∂ψ/∂η′.
+    ConstraintAtStart(substep: usize) = unlisted("", Hot);
+    /// A and A Σ⁻¹ at q⁺; ∂(Aᵀκ)/∂η′ and ∂(A Σ⁻¹N⁺ − b)/∂η′.
+    ConstraintAtEnd(substep: usize) = unlisted("", Hot);
+    /// The derivatives of Aᵀκ and of ψ with respect to the quantities that are fixed during a step.
+    SlopesAtStart(substep: usize) = unlisted("", Hot);
+    /// The same of Aᵀκ and of A Σ⁻¹N⁺ − b at q⁺.
+    SlopesAtEnd(substep: usize) = unlisted("", Hot);
     /// J(q, q⁺ − q).
     Approach = unlisted("", Hot);
     /// A, B, ℓ, ∂ℓ/∂η, ∂ℓ/∂u and the second derivatives of ℓ + λ·η′.

@@ -22,7 +22,7 @@ use clebsch_symbolic::{Elements, Expr, IntoList, Shape, identity};
 
 use super::energy::Energy;
 use super::exact::{self, inertia_inverse};
-use super::symbols::{logarithm, moved, moved_on};
+use super::symbols::{Images, after_step, logarithm, moved};
 use super::{DiscreteLagrangian, SystemFormulas, force, structure};
 use crate::diagnostic::{Diagnostics, bail};
 use crate::model::features::{self, Feature, Found};
@@ -38,6 +38,8 @@ pub struct ConstraintFormulas<'g> {
     pub between: Expr<'g>,
     /// A Σ⁻¹.
     pub by_inertia: Expr<'g>,
+    /// Σ and Σ⁻¹.
+    pub inertia: [Expr<'g>; 2],
     /// S = A Σ⁻¹Aᵀ.
     pub metric: Expr<'g>,
     /// The velocity Σ⁻¹(μ − A_g) of a momentum, with the momentum A_g of velocity zero.
@@ -97,14 +99,14 @@ impl<'g> ConstraintFormulas<'g> {
             let later = (model.time, model.graph.integer(1));
             rows.push(of_places);
             values.push(-value.differential(&[later]));
-            between.push(value.substitute(&moved_on(model)) / model.step_size);
+            between.push(between_places(model, value, moved(model)));
         }
         let mut is_mean = false;
         if let Some(VelocityRows { rows: of_velocities, values: of_rows }) = constraint.velocities {
             is_mean = is_mean_of_rows(model, [of_velocities, of_rows]);
             rows.push(of_velocities);
             values.push(of_rows);
-            between.push(self::between(model, (of_velocities, of_rows), is_mean));
+            between.push(self::between(model, (of_velocities, of_rows), is_mean, moved(model)));
         }
         let [rows, values, between] = [rows, values, between].map(|parts| model.graph.below(&parts));
         check_rows(constraint, rows)?;
@@ -119,6 +121,7 @@ impl<'g> ConstraintFormulas<'g> {
             values,
             between,
             by_inertia,
+            inertia: [inertia, inverse],
             metric: product(by_inertia, rows.transpose()),
             velocity,
             along: by_inertia * momenta,
@@ -128,6 +131,15 @@ impl<'g> ConstraintFormulas<'g> {
             of_places: constraint.velocities.map_or_else(Vec::new, |rows| of_places(model, system, rows)),
             is_mean_of_rows: is_mean,
         }))
+    }
+
+    /// ψ(t, q, F), with these images Φ_F(q).
+    pub(super) fn between_by(&self, model: &Mechanics<'g>, images: &Images<'g>) -> Expr<'g> {
+        let places = self.places.as_ref().map(|places| between_places(model, places.value, images.clone()));
+        let velocities = model.constraint.as_ref().and_then(|constraint| constraint.velocities);
+        let velocities = velocities
+            .map(|VelocityRows { rows, values }| between(model, (rows, values), self.is_mean_of_rows, images.clone()));
+        model.graph.below(&places.into_iter().chain(velocities).into_list())
     }
 
     /// y − Aᵀ S⁻¹(A Σ⁻¹y − ψ).
@@ -275,15 +287,25 @@ pub(super) fn inverse<'g>(system: &SystemFormulas<'g>, inertia: Expr<'g>) -> Exp
     graph.stack(shape, shape.positions().map(entry).into_list())
 }
 
+/// ψ(t, q, F) of a constraint on places, φ(t + h, Φ_F q)/h.
+fn between_places<'g>(model: &Mechanics<'g>, value: Expr<'g>, moved: Images<'g>) -> Expr<'g> {
+    value.substitute(&after_step(model, moved)) / model.step_size
+}
+
 /// ψ(t, q, F): the constraint on the velocity ξ(F)/h of a step, at the mean of both ends.
-fn between<'g>(model: &Mechanics<'g>, (rows, values): (Expr<'g>, Expr<'g>), is_mean_of_rows: bool) -> Expr<'g> {
+fn between<'g>(
+    model: &Mechanics<'g>,
+    (rows, values): (Expr<'g>, Expr<'g>),
+    is_mean_of_rows: bool,
+    moved: Images<'g>,
+) -> Expr<'g> {
     let (graph, h) = (model.graph, model.step_size);
     let velocity = graph.below(&force::velocities_of_step(model, h));
     let at = |places: &[(Expr<'g>, Expr<'g>)]| rows.substitute(places) * velocity - values.substitute(places);
     if is_mean_of_rows {
-        return (at(&[]) + at(&moved_on(model))) / 2;
+        return (at(&[]) + at(&after_step(model, moved))) / 2;
     }
-    let mean = moved(model).into_iter().map(|(q, image)| (q, (q + image) / 2));
+    let mean = moved.into_iter().map(|(q, image)| (q, (q + image) / 2));
     at(&mean.chain([(model.time, model.time + h / 2)]).into_list())
 }
 

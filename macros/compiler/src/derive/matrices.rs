@@ -96,6 +96,20 @@ impl<'g> MechanicsFormulas<'g> {
         if let Some(slopes) = &variation.slopes {
             kernels.push((Id::EdgeSlopes(index), slopes.each_ref().map(|columns| at.columns(columns)).to_vec()));
         }
+        kernels.extend(variation.constraint.iter().flat_map(|constraint| {
+            let [start, end] = constraint.rows.map(|rows| rows.map(|rows| at.whole(rows)).to_vec());
+            let at_start = constraint.at_start.each_ref().map(along_motions);
+            let at_end = constraint.at_end.each_ref().map(along_motions);
+            let slopes = constraint.slopes.each_ref();
+            let [slopes_at_start, slopes_at_end] =
+                slopes.map(|slopes| slopes.each_ref().map(|columns| at.columns(columns)).to_vec());
+            [
+                (Id::ConstraintAtStart(index), [start.as_slice(), &at_start].concat()),
+                (Id::ConstraintAtEnd(index), [end.as_slice(), &at_end].concat()),
+                (Id::SlopesAtStart(index), slopes_at_start),
+                (Id::SlopesAtEnd(index), slopes_at_end),
+            ]
+        }));
         kernels
     }
 }

@@ -81,7 +81,7 @@ pub use symbols::{ChartBlock, Symbols};
 pub use symmetric::SymmetricParts;
 pub use symmetry::{ConservedMomentum, Symmetries};
 pub use system::SystemFormulas;
-pub use variation::{EdgeDerivatives, Quantity};
+pub use variation::{ConstraintDerivatives, EdgeDerivatives, Quantity};
 
 /// Derives the formulas of a model.
 ///
@@ -114,7 +114,7 @@ fn mechanics(mut model: Mechanics<'_>) -> Result<MechanicsFormulas<'_>, Diagnost
     let joints = joints::of(&model, &system, (&energy, inertia), pushes)?;
     let is_timed = is_timed(&model, &lagrangian);
     let quantities = if model.emit.tangent { variation::quantities(&model, is_timed) } else { Vec::new() };
-    let variations = variation::Source { system: &system, quantities: &quantities };
+    let variations = variation::Source { model: &model, system: &system, quantities: &quantities };
     let sources = |divisor| Sources { model: &model, system: &system, inertia, divisor, keeps_exponentials: false };
     let mut edges = discrete_lagrangian::substeps(&model, &lagrangian, &declared);
     constraint::check_adjoint(&model, &edges)?;

@@ -107,7 +107,7 @@ impl<'g> Substep<'g> {
             coupling: lagrangian.couples.then(|| Coupling::new(&sources, kinetic)),
             variation: model
                 .has_variations()
-                .then(|| variations.variation(&lagrangian, (begins, ends), force.as_ref())),
+                .then(|| variations.variation(&lagrangian, (begins, ends), (force.as_ref(), constraint))),
             begins,
             ends,
             divisor: sources.divisor,

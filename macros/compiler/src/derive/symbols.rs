@@ -113,6 +113,12 @@ impl<'g> Symbols<'g> {
         vector.graph().beside(&jacobians)
     }
 
+    /// κ, the multipliers of so many equations of a constraint.
+    pub(super) fn multiplier_of(&self, count: usize) -> Expr<'g> {
+        let (letter, shape) = (self.multiplier.to_string(), Shape::vector(count));
+        self.multiplier.graph().symbol(&letter, shape, Role::Multiplier, Property::General)
+    }
+
     pub(super) fn new(model: &System<'g>, discretization: Option<Discretization>) -> Symbols<'g> {
         let (graph, taken) = (model.graph, taken(model));
         let numbered = |letters: &[&'static str], role: fn(usize) -> Role, shapes: &[Shape]| -> Vec<Expr<'g>> {
@@ -162,14 +168,22 @@ pub(super) fn identities<'g>(model: &System<'g>) -> Vec<(Expr<'g>, Expr<'g>)> {
     elements.chain(logarithms.map(|y| (y, model.graph.zero(y.shape())))).into_list()
 }
 
+/// The replacement of q by q⁺, for each leaf of the configuration.
+pub(super) type Images<'g> = Vec<(Expr<'g>, Expr<'g>)>;
+
 /// The replacement of q by Φ_F(q).
-pub(super) fn moved<'g>(model: &System<'g>) -> Vec<(Expr<'g>, Expr<'g>)> {
+pub(super) fn moved<'g>(model: &System<'g>) -> Images<'g> {
     model.configurations.iter().zip(&model.action).map(|(leaf, image)| (leaf.symbol, *image)).into_list()
 }
 
 /// The replacement of (t, q) by (t + h, Φ_F(q)).
 pub(super) fn moved_on<'g>(model: &System<'g>) -> Vec<(Expr<'g>, Expr<'g>)> {
-    moved(model).into_iter().chain([(model.time, model.time + model.step_size)]).into_list()
+    after_step(model, moved(model))
+}
+
+/// The replacement of (t, q) by (t + h, q⁺).
+pub(super) fn after_step<'g>(model: &System<'g>, images: Images<'g>) -> Vec<(Expr<'g>, Expr<'g>)> {
+    images.into_iter().chain([(model.time, model.time + model.step_size)]).into_list()
 }
 
 /// Some rows of a vector.

@@ -1,14 +1,17 @@
 //! Second derivatives of a discrete Lagrangian. Its Legendre transforms are differentiated along the motions of both
 //! ends of an edge, and with respect to everything that is fixed during a step.
 
+mod constraint;
+
 use clebsch_symbolic::{Elements, Expr, IntoList, Property, both, indexed};
 
 use super::choice::Direction;
 use super::force::total;
-use super::{Bend, DiscreteLagrangian, EdgeForce, SystemFormulas, cayley, control, trivialisation};
+use super::{Bend, ConstraintFormulas, DiscreteLagrangian, EdgeForce, SystemFormulas, cayley, control, trivialisation};
 use crate::diagnostic::Diagnostics;
 use crate::model::features::{self, Feature, Found};
 use crate::model::{Mechanics, Side, System};
+pub use constraint::ConstraintDerivatives;
 
 /// ℓd of an edge with its first and second derivatives, as functions of q, F and q⁺. Components are those of all factors, and each
 /// derivative is a vector that is linear in η, the symbols of the algebra.
@@ -25,6 +28,8 @@ pub struct EdgeDerivatives<'g> {
     pub bend: Option<Bend<'g>>,
     /// The derivatives of F⁻ℓd and of F⁺ℓd with respect to each of the [`Quantity`]s, where they are asked for.
     pub slopes: Option<[Vec<Expr<'g>>; 2]>,
+    /// The derivatives of the constraint, if there is one.
+    pub constraint: Option<ConstraintDerivatives<'g>>,
 }
 
 /// A scalar that is fixed during a step: an entry of a parameter, the step size, the time.
@@ -84,6 +89,7 @@ pub(super) fn check(model: &Mechanics<'_>) -> Result<(), Diagnostics> {
 
 /// The data for variations.
 pub(super) struct Source<'a, 'g> {
+    pub model: &'a Mechanics<'g>,
     pub system: &'a SystemFormulas<'g>,
     /// The quantities to differentiate with respect to; empty if the declaration asks for none.
     pub quantities: &'a [Quantity<'g>],
@@ -95,7 +101,7 @@ impl<'g> Source<'_, 'g> {
         &self,
         lagrangian: &DiscreteLagrangian<'g>,
         (begins, ends): (Expr<'g>, Expr<'g>),
-        force: Option<&EdgeForce<'g>>,
+        (force, constraint): (Option<&EdgeForce<'g>>, Option<&ConstraintFormulas<'g>>),
     ) -> EdgeDerivatives<'g> {
         let (system, model) = (self.system, &*self.system.model);
         let rational = cayley::replacements(model);
@@ -141,6 +147,7 @@ impl<'g> Source<'_, 'g> {
             momenta,
             derivatives,
             carried: [model.graph.below(&adjoint), first.differential(&together), last.differential(&together)],
+            constraint: constraint.map(|constraint| self.constraint(constraint, &together, ends)),
             slopes: (!self.quantities.is_empty()).then(|| both([first, last], slopes)),
             bend: model.control.as_ref().map(|_| {
                 let ends = both([&together, &at_end], |motions| system.symbols.along_basis(motions));

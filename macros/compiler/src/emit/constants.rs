@@ -49,7 +49,8 @@ impl Emitter<'_, '_> {
             [quote!(#name), quote!(runtime::#kind<T>), value]
         });
         let formulas = &self.formulas;
-        let needs_step_size = formulas.splitting.is_some() || formulas.collocation.is_some() || self.keeps_matrices;
+        let is_scheduled = formulas.splitting.is_some() || formulas.collocation.is_some();
+        let needs_step_size = is_scheduled || self.keeps_matrices || self.has_constrained_edges();
         let step_size = needs_step_size.then(|| [quote!(step_size), quote!(T), quote!(: h)]);
         let inverse = (!formulas.inertia_moves()).then(|| [quote!(inertia_inverse), self.inverse().0, quote!()]);
         numbers.chain(orientations).chain(rotations).chain(step_size).chain(inverse).into_list()

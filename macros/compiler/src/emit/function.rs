@@ -196,6 +196,7 @@ impl Block<'_> {
             "Option" | "Solved" | "Result" | "Error" | "Orientation" => quote!(runtime::#name),
             "Momenta" | "Edge" | "Carried" | "EndpointExpansion" => quote!(runtime::#name<T, #dimension>),
             "Ends" => quote!(runtime::Ends<'_, Self>),
+            "PassedEdge" => quote!(runtime::PassedEdge<T, #dimension>),
             "Square" => matrix(self.dimension, self.dimension),
             _ => return None,
         })

@@ -344,6 +344,38 @@ functions! {
         }
         /// ∂F⁻ℓd and ∂F⁺ℓd with respect to the quantities that are fixed during a step.
         fn slopes(&self, c: &C, t: T, (q, d, next, u): Ends) -> Slopes { Id::EdgeSlopes(0) } = { Locals (Value0, Value1) }
+        fn passed(&self, c: &C, t: T, ends: Ends, mu: &Mu, edge: Carried) -> Option<PassedEdge> { Id::ConstraintAtStart(0) => } = {
+            runtime::with_constraint::<Self, Sizes>(self, (c, t), ends, mu, &edge)
+        }
+        fn slopes_passed(&self, c: &C, t: T, ends: Ends, mu: &Mu) -> Option<Slopes> { Id::SlopesAtStart(0) => } = {
+            let slopes = <Self as Varied>::slopes(self, c, t, ends);
+            runtime::slopes_with_constraint::<Self, Sizes>(self, (c, t), ends, mu, slopes)
+        }
+    }
+
+    /// `ConstrainedSubstep`: the constraint of an edge, with its derivatives.
+    CONSTRAINED_EDGE(true) {
+        fn end(c: &C, t: T) -> T { Id::Constants } = { t + c.step_size }
+        /// A and A Σ⁻¹ at q, ∂(Aᵀκ) and ∂ψ along motions that leave F as it is, and ∂ψ/∂η′.
+        fn at_start(&self, c: &C, t: T, (q, d, next, u): Ends, kappa: &Multipliers) -> AtStart { Id::ConstraintAtStart(0) } = {
+            Locals
+            runtime::ConstraintAtStart {
+                rows: Matrix0, by_inertia: Matrix1, push: Matrix2, between: Matrix3, between_by_end: Matrix4,
+            }
+        }
+        /// A and A Σ⁻¹ at q⁺, ∂(Aᵀκ)/∂η′ and ∂(A Σ⁻¹N⁺ − b)/∂η′.
+        fn at_end(&self, c: &C, t: T, next: &Q, mu: &Mu, kappa: &Multipliers) -> AtEnd { Id::ConstraintAtEnd(0) } = {
+            Locals
+            runtime::ConstraintAtEnd { rows: Matrix0, by_inertia: Matrix1, push: Matrix2, velocity: Matrix3 }
+        }
+        /// The derivatives of Aᵀκ and of ψ with respect to the quantities that are fixed during a step.
+        fn slopes_at_start(&self, c: &C, t: T, (q, d, next, u): Ends, kappa: &Multipliers) -> Slopes { Id::SlopesAtStart(0) } = {
+            Locals (Matrix0, Matrix1)
+        }
+        /// The same of Aᵀκ and of A Σ⁻¹N⁺ − b at q⁺.
+        fn slopes_at_end(&self, c: &C, t: T, next: &Q, mu: &Mu, kappa: &Multipliers) -> Slopes { Id::SlopesAtEnd(0) } = {
+            Locals (Matrix0, Matrix1)
+        }
     }
 
     /// `Controlled`: the step that inputs make by themselves, from points and their costates, by its size.

@@ -187,10 +187,15 @@ impl<'a, 'g> Emitter<'a, 'g> {
         self.target.implementation(Some(self.trait_of_parts(name, sizes)), items)
     }
 
+    /// The type of the method that is emitted.
+    pub(super) fn own_method(&self) -> TokenStream {
+        self.method.map_or_else(|| quote!(runtime::Declared), |method| self.names.of_user(quote!(#method)))
+    }
+
     /// A trait of the parts of a step: by its sizes, and by the method that is emitted where there are several.
     pub(super) fn trait_of_parts(&self, name: &str, sizes: &[Literal]) -> TokenStream {
-        let declared = || (!self.program.methods.is_empty()).then(|| quote!(runtime::Declared));
-        let method = self.method.map(|method| self.names.of_user(quote!(#method))).or_else(declared);
+        let is_named = self.method.is_some() || !self.program.methods.is_empty();
+        let method = is_named.then(|| self.own_method());
         let (name, mut arguments) =
             (format_ident!("{name}"), sizes.iter().map(|size| quote!(#size)).chain(method).peekable());
         if arguments.peek().is_none() { quote!(runtime::#name) } else { quote!(runtime::#name::<#(#arguments),*>) }

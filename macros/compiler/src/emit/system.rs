@@ -264,7 +264,7 @@ impl<'g> Emitter<'_, 'g> {
 }
 
 /// The output of a kernel that a word `Matrix0` means, as a matrix.
-fn matrix_of_kernel(scope: &Scope<'_, '_>, kernel: &Kernel, word: &str) -> Option<TokenStream> {
+pub(super) fn matrix_of_kernel(scope: &Scope<'_, '_>, kernel: &Kernel, word: &str) -> Option<TokenStream> {
     Some(scope.whole_matrix(kernel, number(word, "Matrix")?))
 }
 

@@ -1,14 +1,15 @@
 //! The implementations of `Variational` and `Sensitive`: motions, edges, and their derivatives.
 
 use clebsch_symbolic::{Role, both};
-use proc_macro2::TokenStream;
+use proc_macro2::{Literal, TokenStream};
 use quote::{format_ident, quote};
 
-use super::Emitter;
 use super::block::matrix;
 use super::function::{Body, Function, no_words, number};
-use super::functions::{EDGE, VARIATIONAL};
+use super::functions::{CONSTRAINED_EDGE, EDGE, VARIATIONAL};
 use super::scope::{nested, size};
+use super::system::matrix_of_kernel;
+use super::{Emitter, flag};
 use crate::derive::Id;
 use crate::lower::Kernel;
 
@@ -21,7 +22,9 @@ impl Emitter<'_, '_> {
         let dimension = size(self.dimension);
         let motions =
             self.functions(VARIATIONAL, (0, 0), &no_words, |function, kernel| self.motion_of(function, kernel));
-        let variational = self.target.derived(Some(quote!(runtime::Variational<#dimension>)), motions);
+        let is_constrained = self.has_constrained_edges().then(|| flag("IS_CONSTRAINED", true));
+        let variational =
+            self.target.derived(Some(quote!(runtime::Variational<#dimension>)), quote!(#is_constrained #motions));
         let slopes = matrix(self.dimension, self.formulas.quantities.len());
         let slopes = if self.is_sensitive() { quote!((#slopes, #slopes)) } else { quote!(()) };
         let varied =
@@ -40,10 +43,47 @@ impl Emitter<'_, '_> {
                 None => quote!(()),
             };
             let words = |word: &str| (word == "Slopes").then(|| slopes.clone());
-            let functions = self.functions(EDGE, (index, 0), &words, |function, kernel| self.edge(function, kernel));
-            self.implementation("VariedSubstep", &[size(index), dimension.clone()], functions)
+            let functions =
+                self.functions(EDGE, (index, 0), &words, |function, kernel| self.edge(index, function, kernel));
+            let edge = self.implementation("VariedSubstep", &[size(index), dimension.clone()], functions);
+            let constraint = self.constrained_edge(index);
+            quote!(#edge #constraint)
         });
         edges.collect()
+    }
+
+    /// Whether edges of steps have the forces of a constraint.
+    pub(super) fn has_constrained_edges(&self) -> bool {
+        self.model.has_variations() && self.formulas.constraint.is_some()
+    }
+
+    /// The sizes of an edge with a constraint: its number, those of motions and equations, and that of quantities.
+    fn sizes_of_constrained_edge(&self, index: usize) -> Option<[Literal; 4]> {
+        let constraint = self.formulas.constraint.as_ref().filter(|_| self.model.has_variations())?;
+        let equations = constraint.rows.shape().rows;
+        Some([index, self.dimension, equations, self.formulas.quantities.len()].map(size))
+    }
+
+    /// The implementation of `ConstrainedSubstep` for an edge, where there is a constraint.
+    fn constrained_edge(&self, index: usize) -> TokenStream {
+        let Some(sizes) = self.sizes_of_constrained_edge(index) else { return TokenStream::new() };
+        let [_, motions, equations, quantities] = &sizes;
+        let words = |word: &str| {
+            Some(match word {
+                "Multipliers" => quote!(runtime::SVector<T, #equations>),
+                "AtStart" => quote!(runtime::ConstraintAtStart<T, #motions, #equations>),
+                "AtEnd" => quote!(runtime::ConstraintAtEnd<T, #motions, #equations>),
+                "Slopes" => {
+                    quote!((runtime::SMatrix<T, #motions, #quantities>, runtime::SMatrix<T, #equations, #quantities>))
+                }
+                _ => return None,
+            })
+        };
+        let scope = self.scope_of_step();
+        let functions = self.functions(CONSTRAINED_EDGE, (index, 0), &words, |function, kernel| {
+            function.written(&scope, kernel, &|word| matrix_of_kernel(&scope, kernel?, word))
+        });
+        self.implementation("ConstrainedSubstep", &sizes, functions)
     }
 
     /// Whether the declaration asks for derivatives with respect to the quantities that are fixed during a step.
@@ -147,7 +187,7 @@ impl Emitter<'_, '_> {
     }
 
     /// A function of `VariedSubstep`: vectors and matrices of an edge.
-    fn edge<'k>(&'k self, function: &Function, kernel: Option<&'k Kernel>) -> Option<Body<'k>> {
+    fn edge<'k>(&'k self, index: usize, function: &Function, kernel: Option<&'k Kernel>) -> Option<Body<'k>> {
         let Some(kernel) = kernel else {
             // there is always something that is called the slopes
             return (function.name == "slopes").then(|| Body::from(quote!()).titled(""));
@@ -155,6 +195,13 @@ impl Emitter<'_, '_> {
         let words = |word: &str| match number(word, "Matrix") {
             Some(6) if kernel.outputs.len() < 7 => Some(quote!(-before_by_end.transpose())),
             Some(index) => Some(self.matrix_of_edge(kernel, index)),
+            None if word == "Sizes" => {
+                let (sizes, method) = (self.sizes_of_constrained_edge(index)?, self.own_method());
+                Some(quote!(#method, #(#sizes),*))
+            }
+            None if word == "Varied" => {
+                Some(self.trait_of_parts("VariedSubstep", &[size(index), size(self.dimension)]))
+            }
             None => (word == "Locals").then(|| self.locals_of_edge(kernel)),
         };
         function.written(&self.scope_of_step(), Some(kernel), &words)

@@ -95,8 +95,16 @@ const OF_MOTIONS: Names<Id> = &[
     ("orbit_metric", Id::OrbitMetric),
 ];
 
-const OF_EDGE: Names<fn(usize) -> Id> =
-    &[("edge", Id::Edge), ("momenta", Id::EdgeMomenta), ("carried", Id::Carried), ("edge_slopes", Id::EdgeSlopes)];
+const OF_EDGE: Names<fn(usize) -> Id> = &[
+    ("edge", Id::Edge),
+    ("momenta", Id::EdgeMomenta),
+    ("carried", Id::Carried),
+    ("edge_slopes", Id::EdgeSlopes),
+    ("constraint_at_start", Id::ConstraintAtStart),
+    ("constraint_at_end", Id::ConstraintAtEnd),
+    ("slopes_at_start", Id::SlopesAtStart),
+    ("slopes_at_end", Id::SlopesAtEnd),
+];
 
 const OF_STEERING: Names<Id> = &[
     ("orbit_metric", Id::OrbitMetric),

@@ -3,8 +3,8 @@
 use crate::arbitrary::{cases, definite, matrix, vector};
 use crate::bodies::H;
 use clebsch::__private::{
-    At, Correction, Parts, Scheme, Substep, Violation, check_place, constrained, multipliers, placed, reactions,
-    violation,
+    At, ConstrainedSubstep, Correction, Parts, Scheme, Substep, VariedSubstep, Violation, check_place, constrained,
+    multipliers, placed, reactions, slopes_with_constraint, violation, with_constraint,
 };
 use clebsch::{Clebsch, Constrained, Declared, Error, Method, Reacting};
 use clebsch_tests::oracle::near::assert_near;
@@ -20,6 +20,7 @@ const NEAR: f64 = 1e-12;
     lagrangian = |v| v.dot(&(self.mass * v)) / 2,
     potential  = |x| self.pull.dot(&x),
     constraint = |t, x, v| [v.z == x.y * v.x + self.rate * t],
+    emit       = [tangent],
 )]
 pub struct Guided {
     #[clebsch(symmetric)]
@@ -202,5 +203,64 @@ proptest! {
         let dependent = Matrix2::new(1.0, 1.0, 1.0, 1.0);
         prop_assert_eq!(reactions(&dependent, &v), Err(Error::DependentConstraints { rank: 1, rows: 2 }));
         prop_assert!(multipliers(&dependent, &v).x.is_nan());
+    }
+
+    /// A = (−y, 0, 1), ψ = A(x + d/2)·d/h − rate (t + h/2), A Σ⁻¹N − rate (t + h), and their derivatives. In the edge of a
+    /// step, changes of N along A leave no trace. Those of N⁺ obey the constraint.
+    #[test]
+    fn edges_have_the_slopes_of_constraints(mass in definite::<3>(), pull in vector::<3>(1.0), x in vector::<3>(1.0), v in vector::<2>(1.0), kappa in -1.0_f64..1.0, t in -1.0_f64..1.0) {
+        type Edge<'a> = (&'a Vector3<f64>, &'a Vector3<f64>, &'a Vector3<f64>, &'a ());
+        let system = Guided { mass, pull, rate: 0.7 };
+        let (constants, inverse) = (system.constants(H)?, mass.try_inverse().expect("a regular matrix"));
+        let (d, kappa) = (Vector3::new(v.x, v.y, x.y * v.x) * H, Vector1::new(kappa));
+        let (next, mu) = (x + d, mass * Vector3::new(v.y, v.x, 0.3));
+        let ends: Edge<'_> = (&x, &d, &next, &());
+        let row = |x: &Vector3<f64>| Matrix1x3::new(-x.y, 0.0, 1.0);
+        let start = ConstrainedSubstep::<0, 3, 1, 12>::at_start(&system, &constants, t, ends, &kappa);
+        assert_near(&start.rows, &row(&x), NEAR, "A");
+        assert_near(&start.by_inertia, &(row(&x) * inverse), NEAR, "A Σ⁻¹");
+        let turned = Matrix3::new(0.0, -kappa.x, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0);
+        assert_near(&start.push, &turned, NEAR, "∂(Aᵀλ)");
+        let along_y = |slope: f64| Matrix1x3::new(0.0, slope, 0.0);
+        assert_near(&start.between, &along_y(-d.x / H), NEAR, "∂ψ/∂η");
+        let by_end = row(&(x + d / 2.0)) / H + along_y(-d.x / (2.0 * H));
+        assert_near(&start.between_by_end, &by_end, NEAR / H, "∂ψ/∂η′");
+        let end = ConstrainedSubstep::<0, 3, 1, 12>::at_end(&system, &constants, t, &next, &mu, &kappa);
+        assert_near(&end.rows, &row(&next), NEAR, "A⁺");
+        assert_near(&end.by_inertia, &(row(&next) * inverse), NEAR, "A⁺Σ⁻¹");
+        assert_near(&end.push, &turned, NEAR, "∂(Aᵀμ)");
+        assert_near(&end.velocity, &along_y(-(inverse * mu).x), NEAR, "∂(A Σ⁻¹N⁺ − b)");
+        prop_assert!((<Guided as ConstrainedSubstep<0, 3, 1, 12>>::end(&constants, t) - t - H).abs() < NEAR);
+        // mass, pull, rate, h, t: in A itself there is none of them
+        let (push, between) = ConstrainedSubstep::<0, 3, 1, 12>::slopes_at_start(&system, &constants, t, ends, &kappa);
+        prop_assert_eq!(push.amax(), 0.0);
+        prop_assert_eq!(between.columns(0, 9).amax(), 0.0);
+        let middle = row(&(x + d / 2.0)).transpose();
+        let expected = [-(t + H / 2.0), -middle.dot(&d) / (H * H) - 0.35, -0.7];
+        (0..3).for_each(|k| assert!((between[9 + k] - expected[k]).abs() < NEAR / (H * H), "∂ψ/∂ quantity {k}"));
+        let (push, velocity) =
+            ConstrainedSubstep::<0, 3, 1, 12>::slopes_at_end(&system, &constants, t, &next, &mu, &kappa);
+        prop_assert_eq!(push.amax(), 0.0);
+        // Σ⁻¹ moves by −Σ⁻¹ δΣ Σ⁻¹: the first entry of Σ
+        let slope = -(end.by_inertia[0] * (inverse * mu).x);
+        prop_assert!((velocity[0] - slope).abs() < NEAR);
+        let expected = [-(t + H), -0.7, -0.7];
+        (0..3).for_each(|k| assert!((velocity[9 + k] - expected[k]).abs() < NEAR, "∂(A ξ − b)/∂ quantity {k}"));
+        // the edge as a step passes it
+        let carried = VariedSubstep::<0, 3>::carried(&system, &constants, t, ends);
+        let passed = with_constraint::<_, Declared, 0, 3, 1, 12>(&system, (&constants, t), ends, &mu, &carried);
+        let passed = passed.expect("independent rows");
+        let balance = passed.balance.expect("a constraint");
+        prop_assert!((balance * row(&x).transpose()).amax() < NEAR);
+        prop_assert!((start.by_inertia * balance).amax() < NEAR);
+        prop_assert!((end.by_inertia * passed.edge.momentum - Vector1::new(0.7 * (t + H))).amax() < NEAR);
+        let slope = along_y(-(inverse * passed.edge.momentum).x);
+        prop_assert!((end.by_inertia * passed.edge.after_by_end + slope).amax() < NEAR / H);
+        let slopes = VariedSubstep::<0, 3>::slopes(&system, &constants, t, ends);
+        let (_, after) =
+            slopes_with_constraint::<_, Declared, 0, 3, 1, 12>(&system, (&constants, t), ends, &mu, slopes)
+                .expect("independent rows");
+        let by_time = (end.by_inertia * after.column(11))[0];
+        prop_assert!((by_time - 0.7).abs() < NEAR / H);
     }
 }

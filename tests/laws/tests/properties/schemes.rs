@@ -230,5 +230,11 @@ proptest! {
         let heavier = WatchedTop { weight: top.weight + 1.0, ..top.clone() };
         let change = VariedSubstep::<0, 3>::momenta(&heavier, &heavier.step_constants(H)?, 0.0, (&r, &d, &next, &())).before - momenta.before;
         assert_near(&before.column(3).into_owned(), &change, 1e-9, "∂N/∂weight");
+        // without a constraint a step passes the edge as it is, whatever its momentum
+        let at = (&constants, 0.0, (&r, &d, &next, &()), &momenta.before);
+        let passed = VariedSubstep::<0, 3>::passed(&top, at.0, at.1, at.2, at.3, carried).expect("an edge");
+        prop_assert_eq!((passed.edge, passed.balance), (carried, None));
+        let slopes = VariedSubstep::<0, 3>::slopes_passed(&top, at.0, at.1, at.2, at.3).expect("slopes");
+        prop_assert_eq!(slopes.0, before);
     }
 }

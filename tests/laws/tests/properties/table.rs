@@ -18,7 +18,7 @@ pub const PROPERTIES: &[(&str, &[Property])] = &[
         ("kicks_of_splittings_are_momenta", &["SplitKicks::step_size", "SplitKicks::kick", "SplitKicks::kick_gradient"]),
         ("slopes_are_those_of_hamilton",   &["HamiltonEquations::step_size", "HamiltonEquations::slope", "HamiltonEquations::covector", "HamiltonEquations::momentum", "HamiltonEquations::guess", "HamiltonEquations::part", "HamiltonEquations::joined", "HamiltonEquations::parted"]),
         ("points_turn_by_the_step_over_the_inertia", &["GreatCircles::turn"]),
-        ("edges_are_those_of_substeps",    &["VariedSubstep::edge", "VariedSubstep::momenta", "VariedSubstep::carried", "VariedSubstep::slopes"]),
+        ("edges_are_those_of_substeps",    &["VariedSubstep::edge", "VariedSubstep::momenta", "VariedSubstep::carried", "VariedSubstep::slopes", "VariedSubstep::passed", "VariedSubstep::slopes_passed"]),
     ]),
     ("runtime/src/double_double/tests.rs", &[
         ("pairs_are_unevaluated_sums", &["DoubleDouble::new", "DoubleDouble::parts"]),
@@ -38,6 +38,7 @@ pub const PROPERTIES: &[(&str, &[Property])] = &[
         ("velocities_obey_constraints",      &["Stepper::state_moving", "Stepper::project_at", "Constrained::momentum_of_velocity", "Clebsch::constrained", "Clebsch::constraint_defect", "Method::constrained", "Method::constraint_defect"]),
         ("places_obey_constraints",          &["check_place", "Clebsch::check_place"]),
         ("places_come_to_constraints",       &["placed", "Clebsch::placed", "Method::placed"]),
+        ("edges_have_the_slopes_of_constraints", &["ConstrainedSubstep::end", "ConstrainedSubstep::at_start", "ConstrainedSubstep::at_end", "ConstrainedSubstep::slopes_at_start", "ConstrainedSubstep::slopes_at_end", "with_constraint", "slopes_with_constraint"]),
         ("constraints_push_along_their_rows", &["Substep::reaction", "Substep::projection", "Scheme::step_pushed", "Stepper::step_with_reactions", "Reacting::multipliers", "multipliers"]),
         ("reactions_hold_motions_on_constraints", &["Stepper::reactions", "Stepper::reactions_under", "Stepper::step_with_reactions_under", "Reacting::reactions_of_motion", "reactions"]),
     ]),

@@ -2,6 +2,8 @@
 //!
 //! Derivatives are exact up to round-off, of numbers of order one: 1e-12 allowed.
 
+mod constrained;
+mod constrained_systems;
 mod systems;
 
 use clebsch::{Clebsch, Scalar, Sensitive, Sensitivity, Space, Tangent, Variation, Variational};
@@ -68,6 +70,15 @@ where
     S: Sensitive<M, P> + Clebsch<Scalar = f64, Momentum = SVector<f64, M>> + Clone,
     D: Variational<M> + Clebsch<Scalar = Dual<K>, Momentum = SVector<Dual<K>, M>>,
 {
+    check_on::<S, D, M, P>(case, &SMatrix::identity());
+}
+
+/// The same, with the form on the motions that are images of the matrix `admissible`.
+fn check_on<S, D, const M: usize, const P: usize>(case: &Case<S, D, M>, admissible: &SMatrix<f64, M, M>)
+where
+    S: Sensitive<M, P> + Clebsch<Scalar = f64, Momentum = SVector<f64, M>> + Clone,
+    D: Variational<M> + Clebsch<Scalar = Dual<K>, Momentum = SVector<Dual<K>, M>>,
+{
     let place = |name: &str| S::QUANTITIES.iter().position(|quantity| *quantity == name);
     assert_eq!(place("h"), Some(case.numbers.len()), "{:?}", S::QUANTITIES);
     let stepper = (case.plain)(&case.numbers).into_stepper(H).expect("a regular system");
@@ -94,7 +105,7 @@ where
     }
     println!("{}: {worst:.1e} from dual numbers", S::NAME);
     if let Some(bracket) = case.bracket {
-        let kept = keeps_the_form(bracket, &tangent, &case.mu, &next.momentum());
+        let kept = keeps_the_form(bracket, &tangent, admissible, [&case.mu, &next.momentum()]);
         println!("    DᵀΩD − Ω {kept:.1e}");
         assert!(kept < NEAR, "{}: DᵀΩD − Ω {kept:.1e}", S::NAME);
     }
@@ -132,21 +143,21 @@ where
     (q, D::momentum_held(&q, &held))
 }
 
-/// By how much DᵀΩ⁺D differs from Ω, block by block: Ω = (B(N), I; −I, 0) on (η, ν).
+/// By how much DᵀΩ⁺D differs from Ω, block by block: Ω = (B(N), I; −I, 0) on (η, ν). η is in the image of a matrix.
 fn keeps_the_form<const M: usize>(
     bracket: Bracket<M>,
     tangent: &Tangent<f64, M>,
-    mu: &SVector<f64, M>,
-    next: &SVector<f64, M>,
+    admissible: &SMatrix<f64, M, M>,
+    [mu, next]: [&SVector<f64, M>; 2],
 ) -> f64 {
-    let Tangent { motion_by_motion: a, motion_by_momentum: b, momentum_by_motion: c, momentum_by_momentum: d } =
-        tangent;
+    let Tangent { motion_by_momentum: b, momentum_by_momentum: d, .. } = tangent;
+    let (a, c) = (&(tangent.motion_by_motion * admissible), &(tangent.momentum_by_motion * admissible));
     let form = |a: &SMatrix<f64, M, M>, c: &SMatrix<f64, M, M>, b: &SMatrix<f64, M, M>, d: &SMatrix<f64, M, M>| {
         a.transpose() * bracket(next) * b + a.transpose() * d - c.transpose() * b
     };
-    let one = SMatrix::identity();
-    distance(&form(a, c, a, c), &bracket(mu))
-        .max(distance(&form(a, c, b, d), &one))
+    let motions = admissible.transpose();
+    distance(&form(a, c, a, c), &(motions * bracket(mu) * admissible))
+        .max(distance(&form(a, c, b, d), &motions))
         .max(distance(&form(b, d, b, d), &SMatrix::zeros()))
 }
 

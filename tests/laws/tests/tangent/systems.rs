@@ -173,13 +173,13 @@ pub struct Fourth<T: Scalar> {
 }
 
 /// The symmetric matrix with this upper triangle, row by row.
-fn symmetric<T: Scalar, const N: usize>(upper: &[T]) -> SMatrix<T, N, N> {
+pub fn symmetric<T: Scalar, const N: usize>(upper: &[T]) -> SMatrix<T, N, N> {
     // rows before row i hold N, N − 1, …, N − i + 1 numbers
     let place = |i: usize, j: usize| i * N - i * (i + 1) / 2 + j;
     SMatrix::from_fn(|i, j| upper[place(i.min(j), i.max(j))])
 }
 
-fn vector<T: Scalar>(entries: &[T]) -> Vector3<T> {
+pub fn vector<T: Scalar>(entries: &[T]) -> Vector3<T> {
     Vector3::from_column_slice(entries)
 }
 
