@@ -43,7 +43,8 @@ const WORDS: &[&str] = &[
     "Vector3::z()", "Matrix3::from_diagonal(&q)", ".transpose()", ".trace()", ".norm()", ".norm_squared()", ".inverse()", ".dot(&q)",
     ".cross(&q)", ".x", ".z", "[(0, 0)]", "[0]", ".0", ".rotation()", ".translation()", ".sqrt()", ".sin()", ".exp()", ".ln()", ".powi(2)",
     ".powf(0.5)", ".recip()", ".determinant()", ".abs()", ".matrix()", ".conjugate()", ".imag()", ".fixed_rows::<2>(0)", ".xy()",
-    ".component_mul(&q)", "+", "-", "*", "/", "..",
+    ".component_mul(&q)", "+", "-", "*", "/", "..", "constraint", "==", "&&", "<=", "(1..N).map(|i| q[i] == q[i - 1])", "|q| [q.x == 0]",
+    "|t, q, xi| [q.x * xi.x == t]", "[SE<2>; N]", "Vector3::zeros()",
 ];
 
 /// The wrappings of a part; the part stands where `@` is.
@@ -51,7 +52,7 @@ const WORDS: &[&str] = &[
 const WRAPPINGS: &[&str] = &[
     "( @ )", "- ( @ )", "( @ ) . norm ( )", "( @ ) . sin ( )", "( @ ) . powi ( 7 )", "( @ ) . sqrt ( )", "( @ , @ )", "[ @ ; 2 ]",
     "( @ ) * ( @ )", "( @ ) + ( @ )", "1 / ( @ )", "{ let y = @ ; y * y }", "( 0 .. 9 ) . map ( | i | @ ) . sum ( )", "& @", "( @ ) . exp ( )",
-    "[ @ , @ , @ ]", "( @ ) . inverse ( )", "if q { @ } else { 1 }", "| y | @", "matrix ! [ @ , 1 ; 2 , @ ]",
+    "[ @ == 0 ]", "( 1 .. N ) . map ( | i | @ == @ )", "[ | q | [ @ ] , | q , xi | [ @ ] ]", "[ @ , @ , @ ]", "( @ ) . inverse ( )", "if q { @ } else { 1 }", "| y | @", "matrix ! [ @ , 1 ; 2 , @ ]",
 ];
 
 /// Numbers at which something may end.
