@@ -120,7 +120,8 @@ pub trait Equation<T: Scalar, const M: usize, const N: usize = M> {
         false
     }
 
-    /// The size of a motion ξ that is lost to rounding times ε, if ρ compares places: 1 + |q|.
+    /// The size of a motion ξ that is lost to rounding times ε, if ρ compares places: 1 + |q|. The same where a constraint
+    /// may take up all of μ, and no predictor tells the size of that.
     ///
     /// Zero by the provided method: then ξ may be as small as it likes, and is right to its own last digits.
     #[inline]

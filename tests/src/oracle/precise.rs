@@ -34,6 +34,7 @@
 //! assert!(deviation(&oracle, &states) < 1e-15);
 //! ```
 
+pub mod constrained;
 pub mod double_double;
 pub mod dual;
 pub mod energy;

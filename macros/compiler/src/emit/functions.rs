@@ -292,7 +292,7 @@ functions! {
         fn correct(a: &Square, b: &Vector) -> Option<(Vector, Orientation)> { Id::Equation(0, 0) => }
         fn orientation(&self) -> Option<Orientation> { Id::Constants }
         fn has_poles() -> Bool { Id::Equation(0, 0) } = { true }
-        /// 1 + |q|: places are compared.
+        /// 1 + |q|: the constraint is known to the rounding of places.
         fn extent(&self) -> T { Id::Equation(0, 0) => }
         /// The declared tolerance.
         fn tolerance() -> T { Id::Equation(0, 0) => }

@@ -8,6 +8,32 @@ pub struct Mistake {
     pub text: String,
 }
 
+/// Mistakes in the constraint of a problem, and a part of the help for each.
+pub fn mistakes_in_constraint(problem: &Declared) -> Vec<(Mistake, &'static str)> {
+    let text = problem.text();
+    let Some((before, constraint)) = text.split_once("constraint = ") else { return Vec::new() };
+    let mut found = Vec::new();
+    let mut replaced = |name: &'static str, help: &'static str, old: &str, new: &str| {
+        if constraint.contains(old) {
+            let constraint = constraint.replacen(old, new, 1);
+            found.push((Mistake { name, text: format!("{before}constraint = {constraint}") }, help));
+        }
+    };
+    replaced("an inequality", "==", " == ", " <= ");
+    replaced("an assignment", "==", " == ", " = ");
+    replaced("equations that are joined", "separate equations by commas", " == ", " == 0 && 1 == ");
+    replaced("no equation", "== 0", " == ", " + ");
+    replaced("an unknown name", "", "v.x", "u.x");
+    replaced("a velocity squared", "sums of components", "v.x)", "v.x * v.x)");
+    replaced("a step", "", "| [", ", h| [");
+    if problem.constraint.len() == 1 {
+        replaced("another key", "constraint", "", "");
+        let last = found.len() - 1;
+        found[last].0.text = text.replacen("constraint =", "constraints =", 1);
+    }
+    found
+}
+
 /// All mistakes that this problem offers.
 pub fn mistakes(problem: &Declared) -> Vec<Mistake> {
     let text = problem.text();

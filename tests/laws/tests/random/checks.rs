@@ -18,7 +18,7 @@ use clebsch_tests::oracle::random::Random;
 use proc_macro2::TokenStream;
 
 use crate::powers::{Power, Sites, kicked};
-use crate::problem::{Declared, Discretization, Kind, Kinetic};
+use crate::problem::{Declared, Discretization, Kind, Kinetic, Leaf};
 use crate::stepping::{Seen, Stepper};
 
 /// The step.
@@ -83,7 +83,7 @@ pub fn check(problem: &Declared, seed: u64) -> Result<Found, String> {
 }
 
 /// The first four stages.
-fn mechanics<'g>(graph: &'g Graph, tokens: TokenStream) -> Result<MechanicsProgram<'g>, Diagnostics> {
+pub fn mechanics<'g>(graph: &'g Graph, tokens: TokenStream) -> Result<MechanicsProgram<'g>, Diagnostics> {
     match compile(graph, tokens)? {
         Program::Mechanics(program) => Ok(*program),
         Program::Steered(_) => panic!("inputs move it"),
@@ -323,17 +323,29 @@ fn shown<R: Copy>(kind: Kind, matrix: &Matrix<R>) -> Vec<R> {
     }
 }
 
-fn seen(problem: &Declared, state: &State<f64>) -> Seen {
+/// The leaf of the oracle from the part that the program sees.
+pub fn unseen(leaf: &Leaf, entries: &[f64]) -> Matrix<f64> {
+    if leaf.kind != Kind::Quaternion {
+        let (rows, columns) = leaf.start.shape();
+        return Matrix::of(rows, columns, entries);
+    }
+    let [x, y, z, w] = entries else { panic!("a quaternion has four entries") };
+    Matrix::of(4, 4, &[*w, -z, *y, *x, *z, *w, -x, *y, -y, *x, *w, *z, -x, -y, -z, *w])
+}
+
+/// The numbers of a state that the program sees.
+pub fn seen(problem: &Declared, state: &State<f64>) -> Seen {
     let q = problem.leaves.iter().zip(&state.q).map(|(leaf, q)| shown(leaf.kind, q)).collect();
     Seen { q, mu: state.n.clone() }
 }
 
-fn rounded(state: &State<DoubleDouble>) -> State<f64> {
+/// A state of the oracle in `f64`.
+pub fn rounded(state: &State<DoubleDouble>) -> State<f64> {
     State { q: state.q.iter().map(|q| q.map(Real::to_f64)).collect(), n: state.n.iter().map(|n| n.to_f64()).collect() }
 }
 
 /// The largest difference, relative to the largest number of the state where that is above one.
-fn distance(problem: &Declared, exact: &State<DoubleDouble>, state: &Seen) -> f64 {
+pub fn distance(problem: &Declared, exact: &State<DoubleDouble>, state: &Seen) -> f64 {
     let exact = seen(problem, &rounded(exact));
     let (a, b) = ([exact.q.concat(), exact.mu].concat(), [state.q.concat(), state.mu.clone()].concat());
     if a.len() != b.len() {

@@ -20,18 +20,41 @@ pub fn problem(seed: u64) -> Declared {
         order: if pick(random, 4) == 0 { 1 } else { 2 },
         dials: Vec::new(),
         array: false,
+        constraint: Vec::new(),
     };
     // drawn apart, so that other problems stay as they are
     let is_natural = pick(&mut Random::new(seed.wrapping_mul(0x85eb_ca6b).wrapping_add(5)), 6) == 0;
-    Generator { made: &mut made, random, is_natural }.fill();
+    Generator { made: &mut made, random, is_natural, is_full: false }.fill();
     made
 }
 
-struct Generator<'a> {
-    made: &'a mut Declared,
-    random: &'a mut Random,
+/// The random problem of a seed with a constraint. With `is_full` every configuration is a group or a vector space, and
+/// most of them are without it.
+pub fn constrained(seed: u64, is_full: bool) -> Declared {
+    let random = &mut Random::new(seed.wrapping_mul(0xc2b2_ae35).wrapping_add(29));
+    let mut made = Declared {
+        factors: Vec::new(),
+        leaves: Vec::new(),
+        fields: Vec::new(),
+        kinetic: Kinetic::Cost(Formula::Number(0.0)),
+        potential: None,
+        order: if pick(random, 8) == 0 { 1 } else { 2 },
+        dials: Vec::new(),
+        array: false,
+        constraint: Vec::new(),
+    };
+    let is_full = is_full || pick(random, 8) > 0;
+    Generator { made: &mut made, random, is_natural: false, is_full }.fill_constrained();
+    made
+}
+
+pub struct Generator<'a> {
+    pub made: &'a mut Declared,
+    pub random: &'a mut Random,
     /// Whether the cost is to be one of displacements alone.
     is_natural: bool,
+    /// Whether only the identity fixes a configuration.
+    is_full: bool,
 }
 
 impl Generator<'_> {
@@ -49,21 +72,39 @@ impl Generator<'_> {
         self.dials();
     }
 
-    fn pick(&mut self, n: usize) -> usize {
+    fn fill_constrained(&mut self) {
+        match self.pick(10) {
+            0..=5 => self.one_factor(),
+            6 | 7 => self.two_factors(),
+            8 => self.two_equal_factors(),
+            _ if self.is_full => self.two_equal_factors(),
+            _ => self.two_sides(),
+        }
+        match self.pick(5) {
+            0 => self.kinetic(),
+            _ => self.quadratic(),
+        }
+        if self.pick(5) > 0 {
+            self.made.potential = Some(self.potential());
+        }
+        self.constraint();
+    }
+
+    pub fn pick(&mut self, n: usize) -> usize {
         pick(self.random, n)
     }
 
     /// A number with few binary digits.
-    fn number(&mut self) -> Formula {
+    pub fn number(&mut self) -> Formula {
         Formula::Number(f64::from(self.pick(63) as i32 - 31) / 32.0)
     }
 
-    fn field(&mut self, attribute: &'static str, value: Matrix<f64>) -> Formula {
+    pub fn field(&mut self, attribute: &'static str, value: Matrix<f64>) -> Formula {
         self.made.fields.push(Field { attribute, value });
         Formula::Field(self.made.fields.len() - 1)
     }
 
-    fn matrix(&mut self, rows: usize, columns: usize) -> Matrix<f64> {
+    pub fn matrix(&mut self, rows: usize, columns: usize) -> Matrix<f64> {
         Matrix::from_fn(rows, columns, |_, _| self.random.number())
     }
 
@@ -188,7 +229,8 @@ impl Generator<'_> {
     fn leaf_of_quaternions(&mut self, group: &NamedGroup, f: Formula, q: Formula) -> Side {
         let on_itself = self.element(group, 1.0);
         let vector = self.matrix(3, 1);
-        let (typed, kind, start, image, side) = match self.pick(4) {
+        let choice = self.pick(4);
+        let (typed, kind, start, image, side) = match if self.is_full { choice % 3 } else { choice } {
             0 => ("SU<2>", Kind::Quaternion, on_itself, q * f, Side::Right),
             1 => ("SU<2>", Kind::Quaternion, on_itself, f * q, Side::Left),
             2 => ("SU<2>", Kind::Quaternion, on_itself, q * f.method("conjugate"), Side::Left),
@@ -206,7 +248,8 @@ impl Generator<'_> {
         let (any, column) = (self.matrix(n, n), self.matrix(n, 1));
         let small = group.group.basis.len() <= 4;
         let is_turned = name.starts_with("SO") && !name.contains(',') && n > 2;
-        let (typed, start, image, side) = match self.pick(10) {
+        let choice = self.pick(10);
+        let (typed, start, image, side) = match if self.is_full { choice % 5 } else { choice } {
             0..=2 => (name, element, q * f, Side::Right),
             3 | 4 => (name, element, f * q, Side::Left),
             5 if small => (name, element, q * f.method("inverse"), Side::Left),
@@ -395,12 +438,44 @@ impl Generator<'_> {
             1 => sum = sum * (Formula::Number(1.0) + Formula::Time * Formula::Number(0.5)),
             _ => {}
         }
-        // where the Cayley map leaves the group its projection makes long formulas
-        let long =
-            |factor: &Acting| ["Sim", "U<2", "Own", "Aff", "GL"].iter().any(|name| factor.group.name.starts_with(name));
         let discretization = match self.pick(3) {
-            0 if !self.made.factors.iter().any(long) => Discretization::Cayley,
+            0 if !self.made.factors.iter().any(is_long) => Discretization::Cayley,
             1 => Discretization::Projection,
+            _ => Discretization::Exponential,
+        };
+        self.made.kinetic = Kinetic::Lagrangian(sum, discretization);
+    }
+
+    /// A kinetic energy that is a quadratic form, and sometimes a linear one more.
+    fn quadratic(&mut self) {
+        let alone = self.made.factors.len() == 1;
+        if alone && self.made.factors[0].group.name == "SO<3>" && self.pick(2) == 0 {
+            return self.moser_veselov();
+        }
+        let mut parts = Vec::new();
+        for k in 0..self.made.factors.len() {
+            let dimension = self.made.factors[k].group.group.basis.len();
+            let (v, weight) = (Formula::Velocity(k), self.weight(dimension, true));
+            parts.push(v.clone().dot(weight * v.clone()));
+            if self.pick(6) == 0 {
+                let slope = self.matrix(dimension, 1) * 0.25;
+                let slope = self.field("", slope).dot(v);
+                let timed = self.pick(3) == 0;
+                parts.push(if timed { slope * (Formula::Number(1.0) + Formula::Time) } else { slope });
+            }
+        }
+        let mut sum = parts.into_iter().reduce(|a, b| a + b).expect("a factor") / Formula::Number(2.0);
+        // formulas of megabytes, as of other Lagrangians
+        let swells = self.made.factors.iter().any(|factor| is_affine(&factor.group));
+        match self.pick(8) {
+            0 | 1 if !swells => sum = sum * (Formula::Number(1.0) + self.variable().power(2) * Formula::Number(0.25)),
+            2 => sum = sum * (Formula::Number(1.0) + Formula::Time * Formula::Number(0.5)),
+            _ => {}
+        }
+        let discretization = match self.pick(4) {
+            0 | 1 if !self.made.factors.iter().any(is_long) => Discretization::Cayley,
+            0 => Discretization::LeftOut,
+            2 => Discretization::Projection,
             _ => Discretization::Exponential,
         };
         self.made.kinetic = Kinetic::Lagrangian(sum, discretization);
@@ -429,7 +504,7 @@ impl Generator<'_> {
     // ---- potentials
 
     /// An entry of the configuration.
-    fn variable(&mut self) -> Formula {
+    pub fn variable(&mut self) -> Formula {
         let k = self.pick(self.made.leaves.len());
         let (kind, (rows, columns)) = (self.made.leaves[k].kind, self.made.leaves[k].start.shape());
         let leaf = Formula::Point(k);
@@ -488,6 +563,11 @@ impl Generator<'_> {
 /// Whether points are moved by F.rotation() * x + F.translation().
 fn is_affine(group: &NamedGroup) -> bool {
     ["SE", "Sim", "Aff"].iter().any(|name| group.name.starts_with(name))
+}
+
+/// Where the Cayley map leaves the group its projection makes long formulas.
+fn is_long(factor: &Acting) -> bool {
+    ["Sim", "U<2", "Own", "Aff", "GL"].iter().any(|name| factor.group.name.starts_with(name))
 }
 
 /// exp of something of this size.

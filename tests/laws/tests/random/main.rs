@@ -5,12 +5,17 @@
 //! running its kernels in the order of emitted code. The oracle solves the unsimplified equations to 30 digits. A
 //! problem that fails is shrunk before it is shown.
 //!
+//! Some problems have a constraint. Its equations are affine in the velocity, or of the configuration. The oracle has the
+//! multipliers as unknowns, and the continuous motion has them from differences.
+//!
 //! Each test takes some dozens of seeds, and twice as many with the feature `heavy`.
 //! `CLEBSCH_RANDOM=5000 cargo test -p clebsch-laws --test random` takes as many as it says, `CLEBSCH_RANDOM=1234..1235`
 //! these, and `-- --nocapture` shows the results of each.
 
 mod broken;
 mod checks;
+mod constrained;
+mod equations;
 mod formula;
 mod generator;
 mod groups;
@@ -165,6 +170,50 @@ fn powers_integrate_as_the_oracle_does() {
     assert!(30 * large <= found.len(), "{large} of {} are too large", found.len());
 }
 
+/// Random equations of velocities and places. One problem in three is compared with the continuous motion too.
+#[test]
+fn constraints_push_as_lagrange_and_dalembert_say() {
+    let (mut found, mut failures) = (Vec::new(), Vec::new());
+    for seed in seeds(120) {
+        let is_thorough = seed.is_multiple_of(3);
+        match constrained::check_seed(seed, is_thorough) {
+            Ok(one) => {
+                println!("{seed}: {one:?}");
+                found.push(one);
+            }
+            Err(failure) => {
+                let fails = |other: &problem::Declared| {
+                    constrained::check(other, seed, is_thorough).is_err_and(|other| kind(&other) == kind(&failure))
+                };
+                let smallest = shrinking::shrunk(&generator::constrained(seed, false), fails);
+                failures.push(constrained::check(&smallest, seed, is_thorough).err().unwrap_or(failure));
+            }
+        }
+    }
+    let count = |which: &dyn Fn(&constrained::Tied) -> bool| found.iter().filter(|one| which(one)).count();
+    let stepped = count(&|one| one.stepped);
+    println!("{stepped} of {} problems stepped, {} too large", found.len(), count(&|one| one.is_large));
+    let kinds = [
+        count(&|one| one.stepped && one.of_velocity && !one.of_places),
+        count(&|one| one.stepped && one.of_places && !one.of_velocity),
+        count(&|one| one.stepped && one.of_places && one.of_velocity),
+        count(&|one| one.stepped && one.is_bent),
+        count(&|one| one.stepped && one.is_affine),
+        count(&|one| one.stepped && one.has_poles),
+        count(&|one| one.stepped && one.of_each),
+        count(&|one| one.stepped && one.conserved > 0),
+        count(&|one| one.stepped && one.has_moving_inertia),
+        count(&|one| one.stepped && !one.refused.is_empty()),
+        count(&|one| one.ratio.is_some()),
+    ];
+    println!("{kinds:?}");
+    report(&failures);
+    if found.len() >= 40 {
+        assert!(10 * stepped >= 9 * found.len(), "only {stepped} of {} problems were stepped", found.len());
+        assert!(kinds.iter().all(|&count| count > 0), "the problems are too much alike: {kinds:?}");
+    }
+}
+
 #[test]
 fn what_is_refused_says_why() {
     let mut failures = Vec::new();
@@ -179,6 +228,17 @@ fn what_is_refused_says_why() {
             }
         }
     }
+    for seed in seeds(100) {
+        let problem = problem::Declared { order: 2, ..generator::constrained(seed, true) };
+        for (mistake, help) in broken::mistakes_in_constraint(&problem) {
+            count += 1;
+            match verdict(&mistake.text) {
+                Ok(Some(errors)) if errors.to_string().contains(help) => {}
+                Ok(found) => failures.push(format!("seed {seed}, {}: {found:?}\n{}", mistake.name, mistake.text)),
+                Err(failure) => failures.push(format!("seed {seed}, {}: {failure}", mistake.name)),
+            }
+        }
+    }
     println!("{count} mistakes");
     report(&failures);
 }
@@ -189,7 +249,9 @@ fn mutilated_declarations_are_refused_or_compiled() {
     let mut failures = Vec::new();
     let mut refused = 0;
     for seed in seeds(300) {
-        let text = mutated(&problem(seed).text(), &problem(seed + 1).text(), &mut Choices::new(seed));
+        // one in three has a constraint
+        let of = |seed: u64| if seed.is_multiple_of(3) { generator::constrained(seed, false) } else { problem(seed) };
+        let text = mutated(&of(seed).text(), &of(seed + 1).text(), &mut Choices::new(seed));
         match verdict(&text) {
             Ok(errors) => refused += usize::from(errors.is_some()),
             Err(failure) => failures.push(format!("seed {seed}: {failure}")),

@@ -60,6 +60,8 @@ pub enum Discretization {
     Cayley,
     Projection,
     Exponential,
+    /// The key is left out: Cayley's.
+    LeftOut,
 }
 
 /// The kinetic part.
@@ -76,6 +78,7 @@ impl Kinetic {
     pub fn keys(&self, closure: impl Fn(&str, &Formula) -> String) -> Vec<String> {
         match self {
             Kinetic::Cost(cost) => vec![closure("cost", cost)],
+            Kinetic::Lagrangian(lagrangian, Discretization::LeftOut) => vec![closure("lagrangian", lagrangian)],
             Kinetic::Lagrangian(lagrangian, discretization) => {
                 let discretization = format!("{discretization:?}").to_lowercase();
                 vec![closure("lagrangian", lagrangian), format!("discretization = {discretization}")]
@@ -100,6 +103,24 @@ pub struct Declared {
     pub dials: Vec<&'static str>,
     /// Whether two equal factors are an array.
     pub array: bool,
+    /// The closures of the constraint.
+    pub constraint: Vec<Equations>,
+}
+
+/// A closure of a constraint.
+#[derive(Clone, Debug)]
+pub struct Equations {
+    /// Whether they are of the velocity; else they are of the configuration.
+    pub of_velocity: bool,
+    pub all: Vec<Equation>,
+}
+
+/// `a == b`, of scalars or of vectors.
+#[derive(Clone, Debug)]
+pub struct Equation {
+    pub sides: [Formula; 2],
+    /// Whether it is one of the first element of an array, and repeated for each: `(0..2).map(|i| a == b)`.
+    pub each: bool,
 }
 
 impl Declared {
@@ -131,6 +152,7 @@ impl Declared {
         };
         keys.extend(self.kinetic.keys(closure));
         keys.extend(self.potential.iter().map(|potential| closure("potential", potential)));
+        keys.extend(self.constraint_text(&names));
         if self.order == 1 {
             keys.push("order = 1".into());
         }
@@ -139,6 +161,59 @@ impl Declared {
         let fields: String =
             self.fields.iter().zip(&names.fields).map(|(field, name)| field.text(name, None)).collect();
         format!("#[clebsch(\n    {},\n{scalar})]\npub struct Problem {{\n{fields}}}\n", keys.join(",\n    "))
+    }
+
+    /// The key of the constraint.
+    fn constraint_text(&self, names: &Names) -> Option<String> {
+        let bare = |letter: &str, names: &[String]| match (self.array, names) {
+            (true, _) => letter.into(),
+            (false, [only]) => only.clone(),
+            (false, names) => format!("({})", names.join(", ")),
+        };
+        let indexed = Names {
+            points: vec!["q[i]".into()],
+            velocities: vec!["v[i]".into()],
+            elements: vec!["F[i]".into()],
+            ..names.clone()
+        };
+        let equation = |Equation { sides: [a, b], each }: &Equation| match each {
+            true => format!("(0..{}).map(|i| {} == {})", self.factors.len(), a.text(&indexed), b.text(&indexed)),
+            false => format!("{} == {}", a.text(names), b.text(names)),
+        };
+        let closure = |Equations { of_velocity, all }: &Equations| {
+            let sides = all.iter().flat_map(|equation| equation.sides.clone());
+            let mentioned = sides.reduce(|a, b| a + b)?;
+            let letters = [bare("q", &names.points), bare("F", &names.elements), bare("v", &names.velocities)];
+            let arguments = head(if *of_velocity { "lagrangian" } else { "constraint" }, &mentioned, letters);
+            let equations: Vec<String> = all.iter().map(equation).collect();
+            Some(format!("|{arguments}| [{}]", equations.join(", ")))
+        };
+        match &self.constraint.iter().filter_map(closure).collect::<Vec<String>>()[..] {
+            [] => None,
+            [only] => Some(format!("constraint = {only}")),
+            all => Some(format!("constraint = [{}]", all.join(", "))),
+        }
+    }
+
+    /// Leaves out an equation.
+    pub fn without_equation(&mut self, (closure, at): (usize, usize)) {
+        self.constraint[closure].all.remove(at);
+        self.constraint.retain(|closure| !closure.all.is_empty());
+    }
+
+    /// The equations of one kind as differences of both sides, one for each element of an array.
+    pub fn differences(&self, of_velocity: bool) -> Vec<Formula> {
+        let mut all = Vec::new();
+        for closure in self.constraint.iter().filter(|closure| closure.of_velocity == of_velocity) {
+            for Equation { sides: [a, b], each } in &closure.all {
+                let difference = a.clone() - b.clone();
+                match each {
+                    true => all.extend((0..self.factors.len()).map(|k| difference.moved(&[k], 0))),
+                    false => all.push(difference),
+                }
+            }
+        }
+        all
     }
 
     fn mentions_field(&self) -> bool {
@@ -158,15 +233,15 @@ impl Declared {
         }
     }
 
-    fn place<'a, R: Real>(&self, values: &'a Seen<R>, t: R, h: R, fields: &'a [Matrix<f64>]) -> Place<'a, R> {
+    pub fn place<'a, R: Real>(&self, values: &'a Seen<R>, t: R, h: R, fields: &'a [Matrix<f64>]) -> Place<'a, R> {
         Place { fields, t, h, q: &values.q, f: &values.f, xi: &values.xi }
     }
 
-    fn values(&self) -> Vec<Matrix<f64>> {
+    pub fn values(&self) -> Vec<Matrix<f64>> {
         self.fields.iter().map(|field| field.value.clone()).collect()
     }
 
-    fn seen<R: Real>(&self, q: &[Matrix<R>], f: &[Matrix<R>]) -> Seen<R> {
+    pub fn seen<R: Real>(&self, q: &[Matrix<R>], f: &[Matrix<R>]) -> Seen<R> {
         let shown = |(factor, f): (&Acting, &Matrix<R>)| match factor.group.kind {
             Kind::Vector => f.translation(),
             _ => f.clone(),
@@ -203,21 +278,23 @@ impl Field {
 }
 
 /// The values that a declaration sees.
-struct Seen<R> {
-    q: Vec<Matrix<R>>,
-    f: Vec<Matrix<R>>,
-    xi: Vec<Matrix<R>>,
+pub struct Seen<R> {
+    pub q: Vec<Matrix<R>>,
+    pub f: Vec<Matrix<R>>,
+    pub xi: Vec<Matrix<R>>,
 }
 
 /// The coordinates of a velocity with F = exp(hξ) to first order.
-fn velocity<R: Real>(factor: &Acting, discretization: Discretization, h: R, f: &Matrix<R>) -> Matrix<R> {
+pub fn velocity<R: Real>(factor: &Acting, discretization: Discretization, h: R, f: &Matrix<R>) -> Matrix<R> {
     let one = Matrix::identity(f.shape().0);
     let matrix = match (discretization, factor.group.kind) {
         // tan(θ/2) is the vector part over the scalar part
-        (Discretization::Cayley, Kind::Quaternion) => {
+        (Discretization::Cayley | Discretization::LeftOut, Kind::Quaternion) => {
             return f.block(0..3, 3..4) * (R::of(2.0) / (h * f[(3, 3)]));
         }
-        (Discretization::Cayley, Kind::Matrix) => (f - &one) * (f + &one).inverse() * R::of(2.0),
+        (Discretization::Cayley | Discretization::LeftOut, Kind::Matrix) => {
+            (f - &one) * (f + &one).inverse() * R::of(2.0)
+        }
         (Discretization::Exponential, _) => f.logarithm(),
         _ => f - &one,
     };

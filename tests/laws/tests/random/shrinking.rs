@@ -31,6 +31,11 @@ fn smaller(problem: &Declared) -> Vec<Declared> {
             problem.dials.remove(k);
         });
     }
+    for (k, closure) in problem.constraint.iter().enumerate() {
+        for at in 0..closure.all.len() {
+            with(&|problem| problem.without_equation((k, at)));
+        }
+    }
     for formula in problem.potential.iter().flat_map(parts) {
         with(&|problem| problem.potential = Some(formula.clone()));
     }

@@ -3,7 +3,7 @@
 use std::cell::RefCell;
 
 use clebsch::__private::{Equation, LinearEquation, solve, solve_linear_equation};
-use clebsch_compiler::derive::{Id, Solution};
+use clebsch_compiler::derive::{self, Id, Solution};
 use clebsch_compiler::lower::{Kernel, MechanicsProgram, Solve};
 use nalgebra::{SMatrix, SVector};
 
@@ -14,6 +14,8 @@ pub struct Stepper<'a, 'g> {
     program: &'a MechanicsProgram<'g>,
     values: Values,
     constants: Vec<f64>,
+    /// The multipliers of the pushes of a constraint in the last step.
+    pub impulses: Vec<Vec<f64>>,
 }
 
 /// The leaves of a configuration as the program sees them, row by row, and the components of all momenta.
@@ -50,7 +52,11 @@ impl<'a, 'g> Stepper<'a, 'g> {
             values.0.insert("inertia_inverse".into(), inverse);
         }
         let constants = values.run(program.kernel(Id::Constants), &[], &[]).concat();
-        Stepper { program, values, constants }
+        // coordinates that a constraint leaves at zero have no equation
+        for block in &program.formulas.symbols.blocks {
+            values.set(block.coordinates, &vec![0.0; block.dimension()]);
+        }
+        Stepper { program, values, constants, impulses: Vec::new() }
     }
 
     fn place(&mut self, t: f64, state: &Seen) {
@@ -83,6 +89,7 @@ impl<'a, 'g> Stepper<'a, 'g> {
     /// One step from time t, or why there is none.
     pub fn step(&mut self, t: f64, state: &Seen) -> Result<Seen, String> {
         let mut state = state.clone();
+        self.impulses.clear();
         for index in 0..self.program.formulas.stepped {
             state = self.substep(t, &state, index)?;
         }
@@ -92,6 +99,7 @@ impl<'a, 'g> Stepper<'a, 'g> {
     fn substep(&mut self, t: f64, state: &Seen, index: usize) -> Result<Seen, String> {
         let program = self.program;
         let step = &program.steps[index];
+        let h = self.values.get(program.formulas.model.step_size)[0];
         let mut state = state.clone();
         self.place(t, &state);
         self.kick(Id::StartKick(index), &mut state.mu);
@@ -107,6 +115,7 @@ impl<'a, 'g> Stepper<'a, 'g> {
         for (symbol, increment) in self.program.formulas.symbols.increments.iter().zip(&increments) {
             self.values.set(*symbol, increment);
         }
+        self.push(Id::Reaction(index), &mut state.mu, t);
         let updated = self.found(Id::MomentumAfter(index)).map(|mut update| update.remove(0));
         let moved = self.moved();
         state = match self.program.formulas.is_compensated() {
@@ -118,6 +127,7 @@ impl<'a, 'g> Stepper<'a, 'g> {
         if program.find(Id::EndKick(index)).is_some() {
             self.kick(end, &mut state.mu);
         }
+        self.push(Id::Projection(index), &mut state.mu, t + h);
         Ok(state)
     }
 
@@ -171,6 +181,50 @@ impl<'a, 'g> Stepper<'a, 'g> {
             self.values.set(*symbol, entries);
         }
         self.run(self.program.kernel(Id::MomentumMap)).concat()
+    }
+
+    /// A push of the constraint, whose multipliers are noted. The formulas of a step are of the time at its start, and multipliers of that of the push.
+    fn push(&mut self, id: Id, mu: &mut [f64], t: f64) {
+        let Some(mut push) = self.found(id) else { return };
+        let push = push.remove(0);
+        self.impel(&push);
+        self.values.set(self.program.formulas.model.time, &[t]);
+        let found = self.run(self.program.kernel(Id::Multipliers));
+        self.impulses.push(solution(&found[0], &found[1]));
+        mu.iter_mut().zip(push).for_each(|(mu, push)| *mu += push);
+        self.impel(mu);
+    }
+
+    /// λ of the motion through a state.
+    pub fn reactions(&mut self, t: f64, state: &Seen) -> Vec<f64> {
+        self.place(t, state);
+        let found = self.run(self.program.kernel(Id::Reactions));
+        solution(&found[0], &found[1])
+    }
+
+    /// φ of the places, and A ξ − b at the velocity ξ of the momentum.
+    pub fn defects(&mut self, t: f64, state: &Seen) -> [Vec<f64>; 2] {
+        self.place(t, state);
+        let places = self.found(Id::Places).map(|mut found| found.remove(0)).unwrap_or_default();
+        let found = self.run(self.program.kernel(Id::Constraint));
+        let (rows, values, xi) = (&found[0], &found[1], &found[2]);
+        let row = |(i, value): (usize, &f64)| {
+            let row = &rows[i * xi.len()..(i + 1) * xi.len()];
+            row.iter().zip(xi).map(|(a, xi)| a * xi).sum::<f64>() - value
+        };
+        [places, values.iter().enumerate().map(row).collect()]
+    }
+
+    /// Σξ + A.
+    pub fn momentum_of(&mut self, t: f64, q: &Seen, xi: &[f64]) -> Vec<f64> {
+        self.place(t, q);
+        let mut from = 0;
+        for symbol in &self.program.formulas.symbols.algebra {
+            let to = from + symbol.shape().rows;
+            self.values.set(*symbol, &xi[from..to]);
+            from = to;
+        }
+        self.run(self.program.kernel(Id::MomentumOfVelocity)).concat()
     }
 
     fn kick(&mut self, id: Id, mu: &mut [f64]) {
@@ -285,6 +339,16 @@ impl<const M: usize> Equation<f64, M, MOMENTA> for Interpreted<'_, '_, '_> {
 
     fn prepare(&self, target: &SVector<f64, MOMENTA>) -> Vec<f64> {
         self.aimed(target, |stepper| stepper.run(stepper.program.kernel(self.solve.id(Id::Preparation))).concat())
+    }
+
+    fn extent(&self) -> f64 {
+        let stepper = self.stepper.borrow();
+        let formulas = &stepper.program.formulas;
+        let is_predicted = stepper.program.find(self.solve.id(Id::Predictor)).is_some();
+        let has_extent = |all: &derive::ConstraintFormulas<'_>| all.places.is_some() || !is_predicted;
+        let has_extent = formulas.constraint.as_ref().is_some_and(has_extent);
+        let entries = formulas.model.configurations.iter().flat_map(|leaf| stepper.values.get(leaf.symbol));
+        if has_extent { entries.fold(1.0, |sum: f64, entry| sum.max(1.0 + entry.abs())) } else { 0.0 }
     }
 
     fn predict(&self, target: &SVector<f64, MOMENTA>) -> SVector<f64, M> {

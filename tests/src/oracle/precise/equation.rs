@@ -101,7 +101,7 @@ impl<P: Problem, R: Real> Equation<'_, P, R> {
     }
 
     /// ∂r_i/∂x_j along the updates of Newton's method, by dual numbers over `f64` through those of r.
-    fn jacobian(&self, f: &[Matrix<R>]) -> Matrix<f64> {
+    pub(super) fn jacobian(&self, f: &[Matrix<R>]) -> Matrix<f64> {
         let nearest = |matrix: &Matrix<R>| matrix.map(R::to_f64);
         let (f, q): (Vec<_>, Vec<_>) = (f.iter().map(nearest).collect(), self.q.iter().map(nearest).collect());
         let (t, h) = (Dual::of(self.t.to_f64()), Dual::of(self.h.to_f64()));
@@ -125,7 +125,7 @@ impl<P: Problem, R: Real> Equation<'_, P, R> {
 }
 
 /// FE for a left action, EF for a right one: Φ_{F exp(sE)} = Φ_F Φ_exp(sE), so the start moves before F acts.
-fn start_tangent<R: Real>(side: Side, f: &Matrix<R>, e: &Matrix<R>) -> Matrix<R> {
+pub(super) fn start_tangent<R: Real>(side: Side, f: &Matrix<R>, e: &Matrix<R>) -> Matrix<R> {
     match side {
         Side::Left => f * e,
         Side::Right => e * f,
