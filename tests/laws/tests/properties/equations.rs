@@ -51,6 +51,30 @@ impl<const MOST: u32> Equation<f64, 3> for Cubic<MOST> {
     }
 }
 
+/// (q + ξ) − q = μ with a place q, whose rounding is that of the residual. `TELLS` whether the equation tells its extent.
+struct Placed<const TELLS: bool>(f64);
+
+impl<const TELLS: bool> Equation<f64, 1> for Placed<TELLS> {
+    type Terms = f64;
+    type Jacobian = SMatrix<f64, 1, 1>;
+
+    fn prepare(&self, target: &SVector<f64, 1>) -> f64 {
+        target.x
+    }
+
+    fn predict(&self, target: &SVector<f64, 1>) -> SVector<f64, 1> {
+        *target
+    }
+
+    fn linearize(&self, target: &f64, xi: &SVector<f64, 1>) -> (SVector<f64, 1>, SMatrix<f64, 1, 1>) {
+        (SVector::from([((self.0 + xi.x) - self.0) - target]), SMatrix::identity())
+    }
+
+    fn extent(&self) -> f64 {
+        if TELLS { private::extent(&Vector3::new(0.0, self.0, 1.0)) } else { 0.0 }
+    }
+}
+
 /// ξ/(1 − ξ²) = μ, whose branch from 0 ends at the poles ±1 for μ = ±∞; predicted anywhere.
 struct Pole(f64);
 
@@ -237,6 +261,18 @@ proptest! {
                 prop_assert!(is_said, "{error}");
             }
         }
+    }
+
+    /// A solution below the rounding of places is found where the equation tells their size, 1 + |q|.
+    #[test]
+    fn places_have_a_rounding(q in 1e3_f64..1e6, part in 0.3_f64..0.7) {
+        prop_assert_eq!(private::extent(&Vector3::new(0.0, -q, 1.0)), 1.0 + q);
+        prop_assert_eq!(Cubic::<0>::new(Matrix3::identity(), 0.1).extent(), 0.0);
+        let rounding = f64::EPSILON * (1.0 + q);
+        let mu = SVector::from([part * f64::EPSILON * q / 2.0]);
+        let found = implicit::solve(&Placed::<true>(q), &mu)?;
+        prop_assert!((found - mu).amax() <= 8.0 * rounding);
+        prop_assert!(implicit::solve(&Placed::<false>(q), &mu).is_err());
     }
 
     #[test]

@@ -68,6 +68,7 @@ pub const PROPERTIES: &[(&str, &[Property])] = &[
     ("tests/laws/tests/properties/equations.rs", &[
         ("equations_are_solved_to_rounding",       &["solve", "solve_fixed_point", "orientation", "Equation::prepare", "Equation::predict", "Equation::linearize", "Equation::residual", "Equation::correct", "Equation::tolerance", "Equation::orientation"]),
         ("poles_are_no_solutions",                 &["Equation::has_poles"]),
+        ("places_have_a_rounding",                 &["extent", "Equation::extent"]),
         ("iterations_have_a_limit",                &["Equation::limit"]),
         ("tolerances_end_at_rounding",             &["tolerance"]),
         ("affine_equations_take_one_elimination",  &["solve_linear_equation", "LinearEquation::system", "LinearEquation::correct", "LinearEquation::orientation"]),
