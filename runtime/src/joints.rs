@@ -1,16 +1,18 @@
-//! Joints: constraints φ(t, q) = 0 on neighbouring sites of a power.
+//! Joints: constraints φ(t, q) = 0 on neighbouring sites of a power, or on those of a tree.
 //!
-//! The rows of a site are those of the equations whose later site it is: they read this site and the one before it.
-//! Before the first site of a ring comes the last one. With A and B along motions of the site and of the one before,
+//! The rows of a site are those of the equations whose later site it is: they read this site and its parent. In a chain the
+//! parent is the site before. Before the first site of a ring comes the last one. With A and B along motions of the site
+//! and of its parent, and with the children c of a site,
 //!
 //! ```text
-//! n_i = N_i + A_iᵀλ_i + B_{i+1}ᵀλ_{i+1},    (q⁺_i, M⁺_i) = the free step of site i,    φ(t + h, q⁺) = 0
+//! n_i = N_i + A_iᵀλ_i + Σ_c B_cᵀλ_c,    (q⁺_i, M⁺_i) = the free step of site i,    φ(t + h, q⁺) = 0
 //! ```
-//! Sweeps λ ← λ − S⁻¹φ(q⁺)/h find the multipliers, with S = A Σ⁻¹Aᵀ of all rows at q. It is block tridiagonal, and is
-//! factored once a step. The momentum after the step is N⁺ + Aᵀμ, whose velocity obeys A ξ = −∂φ/∂t at q⁺.
+//! Sweeps λ ← λ − S⁻¹φ(q⁺)/h find the multipliers, with S = A Σ⁻¹Aᵀ of all rows at q. It is factored once a step, in a chain
+//! as a block tridiagonal matrix. The momentum after the step is N⁺ + Aᵀμ, whose velocity obeys A ξ = −∂φ/∂t at q⁺.
 
 mod blocks;
 mod solver;
+mod tree;
 
 use crate::constraint::Violation;
 use crate::parts::{Mu, Q, T};
@@ -23,13 +25,14 @@ use nalgebra::{SMatrix, SVector};
 use num_traits::Zero;
 
 pub(crate) use solver::{Joints, least_of_steps};
+pub use tree::{Branch, Limb};
 
 /// The rows of one site.
 #[derive(Clone, Copy, Debug)]
 pub struct Rows<T, const R: usize, const M: usize> {
     /// A, along motions of the site.
     pub own: SMatrix<T, R, M>,
-    /// B, along motions of the site before.
+    /// B, along motions of the parent.
     pub before: SMatrix<T, R, M>,
     /// −∂φ/∂t.
     pub velocity: SVector<T, R>,
@@ -72,7 +75,7 @@ pub fn put_places<T: Scalar, const R: usize, const C: usize>(places: &mut SVecto
 ///
 /// See [`Stepper::joined_sites`](crate::Stepper::joined_sites).
 #[derive(Clone, Debug)]
-pub struct Joint<T, C, const R: usize, const M: usize> {
+pub struct Joint<T, C, B, const R: usize, const M: usize> {
     rows: Rows<T, R, M>,
     block: Block<T, R>,
     /// λ
@@ -83,13 +86,15 @@ pub struct Joint<T, C, const R: usize, const M: usize> {
     metric: SVector<T, R>,
     /// The constants of the site, where sites differ.
     constants: Option<C>,
+    /// The room of a site in a tree.
+    branch: B,
 }
 
 /// The room of a joint of P.
 pub type JointOf<P, const N: usize, const R: usize, const M: usize> =
-    Joint<T<P>, scheme::Constants<<P as Power<N>>::Site>, R, M>;
+    Joint<T<P>, scheme::Constants<<P as Power<N>>::Site>, <P as Joined<N, R, M>>::Branch, R, M>;
 
-impl<T: Scalar, C, const R: usize, const M: usize> Default for Joint<T, C, R, M> {
+impl<T: Scalar, C, B: Branch<T, R, M>, const R: usize, const M: usize> Default for Joint<T, C, B, R, M> {
     fn default() -> Self {
         let zero = SVector::from_element(T::zero());
         Self {
@@ -99,8 +104,20 @@ impl<T: Scalar, C, const R: usize, const M: usize> Default for Joint<T, C, R, M>
             rounding: zero,
             metric: zero,
             constants: None,
+            branch: B::new(),
         }
     }
+}
+
+/// The solutions of the blocks.
+fn solutions<T: Scalar, C, B, const N: usize, const R: usize, const M: usize>(
+    room: &[Joint<T, C, B, R, M>; N],
+) -> [SVector<T, R>; N] {
+    let mut all = [SVector::from_element(T::zero()); N];
+    for i in 0..N {
+        all[i] = room[i].block.right;
+    }
+    all
 }
 
 /// A site, whose velocity follows from its momentum.
@@ -151,13 +168,22 @@ pub trait Joined<const N: usize, const R: usize, const M: usize>: Power<N, Site:
     /// Whether a joint reads the last site and the first one.
     const IS_RING: bool;
 
+    /// `()` in chains and rings, [`Limb`] in trees.
+    type Branch: Branch<T<Self>, R, M>;
+
+    /// The other site that the joints of a site read. It is an earlier one, but in a ring for the first site.
+    #[inline(always)]
+    fn parent(site: usize) -> Option<usize> {
+        if Self::IS_RING && site == 0 { N.checked_sub(1) } else { site.checked_sub(1) }
+    }
+
     /// φ of the rows of a site; 0 for a row that is not there.
     fn places_at(&self, t: T<Self>, q: &Q<Self>, site: usize) -> SVector<T<Self>, R>;
 
     /// The rows of a site.
     fn rows_at(&self, t: T<Self>, q: &Q<Self>, site: usize) -> Rows<T<Self>, R, M>;
 
-    /// φ″ of the rows of a site with the constant velocities x of it and y of the site before.
+    /// φ″ of the rows of a site with the constant velocities x of it and y of its parent.
     fn bend_at(
         &self,
         t: T<Self>,
@@ -230,7 +256,7 @@ pub trait Joined<const N: usize, const R: usize, const M: usize>: Power<N, Site:
         let found =
             Joints::<Self, N, R, M>::new(self, c, &mut room).and_then(|mut joints| joints.multipliers(t, q, push));
         match found {
-            Ok(()) => from_fn(|i| room[i].block.right),
+            Ok(()) => solutions(&room),
             Err(_) => [SVector::from_element(T::<Self>::zero() / T::<Self>::zero()); N],
         }
     }
@@ -250,6 +276,6 @@ pub trait Joined<const N: usize, const R: usize, const M: usize>: Power<N, Site:
         let mut room = from_fn(|_| Joint::default());
         let found =
             Joints::<Self, N, R, M>::new(self, c, &mut room).and_then(|mut joints| joints.reactions(t, (q, mu), u));
-        found.map(|()| from_fn(|i| room[i].block.right)).map_err(|(_, error)| error)
+        found.map(|()| solutions(&room)).map_err(|(_, error)| error)
     }
 }

@@ -116,6 +116,9 @@ pub trait Power<const N: usize>:
     /// Whether all sites have the same kinetic energy.
     const IS_UNIFORM: bool;
 
+    /// The least N that has all sites that the declaration names.
+    const LEAST_SITES: usize = 1;
+
     /// Whether the gradient is gathered site by site, by [`gradient_at`](Self::gradient_at); else terms are added, by [`add_gradient`](Self::add_gradient).
     const GATHERS: bool;
 
@@ -153,6 +156,7 @@ pub trait Power<const N: usize>:
     /// The constants of a step of size `h`.
     fn power_constants(&self, h: T<Self>) -> Result<Constants<Self, N>, Error> {
         const { assert!(N > 0, "a power has at least one site") };
+        const { assert!(N >= Self::LEAST_SITES, "the declaration names a site by a number that N does not have") };
         // sites that differ are checked one by one; the constants of the first stand for all where they are equal
         let others = if Self::IS_UNIFORM { 1 } else { N };
         (1..others).try_for_each(|i| site_constants(&self.site(i), h).map(drop))?;

@@ -9,13 +9,14 @@ use std::path::{Path, PathBuf};
 use std::{env, fs};
 
 /// Parameters of the structs that have some, and the suffixes of their names.
-const INSTANCES: [(&str, &[(&str, &str)]); 10] = [
+const INSTANCES: [(&str, &[(&str, &str)]); 11] = [
     ("AnnotatedBody", &[("", "<'static, (), 4>")]),
     ("GenericBody", &[("", "<f64>"), (".lanes", "<clebsch::F64x4>")]),
     ("Rock", &[("", "<f64>"), (".lanes", "<clebsch::F64x8>")]),
     ("SpinChain", &[("", "<8>")]),
     ("DrivenChain", &[("", "<8>")]),
     ("HangingChain", &[("", "<8>")]),
+    ("BranchingBodies", &[("", "<7>")]),
     ("Whip", &[("", "<8>")]),
     ("FirstOrderChain", &[("", "<8>")]),
     ("Molecules", &[("", "<8>")]),

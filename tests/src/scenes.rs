@@ -166,6 +166,8 @@ macro_rules! every_scene {
             a_shaken_pendulum: shaken_pendulum::ShakenPendulum {
                 mass: 1.2, gravity: 9.81, drag: 0.1, shaking: 0.1, rate: 3.0, length: 0.8
             }, Vector2::new(0.8, 0.0), 0.02;
+            branching_bodies: branching_bodies::BranchingBodies<7> { second_moment: inertia(), mass: 0.7, weight: 9.81, near: Vector3::z(), far: -Vector3::z(), side: -Vector3::z() },
+                [hanging(1.0), hanging(3.0), hanging(3.0), hanging(5.0), hanging(5.0), hanging(5.0), hanging(7.0)], 0.02;
             suslovs_body: suslov::Suslov { inertia: inertia() }, turned(), 0.1;
             a_sided_pair: sided_pair::SidedPair { }, (turned(), unit()), 0.1;
             a_top_of_eighth_order: eighth_order_top::EighthOrderTop { moments: principal(), weight: 1.3, center: centre() }, turned(), 0.05;

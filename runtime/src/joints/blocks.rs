@@ -30,6 +30,17 @@ impl<T: Scalar, const R: usize> Block<T, R> {
         let zero = SMatrix::from_element(T::zero());
         Self { inverse: zero, lower: zero, fill: zero, right: SVector::from_element(T::zero()) }
     }
+
+    /// D̃⁻¹
+    #[inline(always)]
+    pub fn inverse(&self) -> &SMatrix<T, R, R> {
+        &self.inverse
+    }
+
+    #[inline(always)]
+    pub fn set_inverse(&mut self, inverse: SMatrix<T, R, R>) {
+        self.inverse = inverse;
+    }
 }
 
 /// The place of a block among n.
@@ -178,7 +189,7 @@ impl<T: Scalar, const R: usize> Backward<T, R> {
 /// their rows and columns are 0 in the inverse.
 ///
 /// Source: Goodnight, *A tutorial on the SWEEP operator*, The American Statistician 33 (1979).
-fn invert<T: Scalar, const R: usize>(a: &mut SMatrix<T, R, R>, entries: &SVector<T, R>, least: T) -> usize {
+pub(super) fn invert<T: Scalar, const R: usize>(a: &mut SMatrix<T, R, R>, entries: &SVector<T, R>, least: T) -> usize {
     let mut zeros = 0;
     for k in 0..R {
         let pivot = a[(k, k)];

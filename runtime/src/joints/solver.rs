@@ -1,7 +1,7 @@
-//! The multipliers of joints, by block elimination from the first site to the last.
+//! The multipliers of joints, by block elimination from the first site to the last, in a tree from the leaves to the root.
 
 use super::blocks::{Backward, Elimination, Forward, Place};
-use super::{Joined, JointOf, Mobile};
+use super::{Branch, Joined, JointOf, Mobile};
 use crate::constraint::{Violation, check_place};
 use crate::parts::{Mu, Q, T};
 use crate::power::{Constants, SiteScheme, moved_site, site_constants};
@@ -28,12 +28,6 @@ pub(crate) fn least_of_steps<T: Scalar>() -> T {
     T::EPSILON * T::from_f64(64.0)
 }
 
-/// The site before: that of the first is the last.
-#[inline(always)]
-fn before<const N: usize>(site: usize) -> usize {
-    if site == 0 { N.saturating_sub(1) } else { site - 1 }
-}
-
 /// The site after.
 #[inline(always)]
 fn after<const N: usize>(site: usize) -> usize {
@@ -49,7 +43,7 @@ fn is_worse(ratio: f64, worst: f64) -> bool {
 pub(crate) struct Joints<'a, P: Joined<N, R, M>, const N: usize, const R: usize, const M: usize> {
     system: &'a P,
     constants: &'a Constants<P, N>,
-    room: &'a mut [JointOf<P, N, R, M>; N],
+    pub(super) room: &'a mut [JointOf<P, N, R, M>; N],
 }
 
 impl<'a, P: Joined<N, R, M>, const N: usize, const R: usize, const M: usize> Joints<'a, P, N, R, M> {
@@ -72,10 +66,23 @@ impl<'a, P: Joined<N, R, M>, const N: usize, const R: usize, const M: usize> Joi
         Ok(Self { system, constants, room })
     }
 
-    /// Whether a site has one before it.
+    /// Whether joints make a tree.
+    const IS_TREE: bool = <P::Branch as Branch<T<P>, R, M>>::IS_TREE;
+
+    /// Whether a site has a parent.
     #[inline(always)]
-    fn has_before(site: usize) -> bool {
-        site > 0 || P::IS_RING
+    fn has_parent(site: usize) -> bool {
+        if Self::IS_TREE { P::parent(site).is_some() } else { site > 0 || P::IS_RING }
+    }
+
+    /// The parent of a site. That of the first site is the last one, and in a tree the site itself.
+    #[inline(always)]
+    fn parent(site: usize) -> usize {
+        if Self::IS_TREE {
+            // below N, as the remainder says to those who check indices
+            return P::parent(site).filter(|parent| *parent < site).unwrap_or(site) % N;
+        }
+        if site == 0 { N.saturating_sub(1) } else { site - 1 }
     }
 
     /// The result of `give` for a site and its constants.
@@ -87,11 +94,11 @@ impl<'a, P: Joined<N, R, M>, const N: usize, const R: usize, const M: usize> Joi
 
     /// Σ⁻¹Aᵀ of rows of a site.
     #[inline(always)]
-    fn moved_by(&self, site: usize, rows: &SMatrix<T<P>, R, M>) -> SMatrix<T<P>, M, R> {
+    pub(super) fn moved_by<const K: usize>(&self, site: usize, rows: &SMatrix<T<P>, K, M>) -> SMatrix<T<P>, M, K> {
         self.of_site(site, |_, c| {
             let c = SiteScheme::<P, N>::whole(c);
-            let mut columns: SMatrix<T<P>, M, R> = Space::origin();
-            for i in 0..R {
+            let mut columns: SMatrix<T<P>, M, K> = Space::origin();
+            for i in 0..K {
                 columns.set_column(i, &<P::Site as Mobile<M>>::mobility(c, &rows.row(i).transpose()));
             }
             columns
@@ -118,11 +125,11 @@ impl<'a, P: Joined<N, R, M>, const N: usize, const R: usize, const M: usize> Joi
             let rows = self.system.rows_at(t, q, i);
             let own = self.moved_by(i, &rows.own);
             let (mut diagonal, mut coupling) = (rows.own * own, Space::origin());
-            if Self::has_before(i) {
-                diagonal += rows.before * self.moved_by(before::<N>(i), &rows.before);
+            if Self::has_parent(i) {
+                diagonal += rows.before * self.moved_by(Self::parent(i), &rows.before);
                 coupling = rows.before * last;
             }
-            let size = T::<P>::one() + larger(q[i].max_abs(), q[before::<N>(i)].max_abs());
+            let size = T::<P>::one() + larger(q[i].max_abs(), q[Self::parent(i)].max_abs());
             let joint = &mut self.room[i];
             for k in 0..R {
                 if !rows.are_there[k] {
@@ -135,24 +142,49 @@ impl<'a, P: Joined<N, R, M>, const N: usize, const R: usize, const M: usize> Joi
             }
             joint.rows = rows;
             joint.metric = diagonal.diagonal();
-            elimination.add(&mut joint.block, (diagonal, coupling), Self::place(i), least);
+            if !Self::IS_TREE {
+                elimination.add(&mut joint.block, (diagonal, coupling), Self::place(i), least);
+            }
             last = own;
         }
-        match elimination {
-            Elimination { zeros: 0, .. } => Ok(()),
-            Elimination { zeros, first, .. } => {
+        let Elimination { zeros, first, .. } = elimination;
+        match if Self::IS_TREE { self.factor_tree(least) } else { (zeros, first) } {
+            (0, _) => Ok(()),
+            (zeros, first) => {
                 Err((first, Error::DependentConstraints { rank: number.saturating_sub(zeros), rows: number }))
             }
         }
     }
 
-    /// A_iᵀx_i + B_{i+1}ᵀx_{i+1}, the push of all joints on a site.
+    /// Takes the next right side of S x = right.
+    #[inline(always)]
+    fn forward(&mut self, site: usize, right: SVector<T<P>, R>, forward: &mut Forward<T<P>, R>) {
+        let block = &mut self.room[site].block;
+        if Self::IS_TREE { block.right = right } else { forward.add(block, right, Self::place(site)) }
+    }
+
+    /// The solution x in the blocks, once all right sides were taken.
+    #[inline(always)]
+    fn backward(&mut self) {
+        if Self::IS_TREE {
+            return self.solve_tree();
+        }
+        let mut backward = Backward::new();
+        for i in (0..N).rev() {
+            backward.add(&mut self.room[i].block, Self::place(i));
+        }
+    }
+
+    /// A_iᵀx_i + B_{i+1}ᵀx_{i+1}, the push of all joints on a site. In a tree it was gathered.
     #[inline(always)]
     fn push(&self, site: usize, x: impl Fn(&JointOf<P, N, R, M>) -> &SVector<T<P>, R>) -> SVector<T<P>, M> {
+        if Self::IS_TREE {
+            return self.gathered(site);
+        }
         let joint = &self.room[site];
         let mut push = joint.rows.own.transpose() * x(joint);
         let next = after::<N>(site);
-        if Self::has_before(next) {
+        if Self::has_parent(next) {
             let joint = &self.room[next];
             push += joint.rows.before.transpose() * x(joint);
         }
@@ -183,6 +215,9 @@ impl<'a, P: Joined<N, R, M>, const N: usize, const R: usize, const M: usize> Joi
         let h = self.constants.part(1.0);
         self.at(t, q, least_of_steps())?;
         self.room.iter_mut().for_each(|joint| joint.multipliers = Space::origin());
+        if Self::IS_TREE {
+            self.gather(|joint| joint.multipliers);
+        }
         let mut least = f64::INFINITY;
         for sweep in 1..=SWEEPS {
             let (site, worst) = self.sweep(t, (q, mu), u, (&mut *next, &mut *moved))?;
@@ -197,6 +232,12 @@ impl<'a, P: Joined<N, R, M>, const N: usize, const R: usize, const M: usize> Joi
             }
             least = least.min(worst);
             let (mut backward, per_step) = (Backward::new(), h.recip());
+            if Self::IS_TREE {
+                self.solve_tree();
+                self.room.iter_mut().for_each(|joint| joint.multipliers -= joint.block.right * per_step);
+                self.gather(|joint| joint.multipliers);
+                continue;
+            }
             for i in (0..N).rev() {
                 let joint = &mut self.room[i];
                 joint.multipliers -= backward.add(&mut joint.block, Self::place(i)) * per_step;
@@ -260,7 +301,7 @@ impl<'a, P: Joined<N, R, M>, const N: usize, const R: usize, const M: usize> Joi
                 }
             }
         }
-        forward.add(&mut joint.block, places, Self::place(i));
+        self.forward(i, places, forward);
     }
 
     /// Eliminates the right sides −∂φ/∂t − A ξ at (q, N). Returns the violation, and the site where it is largest.
@@ -275,12 +316,18 @@ impl<'a, P: Joined<N, R, M>, const N: usize, const R: usize, const M: usize> Joi
         }
         for i in 0..N {
             let own = velocity(self, i);
+            if Self::IS_TREE {
+                last = self.room[Self::parent(i)].branch.limb().map_or_else(Space::origin, |limb| limb.velocity);
+            }
             let joint = &mut self.room[i];
+            if let Some(limb) = joint.branch.limb_mut() {
+                limb.velocity = own;
+            }
             let mut slip = joint.rows.velocity - joint.rows.own * own;
             let mut energy = mu[i].dot(&own).abs();
-            if Self::has_before(i) {
+            if Self::has_parent(i) {
                 slip -= joint.rows.before * last;
-                energy += mu[before::<N>(i)].dot(&last).abs();
+                energy += mu[Self::parent(i)].dot(&last).abs();
             }
             for k in 0..R {
                 let size = (joint.metric[k] * energy).sqrt() + joint.rows.velocity[k].abs();
@@ -290,7 +337,7 @@ impl<'a, P: Joined<N, R, M>, const N: usize, const R: usize, const M: usize> Joi
                 violation.largest = larger(violation.largest, slip[k].abs());
                 violation.size = larger(violation.size, size);
             }
-            forward.add(&mut joint.block, slip, Self::place(i));
+            self.forward(i, slip, &mut forward);
             last = own;
         }
         (violation, worst)
@@ -303,11 +350,8 @@ impl<'a, P: Joined<N, R, M>, const N: usize, const R: usize, const M: usize> Joi
     pub fn projected(&mut self, t: T<P>, q: &Q<P>, mu: &mut Mu<P>, least: T<P>) -> Result<T<P>, AtSite> {
         self.at(t, q, least)?;
         self.slip(t, q, mu);
-        let (mut sum, mut backward) = (T::<P>::zero(), Backward::new());
-        for i in (0..N).rev() {
-            let joint = &mut self.room[i];
-            backward.add(&mut joint.block, Self::place(i));
-        }
+        self.backward();
+        let mut sum = T::<P>::zero();
         for i in 0..N {
             let push = self.push(i, |joint| &joint.block.right);
             mu[i] += push;
@@ -350,7 +394,7 @@ impl<'a, P: Joined<N, R, M>, const N: usize, const R: usize, const M: usize> Joi
         }
         let mut bends = [Space::origin(); N];
         for i in 0..N {
-            bends[i] = -self.system.bend_at(t, q, i, &velocities[i], &velocities[before::<N>(i)]);
+            bends[i] = -self.system.bend_at(t, q, i, &velocities[i], &velocities[Self::parent(i)]);
         }
         self.solve_along(&accelerations, &bends);
         Ok(())
@@ -358,18 +402,16 @@ impl<'a, P: Joined<N, R, M>, const N: usize, const R: usize, const M: usize> Joi
 
     /// Solves S x = A v + w with v of each site and w of its rows.
     fn solve_along(&mut self, along: &[SVector<T<P>, M>; N], more: &[SVector<T<P>, R>; N]) {
-        let (mut forward, mut backward) = (Forward::new(), Backward::new());
+        let mut forward = Forward::new();
         for i in 0..N {
-            let joint = &mut self.room[i];
+            let joint = &self.room[i];
             let mut right = more[i] + joint.rows.own * along[i];
-            if Self::has_before(i) {
-                right += joint.rows.before * along[before::<N>(i)];
+            if Self::has_parent(i) {
+                right += joint.rows.before * along[Self::parent(i)];
             }
-            forward.add(&mut joint.block, right, Self::place(i));
+            self.forward(i, right, &mut forward);
         }
-        for i in (0..N).rev() {
-            backward.add(&mut self.room[i].block, Self::place(i));
-        }
+        self.backward();
     }
 
     /// Moves q to φ = 0 by motions −Σ⁻¹Aᵀ S⁻¹φ, until φ no longer falls.
@@ -392,10 +434,7 @@ impl<'a, P: Joined<N, R, M>, const N: usize, const R: usize, const M: usize> Joi
                 return Err((site, Error::FarFromConstraint { violation: violation.min(f64::MAX), corrections }));
             }
             last = worst;
-            let mut backward = Backward::new();
-            for i in (0..N).rev() {
-                backward.add(&mut self.room[i].block, Self::place(i));
-            }
+            self.backward();
             for i in 0..N {
                 let push = self.push(i, |joint| &joint.block.right);
                 q[i] = self.of_site(i, |site, c| {
@@ -414,7 +453,7 @@ impl<'a, P: Joined<N, R, M>, const N: usize, const R: usize, const M: usize> Joi
     pub fn check(system: &P, t: T<P>, q: &Q<P>) -> Result<(), AtSite> {
         for i in 0..N {
             let (places, rows) = (system.places_at(t, q, i), system.rows_at(t, q, i));
-            let size = larger(q[i].max_abs(), q[before::<N>(i)].max_abs());
+            let size = larger(q[i].max_abs(), q[Self::parent(i)].max_abs());
             let entries = rows.own.zip_map(&rows.before, |a, b| a.abs() + b.abs());
             check_place(&places, &entries, &size).map_err(|error| (i, error))?;
         }

@@ -16,4 +16,5 @@ mod reactions;
 mod reference;
 mod refused;
 mod repaired;
+mod trees;
 mod variants;

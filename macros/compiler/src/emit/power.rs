@@ -72,6 +72,10 @@ impl<'g> Emitter<'_, 'g> {
             flag("GATHERS", self.program.gathered.is_some()),
             flag("IS_BOUNDED", is_bounded),
         ];
+        let least = usize::try_from(power.least).ok().filter(|least| *least > 1).map(|least| {
+            let least = size(least);
+            quote!(const LEAST_SITES: ::core::primitive::usize = #least;)
+        });
         let gradient = match &self.program.gathered {
             Some(stencil) => terms.gathered_gradient(stencil),
             None => terms.added_gradient(),
@@ -93,6 +97,7 @@ impl<'g> Emitter<'_, 'g> {
                 type Site = #site_type;
 
                 #(#flags)*
+                #least
 
                 /// The site with this index, which is below the number of sites.
                 #[inline]

@@ -1,4 +1,4 @@
-//! Joints: the equations of the configurations of a power, between neighbouring sites.
+//! Joints: the equations of the configurations of a power, between neighbouring sites or between those of a tree.
 
 use clebsch_symbolic::{Expr, IntoList, Role};
 use syn::Expr as Syntax;
@@ -11,7 +11,7 @@ use super::power::{Joint, Joints, Linear, Range, SiteIndex, Term};
 use super::sites::{Sites, unrolled};
 use super::slots::{CONSTRAINT, Slot};
 use super::typed::ActedSystem;
-use crate::diagnostic::{Diagnostics, refuse};
+use crate::diagnostic::{Diagnostic, Diagnostics, error, refuse};
 use crate::parse::{Closure, Declaration};
 
 /// One equation, for all indices of its range.
@@ -28,12 +28,19 @@ impl<'g> ActedSystem<'_, '_, 'g> {
             all.extend(self.joints_of(closure)?);
         }
         let (diagnostics, sites) = (self.context.diagnostics, self.context.power.as_ref()?);
-        let mut joints = Joints { all: Vec::new(), rows: 0, is_ring: false };
+        let mut joints = Joints { all: Vec::new(), rows: 0, is_ring: false, is_tree: false };
         for Read { range, sides } in all {
-            let (own, before, is_ring) = ends(sites, range, &sides, diagnostics)?;
-            joints.is_ring |= is_ring;
+            let Ends { own, before, order } = ends(sites, range, &sides, diagnostics)?;
+            joints.is_ring |= order == Order::Ring;
+            joints.is_tree |= order == Order::Tree;
             let term = Term { ranges: range.into_iter().collect(), value: sides.difference };
-            joints.add(term, (own, before), sides.written, sites);
+            let added = joints.add(term, (own, before), sides.written, sites);
+            diagnostics.take(added)?;
+        }
+        if let Some(joint) = joints.all.iter().find(|_| joints.is_ring && joints.is_tree) {
+            refuse!(diagnostics, joint.written.place, "these joints close a loop in a tree";
+                help "{}", unrolled("constraint", &sites.length);
+                note "joints are eliminated in a chain, in a ring, or in a tree from its leaves")
         }
         Some(joints)
     }
@@ -74,13 +81,25 @@ fn read<'g>(elaborator: &mut Elaborator<'_, '_, 'g>, syntax: &Syntax) -> Option<
     Some(Read { range: Some(range), sides })
 }
 
-/// The later one of the sites that an equation reads, the one before, and whether they are the first and the last of a ring.
-fn ends<'g>(
-    sites: &Sites<'g>,
-    range: Option<Range<'g>>,
-    sides: &Sides<'g>,
-    diagnostics: &Diagnostics,
-) -> Option<(usize, Option<usize>, bool)> {
+/// The sites that an equation reads: the later one, its parent, and how they follow each other.
+struct Ends {
+    own: usize,
+    before: Option<usize>,
+    order: Order,
+}
+
+/// How two sites follow each other.
+#[derive(Copy, Clone, PartialEq, Eq)]
+enum Order {
+    /// As neighbours, or there is one site.
+    Chain,
+    /// As the last site and the first one.
+    Ring,
+    /// As a site of a tree and its parent.
+    Tree,
+}
+
+fn ends<'g>(sites: &Sites<'g>, range: Option<Range<'g>>, sides: &Sides<'g>, diagnostics: &Diagnostics) -> Option<Ends> {
     let Written { place, text } = &sides.written;
     let mut read: Vec<usize> = Vec::new();
     for symbol in sides.difference.symbols() {
@@ -96,7 +115,10 @@ fn ends<'g>(
         Some(linear) => linear.indices.first().copied().unwrap_or(0) == i64::from(range.is_some()),
         None => false,
     };
-    if let Some(&at) = read.iter().find(|&&at| !follows(at)) {
+    let is_number = |at: usize| !sites.places[at].wraps && sites.places[at].index.as_number().is_some();
+    // the parent of all sites of a range may be one site
+    let has_center = read.len() == 2 && read.iter().any(|&at| follows(at));
+    if let Some(&at) = read.iter().find(|&&at| !(follows(at) || has_center && is_number(at))) {
         let (of, index) = (name(at), if range.is_some() { "`i`, plus a number" } else { "one site" });
         refuse!(diagnostics, *place, "the index of {of} is not {index}";
             help "{}", unrolled("constraint", &sites.length);
@@ -105,46 +127,89 @@ fn ends<'g>(
     match read[..] {
         [] => refuse!(diagnostics, *place, "`{text}` reads no site";
             help "leave it out, or write the configuration that it fixes"),
-        [own] => Some((own, None, sites.places[own].wraps)),
-        [first, second] => match order(&sites.places[first], &sites.places[second]) {
-            Some((true, is_ring)) => Some((first, Some(second), is_ring)),
-            Some((false, is_ring)) => Some((second, Some(first), is_ring)),
+        [own] if sites.places[own].wraps => Some(Ends { own, before: None, order: Order::Ring }),
+        [own] => Some(Ends { own, before: None, order: Order::Chain }),
+        [first, second] => match order(&sites.places[first], &sites.places[second], range) {
+            Some((true, order)) => Some(Ends { own: first, before: Some(second), order }),
+            Some((false, order)) => Some(Ends { own: second, before: Some(first), order }),
             None => {
-                refuse!(diagnostics, *place, "`{text}` reads {} and {}, which are no neighbours", name(first), name(second);
-                help "{}", unrolled("constraint", &sites.length);
-                note "the equations of neighbours are solved from the first site to the last")
+                refuse!(diagnostics, *place, "it is not known which of {} and {} in `{text}` is the later site", name(first), name(second);
+                    help "write the numbers of both sites, as `{0}[4]` and `{0}[1]`", sites.pattern;
+                    note "joints are eliminated from the last site to the first")
             }
         },
         _ => refuse!(diagnostics, *place, "`{text}` reads {} sites", read.len();
             help "{}", unrolled("constraint", &sites.length);
-            note "a joint is of one site, or of two neighbours"),
+            note "a joint is of one site, or of two"),
     }
 }
 
-/// Whether the first of two neighbours is the later one, and whether they are neighbours in a ring alone.
-fn order<'g>(first: &SiteIndex<'g>, second: &SiteIndex<'g>) -> Option<(bool, bool)> {
+/// Whether the first of two sites is the later one, and how they follow each other.
+fn order<'g>(first: &SiteIndex<'g>, second: &SiteIndex<'g>, range: Option<Range<'g>>) -> Option<(bool, Order)> {
     let wraps = first.wraps || second.wraps;
     let Linear { constant, sites, indices } = Linear::of((first.index - second.index).expand())?;
-    if indices.iter().any(|&coefficient| coefficient != 0) {
-        return None;
+    if let Some(&coefficient) = indices.iter().find(|&&coefficient| coefficient != 0) {
+        // a site of a range, and one that stays
+        let (own, center) = if coefficient > 0 { (first, second) } else { (second, first) };
+        let center =
+            Linear::of(center.index).filter(|center| center.sites == 0 && center.indices.iter().all(|&i| i == 0))?;
+        let start = Linear::of(homes_of(range?, own).0).filter(|start| start.sites == 0)?;
+        let is_later = !wraps && start.constant > center.constant;
+        return is_later.then_some((coefficient > 0, Order::Tree));
     }
     match (constant, sites) {
-        (1, 0) => Some((true, wraps)),
-        (-1, 0) => Some((false, wraps)),
-        (1, _) if wraps => Some((true, true)),
-        (-1, _) if wraps => Some((false, true)),
+        (1, 0) if !wraps => Some((true, Order::Chain)),
+        (-1, 0) if !wraps => Some((false, Order::Chain)),
+        (1, _) if wraps => Some((true, Order::Ring)),
+        (-1, _) if wraps => Some((false, Order::Ring)),
         // the last site and the first
-        (-1, 1) => Some((false, true)),
-        (1, -1) => Some((true, true)),
+        (-1, 1) => Some((false, Order::Ring)),
+        (1, -1) => Some((true, Order::Ring)),
+        (2.., 0) if !wraps => Some((true, Order::Tree)),
+        (..=-2, 0) if !wraps => Some((false, Order::Tree)),
         _ => None,
     }
 }
 
+/// The later sites of a joint, for all indices of its range.
+fn homes_of<'g>((from, to): Range<'g>, own: &SiteIndex<'g>) -> Range<'g> {
+    let symbol = own.index.symbols().into_iter().find(|symbol| matches!(symbol.role(), Some(Role::Site(_))));
+    let at = |end: Expr<'g>| symbol.map_or(own.index, |symbol| own.index.substitute(&[(symbol, end)]).expand());
+    (at(from), at(to))
+}
+
 impl<'g> Joints<'g> {
     /// Adds a joint, in the first rows that no other joint of the same sites has.
-    fn add(&mut self, term: Term<'g>, (own, before): (usize, Option<usize>), written: Written, sites: &Sites<'g>) {
+    ///
+    /// # Errors
+    /// A second parent of a site: it closes a loop.
+    fn add(
+        &mut self,
+        term: Term<'g>,
+        (own, before): (usize, Option<usize>),
+        written: Written,
+        sites: &Sites<'g>,
+    ) -> Result<(), Diagnostic> {
         let count = term.value.shape().rows;
         let of_site = homes(&term, &sites.places[own], sites.count);
+        let is_parent = |joint: &&Joint<'g>| {
+            let (Some(before), Some(other)) = (before, joint.before) else { return true };
+            !meet(&of_site, &homes(&joint.term, &sites.places[joint.own], sites.count))
+                || has_same_parent(
+                    [&sites.places[own], &sites.places[before]],
+                    [&sites.places[joint.own], &sites.places[other]],
+                )
+        };
+        if let Some(joint) = self.all.iter().find(|joint| !is_parent(joint)) {
+            let name = |at: usize| format!("`{}[{}]`", sites.pattern, sites.places[at].text());
+            let (own, known) = (name(own), name(joint.before.unwrap_or(joint.own)));
+            let parent = name(before.unwrap_or(joint.own));
+            return Err(
+                error!(written.place, "{own} has two earlier sites, {known} and {parent}: these joints may close a loop";
+                help "{}", unrolled("constraint", &sites.length);
+                note "in a tree the joints of a site read it and one earlier site"),
+            );
+        }
         let mut first = 0;
         loop {
             let meets = |joint: &&Joint<'g>| {
@@ -156,17 +221,23 @@ impl<'g> Joints<'g> {
         }
         self.rows = self.rows.max(first + count);
         self.all.push(Joint { term, own, before, first, written });
+        Ok(())
     }
+}
+
+/// Whether two joints of the same site have the same parent: by the number of sites between, or by its own number.
+fn has_same_parent<'g>(first: [&SiteIndex<'g>; 2], second: [&SiteIndex<'g>; 2]) -> bool {
+    let is_ring = first.iter().chain(&second).any(|place| place.wraps);
+    let between = |[own, parent]: [&SiteIndex<'g>; 2]| (own.index - parent.index).expand();
+    is_ring || between(first) == between(second) || first[1] == second[1]
 }
 
 /// The sites that are the later ones of a joint: from the first up to and without the second; `None` for all.
 fn homes<'g>(term: &Term<'g>, own: &SiteIndex<'g>, count: Expr<'g>) -> Option<Range<'g>> {
     let graph = count.graph();
-    let symbol = own.index.symbols().into_iter().find(|symbol| matches!(symbol.role(), Some(Role::Site(_))));
-    let at = |end: Expr<'g>| symbol.map_or(own.index, |symbol| own.index.substitute(&[(symbol, end)]).expand());
     match term.ranges.first() {
         _ if own.wraps => None,
-        Some((from, to)) => Some((at(*from), at(*to))),
+        Some(range) => Some(homes_of(*range, own)),
         None => Some((own.index, (own.index + graph.integer(1)).expand())),
     }
 }

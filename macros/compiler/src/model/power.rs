@@ -32,7 +32,7 @@ pub struct Term<'g> {
     pub value: Expr<'g>,
 }
 
-/// The constraint of a power: joints of one site, or of two neighbours.
+/// The constraint of a power: joints of one site, of two neighbours, or of two sites of a tree.
 #[derive(Clone)]
 pub struct Joints<'g> {
     /// The joints.
@@ -41,6 +41,8 @@ pub struct Joints<'g> {
     pub rows: usize,
     /// Whether a joint reads the last site and the first one.
     pub is_ring: bool,
+    /// Whether a joint reads two sites that are no neighbours.
+    pub is_tree: bool,
 }
 
 /// An equation φ = 0 for each index of its range.
@@ -50,7 +52,7 @@ pub struct Joint<'g> {
     pub term: Term<'g>,
     /// The place of the later site that it reads.
     pub own: usize,
-    /// The place of the site before; `None` where it reads one site.
+    /// The place of its parent, an earlier site; `None` where it reads one site.
     pub before: Option<usize>,
     /// The number of its first row among those of its later site.
     pub first: usize,
@@ -137,13 +139,18 @@ fn whole(number: Rational) -> Option<i64> {
     if let Some((value, 1)) = number.parts() { Some(value) } else { None }
 }
 
-/// Whether 0 ≤ index < N for every N ≥ 1 and all indices in their ranges.
-pub(super) fn is_inside<'g>(index: Expr<'g>, sites: Expr<'g>, ranges: &[Range<'g>]) -> bool {
+/// The least N from which on 0 ≤ index < N for all indices in their ranges: 1, or 6 for `q[5]`. `None` if there is none.
+pub(super) fn sites_for<'g>(index: Expr<'g>, sites: Expr<'g>, ranges: &[Range<'g>]) -> Option<i64> {
     let graph = index.graph();
-    let above = sites - graph.integer(1) - index;
     // c + n N ≥ 0 for every N ≥ 1
-    let is_never_negative = |Linear { constant, sites, .. }| sites >= 0 && constant.saturating_add(sites) >= 0;
-    [index, above].into_iter().all(|expr| least(expr, ranges).is_some_and(is_never_negative))
+    let is_never_negative = |linear: &Linear| linear.sites >= 0 && linear.constant.saturating_add(linear.sites) >= 0;
+    least(index, ranges).filter(is_never_negative)?;
+    let above = least(sites - graph.integer(1) - index, ranges)?;
+    match above {
+        _ if is_never_negative(&above) => Some(1),
+        Linear { constant, sites: 1, .. } => constant.checked_neg(),
+        _ => None,
+    }
 }
 
 /// The least value over all indices in their ranges, the innermost first, as a function of N.

@@ -33,6 +33,8 @@ pub(super) struct Sites<'g> {
     pub next_leaf: usize,
     /// Whether each site has an input of its own.
     pub has_own_inputs: bool,
+    /// The least N that has all sites that closures name.
+    pub least: i64,
 }
 
 impl<'g> Sites<'g> {
@@ -40,7 +42,7 @@ impl<'g> Sites<'g> {
         let count = graph.symbol(&length.to_string(), Shape::scalar(), Role::Sites, Property::General);
         let (ranges, places, entries) = (Vec::new(), Vec::new(), Vec::new());
         let length = length.clone();
-        Sites { length, count, space, pattern, ranges, places, entries, next_leaf, has_own_inputs: false }
+        Sites { length, count, space, pattern, ranges, places, entries, next_leaf, has_own_inputs: false, least: 1 }
     }
 
     pub fn place(&mut self, place: SiteIndex<'g>) -> usize {
@@ -210,7 +212,20 @@ pub(super) fn power_of<'g>(
         krate: system.item.krate.clone(),
     };
     let item = std::mem::replace(&mut system.item, site);
-    let Sites { length, count, places, has_own_inputs, .. } = sites;
+    let Sites { length, count, places, has_own_inputs, least, .. } = sites;
     system.parameters = copies;
-    Power { item, length, sites: count, places, terms, joints, parameters, copied, is_uniform, has_own_inputs, order }
+    Power {
+        item,
+        length,
+        sites: count,
+        places,
+        terms,
+        joints,
+        parameters,
+        copied,
+        is_uniform,
+        has_own_inputs,
+        least,
+        order,
+    }
 }

@@ -465,6 +465,8 @@ pub struct Power<'g> {
     pub is_uniform: bool,
     /// Whether each site has an input of its own; else all share one.
     pub has_own_inputs: bool,
+    /// The least N that has all sites that closures name.
+    pub least: i64,
     /// The order of a step of all sites; a composed step is composed of those, and the model of the site has order 2.
     pub order: Order,
 }

@@ -1,7 +1,7 @@
 //! Joints between neighbouring sites: their rows are differences of their equations, and states and steps obey them.
 
 use crate::arbitrary::{cases, vector};
-use clebsch::__private::{Joined, JointRows, Mobile, Power, put_places};
+use clebsch::__private::{Branch, Joined, JointRows, Limb, Mobile, Power, put_places};
 use clebsch::{Clebsch, Constrained, Error, SiteStorage};
 use clebsch_tests::oracle::near::assert_near;
 use nalgebra::{Matrix3, SVector, Vector2, Vector3};
@@ -26,6 +26,23 @@ pub struct Crane<const N: usize> {
     pub spin: f64,
     pub speed: f64,
     pub arm: Vector2<f64>,
+}
+
+/// Beads on rods: 1 and 2 on the first one, 3 and 4 on bead 1, 5 on bead 4. Bead 2 is on a line too.
+#[derive(Clebsch, Clone, Debug)]
+#[clebsch(
+    action     = |a: [Translation<2>; N], x: [Vector2; N]| (0..N).map(|i| x[i] + a[i]),
+    lagrangian = |v| (0..N).map(|i| self.mass[i] * v[i].norm_squared() / 2).sum(),
+    constraint = |x| [
+        (1..3).map(|i| (x[i] - x[0]).norm_squared() == self.rod),
+        (3..5).map(|i| (x[i] - x[1]).norm_squared() == self.rod),
+        (x[5] - x[4]).norm_squared() == self.rod,
+        x[2].x == x[2].y,
+    ],
+)]
+pub struct Twigs<const N: usize> {
+    pub mass: [f64; N],
+    pub rod: f64,
 }
 
 fn crane() -> Crane<3> {
@@ -195,6 +212,45 @@ proptest! {
             let (tiny, body) = (1e-7, crane.site(site));
             let motion = (body.moved_by(&q[site], &(xi[site] * tiny)) - body.moved_by(&q[site], &(xi[site] * -tiny))) / (2.0 * tiny);
             assert_near(&motion, &(moved(&q[site], xi[site], 1.0) - q[site]), 1e-7, "the motion");
+        }
+    }
+
+    /// The parents of a tree are those of its equations, and a push Aᵀκ has the multipliers κ, wherever the beads are.
+    /// Its sites have room for their children, which those of a chain have not.
+    #[test]
+    fn multipliers_of_trees_are_those_of_their_pushes(places in vector::<12>(2.0), masses in vector::<6>(0.9), kappa in vector::<12>(1.0)) {
+        let mut rooms = (<() as Branch<f64, 2, 2>>::new(), <Limb<f64, 2, 2> as Branch<f64, 2, 2>>::new());
+        prop_assert!(Branch::<f64, 2, 2>::limb(&rooms.0).is_none() && Branch::<f64, 2, 2>::limb_mut(&mut rooms.0).is_none());
+        prop_assert!(rooms.1.limb().is_some() && rooms.1.limb_mut().is_some());
+        let twigs = Twigs::<6> { mass: std::array::from_fn(|i| 1.0 + masses[i]), rod: 1.0 };
+        let parents = [None, Some(0), Some(0), Some(1), Some(1), Some(4)];
+        let q: [Vector2<f64>; 6] = std::array::from_fn(|i| Vector2::new(places[2 * i], places[2 * i + 1]));
+        let rows: [JointRows<f64, 2, 2>; 6] = std::array::from_fn(|site| twigs.rows_at(0.0, &q, site));
+        let kappa: [Vector2<f64>; 6] = std::array::from_fn(|i| Vector2::from_fn(|k, _| if rows[i].are_there[k] { kappa[2 * i + k] } else { 0.0 }));
+        let mut push = [Vector2::zeros(); 6];
+        for site in 0..6 {
+            prop_assert_eq!(Twigs::<6>::parent(site), parents[site]);
+            push[site] += rows[site].own.transpose() * kappa[site];
+            if let Some(parent) = parents[site] {
+                push[parent] += rows[site].before.transpose() * kappa[site];
+            }
+        }
+        let constants = twigs.constants(0.01)?;
+        let dense = nalgebra::DMatrix::from_fn(12, 12, |row, column| {
+            let (site, of) = (row / 2, column / 2);
+            match of {
+                _ if of == site => rows[site].own[(row % 2, column % 2)],
+                _ if Some(of) == parents[site] => rows[site].before[(row % 2, column % 2)],
+                _ => 0.0,
+            }
+        });
+        // rows that nearly depend on each other have no digits left
+        let values = dense.singular_values();
+        let least = values.iter().copied().filter(|value| *value > 1e-12).fold(f64::MAX, f64::min);
+        prop_assume!(values.iter().filter(|value| **value > 1e-12).count() == 6 && least > 0.05);
+        let found = twigs.multipliers_of_joints(&constants, 0.0, &q, &push);
+        for (found, kappa) in found.iter().zip(&kappa) {
+            assert_near(found, kappa, 1e-9, "the multipliers");
         }
     }
 

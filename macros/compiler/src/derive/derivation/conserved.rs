@@ -117,9 +117,13 @@ pub(super) fn joints(formulas: &MechanicsFormulas<'_>) -> String {
         indices => format!("{} for {indices}", joint.written.text),
     };
     let texts = joints.all.each(text).join(", ");
-    let blocks = if joints.is_ring { "block tridiagonal, with a block in each corner" } else { "block tridiagonal" };
+    let (sites, blocks) = match (joints.is_tree, joints.is_ring) {
+        (true, _) => ("the sites of a tree", "eliminated from the leaves to the root"),
+        (_, true) => ("neighbours", "block tridiagonal, with a block in each corner"),
+        _ => ("neighbours", "block tridiagonal"),
+    };
     format!(
-        "Joints between neighbours: {texts}. Their forces Aᵀλ act along their rows at both ends of the step, and q⁺ obeys them. \
+        "Joints between {sites}: {texts}. Their forces Aᵀλ act along their rows at both ends of the step, and q⁺ obeys them. \
          The velocity of N⁺ is tangent to them: A·Σ⁻¹·N⁺ = b at the end of the step.\n\
          The multipliers are found by sweeps over all sites, λ ← λ − S⁻¹φ(q⁺)/h. S = A·Σ⁻¹·Aᵀ at q is {blocks}: a sweep takes O(N) operations. \
          The step is time-symmetric, symplectic on the momenta that are tangent to the joints, and obeys them to rounding.\n"

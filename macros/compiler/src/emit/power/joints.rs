@@ -8,7 +8,7 @@ use super::terms::Terms;
 use crate::derive::{Id, JointRows};
 use crate::emit::Emitter;
 use crate::emit::block::Target;
-use crate::emit::function::{Body, no_words};
+use crate::emit::function::{self, Body, no_words};
 use crate::emit::functions::{JOINED, MOBILE};
 use crate::emit::scope::size;
 use crate::model::{Joint, Power};
@@ -37,8 +37,21 @@ impl<'g> Emitter<'_, 'g> {
         let mobile = self.target.derived(Some(quote!(runtime::Mobile<#dimension>)), of_site);
         let is_ring = joints.is_ring;
         let terms = Terms::new(self, power);
+        let branch = if joints.is_tree { quote!(runtime::Limb<T, #most, #dimension>) } else { quote!(()) };
         let formulas = self.formulas.joints.iter().flat_map(|joints| &joints.all);
         let numbered: Vec<_> = joints.all.iter().zip(formulas).enumerate().into_list();
+        let parent = joints.is_tree.then(|| {
+            let of_joint = |(_, (joint, rows)): &(usize, (&Joint<'g>, &JointRows<'g>))| terms.parent((joint, rows));
+            let statements: TokenStream = numbered.iter().map(of_joint).collect();
+            let title = function::documentation("The earlier site that the joints of a site read.", &[], None);
+            quote! {
+                #title
+                fn parent(site: ::core::primitive::usize) -> runtime::Option<::core::primitive::usize> {
+                    #statements
+                    runtime::None
+                }
+            }
+        });
         let places = || -> TokenStream {
             let statement = |&(number, (joint, rows)): &(usize, (&Joint<'g>, &JointRows<'g>))| {
                 let kernel = self.program.kernel(Id::JointPlaces(number));
@@ -96,7 +109,12 @@ impl<'g> Emitter<'_, 'g> {
         });
         let joined = target.derived(
             Some(quote!(runtime::Joined<#length, #most, #dimension>)),
-            quote!(const IS_RING: ::core::primitive::bool = #is_ring; #functions),
+            quote! {
+                const IS_RING: ::core::primitive::bool = #is_ring;
+                type Branch = #branch;
+                #parent
+                #functions
+            },
         );
         let constrained = target.derived(
             Some(quote!(runtime::Constrained)),

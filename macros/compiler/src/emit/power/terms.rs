@@ -8,7 +8,7 @@ use quote::{format_ident, quote};
 
 use crate::derive::{Home, Id, JointRows, SiteTerm, Stencil};
 use crate::emit::Emitter;
-use crate::emit::scope::Scope;
+use crate::emit::scope::{Scope, size};
 use crate::lower::{Code, Kernel};
 use crate::model::{Joint, Leaf, Linear, Power, SiteIndex};
 
@@ -95,6 +95,22 @@ impl<'e, 'a, 'g> Terms<'e, 'a, 'g> {
     ) -> TokenStream {
         let found = self.found(joint.own, &rows.home, &joint.term.ranges);
         self.at_site((&self.power.places, Some(joint.own)), &found, kernel, put)
+    }
+
+    /// A statement that returns the parent of a site, if this joint gives it one.
+    pub(super) fn parent(&self, (joint, rows): (&Joint<'g>, &JointRows<'g>)) -> TokenStream {
+        let Some(before) = joint.before else { return TokenStream::new() };
+        let number = |place: usize| {
+            let Linear { constant, .. } = Linear::of(self.power.places[place].index)
+                .filter(|linear| linear.sites == 0 && linear.indices.is_empty())?;
+            usize::try_from(constant).ok().map(size)
+        };
+        if let (Some(own), Some(parent)) = (number(joint.own), number(before)) {
+            return quote!(if site == #own { return runtime::Some(#parent); });
+        }
+        let found = self.found(joint.own, &rows.home, &joint.term.ranges);
+        let (name, index) = (site(before), self.index_of(&self.power.places, before));
+        quote!('term: { #found #index return runtime::Some(#name); })
     }
 
     /// The entries of an output of a kernel, row by row.

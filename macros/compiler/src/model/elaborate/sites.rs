@@ -3,7 +3,7 @@
 use clebsch_symbolic::{Expr, IntoElements, IntoList, Property, Role, Shape};
 use syn::{BinOp, Expr as Syntax, ExprBinary, ExprIndex, ExprMethodCall, ExprRange, RangeLimits};
 
-use super::super::power::{Linear, Range, SiteIndex, Term, index_name, is_inside};
+use super::super::power::{Linear, Range, SiteIndex, Term, index_name, sites_for};
 use super::super::sites::unrolled;
 use super::super::value::{Each, Value};
 use super::Elaborator;
@@ -44,6 +44,15 @@ impl<'g> Elaborator<'_, '_, 'g> {
         Some(Value::Sequence(range, Box::new(value)))
     }
 
+    /// The range of numbers that follow each other.
+    fn range_of_sites(&self, all: &[Value<'g>]) -> Option<Range<'g>> {
+        let number = |value: &Value<'g>| if let Value::Matrix(number) = value { Some(*number) } else { None };
+        let first = number(all.first()?)?;
+        let at = |i: usize| (first + self.graph().integer(i as i64)).expand();
+        let follow = all.iter().enumerate().all(|(i, value)| number(value) == Some(at(i)));
+        (first.as_number().is_some() && follow).then(|| (first, at(all.len())))
+    }
+
     /// `(1..N).map(|i| …)`, where `read` reads the body of the closure.
     pub fn of_range<V>(
         &mut self,
@@ -52,6 +61,8 @@ impl<'g> Elaborator<'_, '_, 'g> {
     ) -> Option<(Range<'g>, V)> {
         let range = match self.elaborate(&call.receiver)? {
             Value::Range(from, to) => (from, to),
+            // by its numbers, `1..4` is a range of sites too
+            Value::Array(all) if let Some(range) = self.range_of_sites(&all) => range,
             Value::Array(all) => {
                 refuse!(self, &call.receiver, "`{}` is an array of {}, no range of sites", spell(&call.receiver), all.len();
                     help "write each equation for itself, or a range, as in `(1..{}).map(|i| …)`", self.context.power.as_ref()?.length)
@@ -159,7 +170,10 @@ impl<'g> Elaborator<'_, '_, 'g> {
         let fields = self.context.fields;
         let power = self.context.power.as_mut()?;
         let name = power.length.clone();
-        if !place.wraps && !is_inside(place.index, power.count, &power.ranges) {
+        let least = if place.wraps { Some(1) } else { sites_for(place.index, power.count, &power.ranges) };
+        if let Some(least) = least {
+            power.least = power.least.max(least);
+        } else {
             refuse!(self, &index.index, "`{}` leaves the sites 0..{name}", spell(&Syntax::Index(index.clone()));
                 help "write `({text}) % {name}` for a ring, or let the range end earlier, as `0..{name} - 1` does");
         }

@@ -1,6 +1,6 @@
 //! Indices are linear, and inside of the sites for every N.
 
-use super::{Linear, is_inside};
+use super::{Linear, sites_for};
 use clebsch_symbolic::{Expr, Graph, Property, Role, Shape};
 
 fn symbol<'g>(graph: &'g Graph, name: &str, role: Role) -> Expr<'g> {
@@ -24,16 +24,20 @@ fn what_leaves_the_sites_is_seen() {
         (symbol(&graph, "i", Role::Site(0)), symbol(&graph, "j", Role::Site(1)), symbol(&graph, "N", Role::Sites));
     let (zero, one) = (graph.integer(0), graph.integer(1));
     let all = [(zero, n)];
-    assert!(is_inside(i, n, &all));
-    assert!(is_inside(n - one - i, n, &all), "backwards");
-    assert!(!is_inside(i + one, n, &all));
-    assert!(!is_inside(i - one, n, &all));
-    assert!(is_inside(i + one, n, &[(zero, n - one)]), "an open chain");
-    assert!(is_inside(i - one, n, &[(one, n)]));
-    assert!(is_inside(zero, n, &[]) && is_inside(n - one, n, &[]));
-    assert!(!is_inside(one, n, &[]), "one site has no second");
+    assert_eq!(sites_for(i, n, &all), Some(1));
+    assert_eq!(sites_for(n - one - i, n, &all), Some(1), "backwards");
+    assert_eq!(sites_for(i + one, n, &all), None);
+    assert_eq!(sites_for(i - one, n, &all), None);
+    assert_eq!(sites_for(i + one, n, &[(zero, n - one)]), Some(1), "an open chain");
+    assert_eq!(sites_for(i - one, n, &[(one, n)]), Some(1));
+    assert_eq!(sites_for(zero, n, &[]), Some(1));
+    assert_eq!(sites_for(n - one, n, &[]), Some(1));
+    assert_eq!(sites_for(one, n, &[]), Some(2), "one site has no second");
+    assert_eq!(sites_for(i + one, n, &[(zero, one + one)]), Some(3));
+    assert_eq!(sites_for(zero - one, n, &[]), None);
     let pairs = [(zero, n), (i + one, n)];
-    assert!(is_inside(i, n, &pairs) && is_inside(j, n, &pairs));
-    assert!(is_inside(j - i - one, n, &pairs), "a distance less one");
-    assert!(!is_inside(i + j, n, &pairs));
+    assert_eq!(sites_for(i, n, &pairs), Some(1));
+    assert_eq!(sites_for(j, n, &pairs), Some(1));
+    assert_eq!(sites_for(j - i - one, n, &pairs), Some(1), "a distance less one");
+    assert_eq!(sites_for(i + j, n, &pairs), None);
 }
