@@ -2,6 +2,7 @@
 
 mod figure;
 mod gait;
+mod rider;
 mod watch;
 
 use clap::Parser;
@@ -51,6 +52,28 @@ pub struct Snakeboard {
     pub swings: Vector2<f64>,
     /// How fast they swing, rad/s.
     pub rates: Vector2<f64>,
+}
+
+/// The same board, whose rotor and wheels the rider turns by torques.
+#[derive(Clebsch, Clone, Debug)]
+#[clebsch(
+    action     = |(F, a, b): (SE<2>, Translation<1>, Translation<1>), (q, rotor, wheel): (SE<2>, Vector1, Vector1)| (q * F, rotor + a, wheel + b),
+    lagrangian = |(xi, r, w)| {
+        let board = self.mass * (xi.y.powi(2) + xi.z.powi(2)) + self.inertia * xi.x.powi(2);
+        (board + self.rotor * (r.x.powi(2) + 2 * r.x * xi.x)) / 2 + self.wheels * w.x.powi(2)
+    },
+    force      = |torque: Vector2| (Vector3::zeros(), Vector1::new(torque.x), Vector1::new(torque.y)),
+    constraint = |wheel, (xi, r, w)| [
+        (xi.z + self.length * xi.x) * wheel.x.cos() == xi.y * wheel.x.sin(),
+        (xi.z - self.length * xi.x) * wheel.x.cos() == -xi.y * wheel.x.sin(),
+    ],
+)]
+pub struct Pushed {
+    mass: f64,
+    length: f64,
+    inertia: f64,
+    rotor: f64,
+    wheels: f64,
 }
 
 const SCENE: Scene = Scene {
@@ -134,6 +157,21 @@ fn run(flags: &Flags) -> Result<Claims, Failure> {
         };
         let (errors, reference) = ([watch.error(), error(2)?, error(4)?], watch.reference());
         let name = format!("{}: place and heading at the end", watch.gait.name);
+        Convergence { errors, reference, steps: flags.run.steps }.claim(Order::Second, &name, &mut claims);
+
+        let pushed = |part: u64| -> Result<(f64, Vector2<f64>), Failure> {
+            let (step_size, steps) = (flags.run.step_size / part as f64, flags.run.steps * part);
+            let (end, torques) = rider::pushed(flags, &Run { step_size, steps, ..flags.run.clone() }, watch.gait)?;
+            let (q, ..) = end.configuration();
+            Ok((watch.error_of((q[(0, 2)], q[(1, 2)]), q[(1, 0)].atan2(q[(0, 0)])), torques))
+        };
+        let [(coarse, torques), (middle, _), (fine, _)] = [pushed(1)?, pushed(2)?, pushed(4)?];
+        say(format_args!(
+            "{}: torques of up to {:.3} N m on the rotor and {:.4} N m on the wheels",
+            watch.gait.name, torques.x, torques.y
+        ));
+        let name = format!("{}: the end by these torques as inputs", watch.gait.name);
+        let errors = [coarse, middle, fine];
         Convergence { errors, reference, steps: flags.run.steps }.claim(Order::Second, &name, &mut claims);
     }
     Ok(claims)

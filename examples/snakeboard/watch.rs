@@ -91,9 +91,14 @@ impl Watch {
 
     /// How far the end is from that of the other integration, in lengths of the board and radians.
     pub fn error(&self) -> f64 {
-        let distance = |(sample, exact): &(Sample, Reduced)| {
-            let far = (sample.at.0 - exact[0]).hypot(sample.at.1 - exact[1]) / self.board.length;
-            far.hypot(sample.heading - exact[2])
+        self.cycles.last().map_or(f64::NAN, |(sample, _)| self.error_of(sample.at, sample.heading))
+    }
+
+    /// How far a place and a heading, up to turns, are from the end of the other integration.
+    pub fn error_of(&self, (x, y): (f64, f64), heading: f64) -> f64 {
+        let distance = |(_, exact): &(Sample, Reduced)| {
+            let far = (x - exact[0]).hypot(y - exact[1]) / self.board.length;
+            far.hypot(turn(exact[2], heading))
         };
         self.cycles.last().map_or(f64::NAN, distance)
     }
