@@ -85,7 +85,7 @@ impl<T: Scalar, const R: usize, const M: usize> Branch<T, R, M> for Limb<T, R, M
 impl<P: Joined<N, R, M>, const N: usize, const R: usize, const M: usize> Joints<'_, P, N, R, M> {
     /// A site with its limb, and the limb of its parent, if it has one.
     #[inline(always)]
-    #[allow(clippy::type_complexity)]
+    #[allow(clippy::type_complexity, reason = "a site, and the limb of its parent")]
     fn with_parent(&mut self, site: usize) -> Option<(&mut JointOf<P, N, R, M>, Option<&mut Limb<T<P>, R, M>>)> {
         let (before, rest) = self.room.split_at_mut_checked(site)?;
         let parent = P::parent(site).and_then(|parent| before.get_mut(parent)?.branch.limb_mut());
