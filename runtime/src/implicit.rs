@@ -120,10 +120,10 @@ pub trait Equation<T: Scalar, const M: usize, const N: usize = M> {
         false
     }
 
-    /// The size of a motion ξ that is lost to rounding times ε, if ρ compares places: 1 + |q|. The same where a constraint
-    /// may take up all of μ, and no predictor tells the size of that.
+    /// The size of the places that ρ compares, 1 + |q|, in the units of ξ. A motion below ε times this is lost to their
+    /// rounding. An equation without a predictor has it too where a constraint may take up all of μ.
     ///
-    /// Zero by the provided method: then ξ may be as small as it likes, and is right to its own last digits.
+    /// The provided method returns zero: then a small ξ is right to its own last digits.
     #[inline]
     fn extent(&self) -> T {
         T::zero()

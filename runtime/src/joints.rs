@@ -1,8 +1,8 @@
 //! Joints: constraints φ(t, q) = 0 on neighbouring sites of a power, or on those of a tree.
 //!
 //! The rows of a site are those of the equations whose later site it is: they read this site and its parent. In a chain the
-//! parent is the site before. Before the first site of a ring comes the last one. With A and B along motions of the site
-//! and of its parent, and with the children c of a site,
+//! parent is the site before. Before the first site of a ring comes the last one. The rows are A along motions of the site
+//! and B along those of its parent, and c are its children. A step solves:
 //!
 //! ```text
 //! n_i = N_i + A_iᵀλ_i + Σ_c B_cᵀλ_c,    (q⁺_i, M⁺_i) = the free step of site i,    φ(t + h, q⁺) = 0

@@ -267,8 +267,8 @@ pub trait Varied<const M: usize>: Parts {
     type Slopes;
 }
 
-#[allow(unused_variables, reason = "provided methods take what others need")]
 /// Substep K, differentiated: the discrete Lagrangian of an edge from q to `next` = Φ_F(q), F = I + D, with its derivatives along M directions.
+#[allow(unused_variables, reason = "provided methods take what others need")]
 pub trait VariedSubstep<const K: usize, const M: usize, B: Method<Self> = Declared>: Substep<K, B> + Varied<M> {
     /// ℓd with both Legendre transforms.
     fn momenta(&self, c: &B::Constants, t: T<Self>, ends: Ends<'_, Self>) -> Momenta<T<Self>, M>;

@@ -131,13 +131,16 @@ impl<T: Scalar, const M: usize, const R: usize> Balance<T, M, R> {
     }
 }
 
-/// The forces of the constraint at both ends of an edge, and N⁺.
-struct Forces<S: Clebsch, const R: usize> {
-    /// λ
-    start: SVector<T<S>, R>,
-    /// μ
-    end: SVector<T<S>, R>,
+/// Both ends of an edge with the forces of the constraint.
+struct Sides<S: Clebsch, const M: usize, const R: usize> {
+    /// λ and μ
+    multipliers: [SVector<T<S>, R>; 2],
+    /// N⁺
     momentum: Mu<S>,
+    start: ConstraintAtStart<T<S>, M, R>,
+    end: ConstraintAtEnd<T<S>, M, R>,
+    leaving: Balance<T<S>, M, R>,
+    landing: Balance<T<S>, M, R>,
 }
 
 /// The place of an edge: the constants, and the time at which the step starts.
@@ -146,13 +149,13 @@ type Place<'a, S, B> = (&'a <B as Method<S>>::Constants, T<S>);
 /// The derivatives of the momenta before and after an edge, one column for each quantity.
 type Slopes<S, const M: usize, const P: usize> = (SMatrix<T<S>, M, P>, SMatrix<T<S>, M, P>);
 
-/// The forces of the constraint in a step from the momentum N over an edge.
-fn forces<S, B, const K: usize, const M: usize, const R: usize, const P: usize>(
+/// The constraint in a step from the momentum N over an edge. `None` where rows depend on each other.
+fn sides<S, B, const K: usize, const M: usize, const R: usize, const P: usize>(
     system: &S,
     (c, t): Place<'_, S, B>,
     ends: Ends<'_, S>,
     mu: &Mu<S>,
-) -> Forces<S, R>
+) -> Option<Sides<S, M, R>>
 where
     S: ConstrainedSubstep<K, M, R, P, B>,
     B: Method<S>,
@@ -162,7 +165,12 @@ where
     let start = system.multipliers(c, t, q, &(before - mu));
     let push = Substep::<K, B>::projection(system, c, t, next, &after).unwrap_or_else(SVector::zeros);
     let end = system.multipliers(c, S::end(c, t), next, &push);
-    Forces { start, end, momentum: after + push }
+    let (multipliers, momentum) = ([start, end], after + push);
+    let start = system.at_start(c, t, ends, &multipliers[0]);
+    let end = system.at_end(c, t, next, &momentum, &multipliers[1]);
+    let leaving = Balance::new(&start.rows, &start.by_inertia)?;
+    let landing = Balance::new(&end.rows, &end.by_inertia)?;
+    Some(Sides { multipliers, momentum, start, end, leaving, landing })
 }
 
 /// An edge with the force of its constraint, in a step from the momentum N. `None` where rows depend on each other.
@@ -178,18 +186,13 @@ where
     S: ConstrainedSubstep<K, M, R, P, B>,
     B: Method<S>,
 {
-    let forces = forces(system, (c, t), ends, mu);
-    let start = system.at_start(c, t, ends, &forces.start);
-    let end = system.at_end(c, t, ends.2, &forces.momentum, &forces.end);
-    let [leaving, landing] =
-        [(start.rows, start.by_inertia), (end.rows, end.by_inertia)].map(|(a, b)| Balance::new(&a, &b));
-    let (leaving, landing) = (leaving?, landing?);
+    let Sides { momentum, start, end, leaving, landing, .. } = sides(system, (c, t), ends, mu)?;
     // the end moves with the start, by Ad
     let push = times(&end.push, &edge.adjoint);
     let velocity = times(&end.velocity, &edge.adjoint);
     Some(PassedEdge {
         edge: Carried {
-            momentum: forces.momentum,
+            momentum,
             adjoint: edge.adjoint,
             before: leaving.of(&(edge.before - start.push), &start.between),
             after: landing.of(&(edge.after + push), &-velocity),
@@ -213,12 +216,8 @@ where
     S: ConstrainedSubstep<K, M, R, P, B>,
     B: Method<S>,
 {
-    let forces = forces(system, (c, t), ends, mu);
-    let start = system.at_start(c, t, ends, &forces.start);
-    let end = system.at_end(c, t, ends.2, &forces.momentum, &forces.end);
-    let (push_before, between) = system.slopes_at_start(c, t, ends, &forces.start);
-    let (push_after, velocity) = system.slopes_at_end(c, t, ends.2, &forces.momentum, &forces.end);
-    let [leaving, landing] =
-        [(start.rows, start.by_inertia), (end.rows, end.by_inertia)].map(|(a, b)| Balance::new(&a, &b));
-    Some((leaving?.of(&(before - push_before), &between), landing?.of(&(after + push_after), &-velocity)))
+    let Sides { multipliers: [lambda, kappa], momentum, leaving, landing, .. } = sides(system, (c, t), ends, mu)?;
+    let (push_before, between) = system.slopes_at_start(c, t, ends, &lambda);
+    let (push_after, velocity) = system.slopes_at_end(c, t, ends.2, &momentum, &kappa);
+    Some((leaving.of(&(before - push_before), &between), landing.of(&(after + push_after), &-velocity)))
 }

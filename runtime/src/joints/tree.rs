@@ -16,14 +16,14 @@ use crate::parts::T;
 use crate::{Scalar, Space};
 use nalgebra::{SMatrix, SVector};
 
-/// The room of a site that has children.
+/// The room of a site in a tree.
 #[derive(Clone, Debug)]
 pub struct Limb<T, const R: usize, const M: usize> {
     /// W
     mobility: SMatrix<T, M, M>,
     /// G
     moved: SMatrix<T, M, R>,
-    /// The part of a right side that children leave: W times their pushes.
+    /// The velocity that the pushes of the children make, in a solve.
     drift: SVector<T, M>,
     /// The push of all joints on the site.
     push: SVector<T, M>,

@@ -15,6 +15,13 @@ impl<'g> MechanicsFormulas<'g> {
         equation.formula.is_none() && !is_known && !self.inertia_moves()
     }
 
+    /// Whether an equation with a constraint is right to the rounding of places. Where no predictor tells the size of μ, it
+    /// may be right to that of μ.
+    pub fn has_extent(&self, substep: &Substep<'g>, equation: &MomentumEquation<'g>) -> bool {
+        let has_places = self.constraint.as_ref().is_some_and(|constraint| constraint.places.is_some());
+        substep.reaction.is_some() && (has_places || !self.is_predicted(equation))
+    }
+
     /// x = s·h·Σ⁻¹μ with s = dx/dξ at the identity, component by component.
     pub(super) fn predictor(&self, substep: &Substep<'g>, equation: &MomentumEquation<'g>) -> Vec<Expr<'g>> {
         let graph = self.model.graph;
@@ -40,7 +47,7 @@ impl<'g> MechanicsFormulas<'g> {
         velocity.into_iter().take(count).zip(components).map(coordinate).into_list()
     }
 
-    /// The velocity of a momentum where some of its components are zero: Σ⁻¹μ with the μ_i that make these zero.
+    /// The velocity Σ⁻¹μ of a momentum, where a constraint chooses μ_i so that some components of the velocity are zero.
     fn velocity_without(&self, still: &[usize], momenta: &[Expr<'g>]) -> Vec<Expr<'g>> {
         let (graph, inverse) = (self.model.graph, constraint::inverse(self, self.inertia));
         let moving: Vec<usize> = (0..momenta.len()).filter(|i| !still.contains(i)).into_list();

@@ -158,10 +158,8 @@ impl<'e, 'a, 'g> EquationType<'e, 'a, 'g> {
             },
             "has_poles" if is_newton && solve.has_poles => function.written(scope, None, words)?,
             "extent" if is_newton => Body::from({
-                emitter.formulas.substeps[solve.substep].reaction.as_ref()?;
-                let has_places = emitter.formulas.constraint.as_ref().is_some_and(|all| all.places.is_some());
-                let is_predicted = !emitter.rows.titled(solve.id(Id::Predictor)).is_empty();
-                (has_places || !is_predicted).then_some(())?;
+                let substep = &emitter.formulas.substeps[solve.substep];
+                emitter.formulas.has_extent(substep, &substep.equations[solve.number]).then_some(())?;
                 match emitter.held_by_equation(solve).iter().position(|(name, _)| *name == "q").map(syn::Index::from) {
                     Some(place) => quote!(runtime::extent(self.#place)),
                     None => quote!(runtime::extent(&())),

@@ -3,7 +3,7 @@
 use std::cell::RefCell;
 
 use clebsch::__private::{Equation, LinearEquation, solve, solve_linear_equation};
-use clebsch_compiler::derive::{self, Id, Solution};
+use clebsch_compiler::derive::{Id, Solution};
 use clebsch_compiler::lower::{Kernel, MechanicsProgram, Solve};
 use nalgebra::{SMatrix, SVector};
 
@@ -344,9 +344,8 @@ impl<const M: usize> Equation<f64, M, MOMENTA> for Interpreted<'_, '_, '_> {
     fn extent(&self) -> f64 {
         let stepper = self.stepper.borrow();
         let formulas = &stepper.program.formulas;
-        let is_predicted = stepper.program.find(self.solve.id(Id::Predictor)).is_some();
-        let has_extent = |all: &derive::ConstraintFormulas<'_>| all.places.is_some() || !is_predicted;
-        let has_extent = formulas.constraint.as_ref().is_some_and(has_extent);
+        let substep = &formulas.substeps[self.solve.substep];
+        let has_extent = formulas.has_extent(substep, &substep.equations[self.solve.number]);
         let entries = formulas.model.configurations.iter().flat_map(|leaf| stepper.values.get(leaf.symbol));
         if has_extent { entries.fold(1.0, |sum: f64, entry| sum.max(1.0 + entry.abs())) } else { 0.0 }
     }
