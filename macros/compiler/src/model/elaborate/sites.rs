@@ -62,11 +62,13 @@ impl<'g> Elaborator<'_, '_, 'g> {
         let range = match self.elaborate(&call.receiver)? {
             Value::Range(from, to) => (from, to),
             // by its numbers, `1..4` is a range of sites too
-            Value::Array(all) if let Some(range) = self.range_of_sites(&all) => range,
-            Value::Array(all) => {
-                refuse!(self, &call.receiver, "`{}` is an array of {}, no range of sites", spell(&call.receiver), all.len();
+            Value::Array(all) => match self.range_of_sites(&all) {
+                Some(range) => range,
+                None => {
+                    refuse!(self, &call.receiver, "`{}` is an array of {}, no range of sites", spell(&call.receiver), all.len();
                     help "write each equation for itself, or a range, as in `(1..{}).map(|i| …)`", self.context.power.as_ref()?.length)
-            }
+                }
+            },
             other => {
                 refuse!(self, &call.receiver, "`{}` is {}, no range of sites", spell(&call.receiver), other.describe();
                     help "write a range, as in `(1..{}).map(|i| …)`", self.context.power.as_ref()?.length)
