@@ -1,6 +1,7 @@
 //! Prints every stage of the structs in a file: `cargo run -p clebsch-compiler --example expand -- FILE [STAGE]`.
 
 use clebsch_compiler::diagnostic::Diagnostics;
+use clebsch_compiler::model::{ByNumber, Model};
 use clebsch_compiler::{Graph, compile, derive, emit, model, parse};
 use proc_macro2::TokenStream;
 use quote::ToTokens;
@@ -22,14 +23,22 @@ fn main() {
     }
 }
 
+/// The model, by sites where that is possible.
+fn model(graph: &Graph, item: TokenStream) -> Result<Model<'_>, Diagnostics> {
+    let declaration = parse::parse(item)?;
+    let by = |by_number| model::model(graph, &declaration, by_number);
+    let by_sites = model::may_be_sites(&declaration).then(|| by(ByNumber::Sites));
+    by_sites.and_then(Result::ok).map_or_else(|| by(ByNumber::Unrolled), Ok)
+}
+
 /// Prints one stage, and runs none behind it.
 fn show(stage: &str, item: TokenStream) -> Result<(), Diagnostics> {
     let graph = Graph::new();
     match stage {
         "declaration" => println!("{}", parse::parse(item)?),
-        "model" => println!("{}", model::model(&graph, &parse::parse(item)?)?),
-        "formulas" => println!("{}", derive::derive(model::model(&graph, &parse::parse(item)?)?)?),
-        "latex" => println!("{}", derive::derive(model::model(&graph, &parse::parse(item)?)?)?.latex()),
+        "model" => println!("{}", model(&graph, item)?),
+        "formulas" => println!("{}", derive::derive(model(&graph, item)?)?),
+        "latex" => println!("{}", derive::derive(model(&graph, item)?)?.latex()),
         "program" => println!("{}", compile(&graph, item)?),
         "derivation" => println!("{}", emit::derivations(&compile(&graph, item)?)),
         _ => println!("{}", emit::generated(&compile(&graph, item)?)),

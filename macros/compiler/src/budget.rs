@@ -10,6 +10,7 @@ use proc_macro2::{Span, TokenStream, TokenTree};
 use syn::{Expr, Type};
 
 use crate::diagnostic::{Diagnostic, Diagnostics, Location, error};
+use crate::model::ByNumber;
 use crate::parse::{ChartChoice, Closure, CodeForm, Declaration, Discretization, Kinetic, Located, Order, Potential};
 
 /// The work of one expansion, for each of its methods: about a second where nothing is optimised, as in a crate of a user. A unit is up to a
@@ -60,9 +61,12 @@ fn too_large(declaration: &Declaration, stage: CompilerStage) -> Diagnostic {
     for text in others.smaller() {
         error = error.help(text);
     }
-    error
-        .help(instead)
-        .note("formulas are expanded at compile time, and products of sums get a term for each pair of terms")
+    let error = error.help(instead);
+    let error = match others.no_sites() {
+        Some(reason) => error.note(format!("its sites are not stepped in loops: {reason}")),
+        None => error,
+    };
+    error.note("formulas are expanded at compile time, and products of sums get a term for each pair of terms")
 }
 
 /// A change of a declaration.
@@ -146,7 +150,21 @@ impl Others<'_> {
         ];
         let tried =
             rows.into_iter().filter_map(|(applies, change, text)| (applies && self.is_small(change)).then_some(text));
-        is_product.then_some(crate::model::IN_LOOPS).into_iter().chain(tried).into_list()
+        let in_loops = is_product && !crate::model::may_be_sites(self.declaration);
+        in_loops.then_some(crate::model::IN_LOOPS).into_iter().chain(tried).into_list()
+    }
+
+    /// Why the sites of a product by a number are not stepped in loops.
+    fn no_sites(&self) -> Option<String> {
+        let declaration = self.declaration;
+        let is_by_number = declaration.methods.is_empty() && crate::model::may_be_sites(declaration);
+        let graph = Graph::new();
+        let by_sites = || {
+            let model = crate::model::model(&graph, declaration, ByNumber::Sites)?;
+            crate::derive::derive(model).map(|_| ())
+        };
+        let tried = is_by_number.then(|| work::within(WORK / 12, by_sites))?;
+        tried.ok()?.err()?.into_iter().next().map(|error| error.message().to_string())
     }
 }
 

@@ -81,6 +81,11 @@ impl Diagnostic {
         Diagnostic { place: place.into(), message: message.to_string(), lines: Vec::new() }
     }
 
+    /// Its first line.
+    pub fn message(&self) -> &str {
+        &self.message
+    }
+
     /// The text to type instead.
     pub fn help(mut self, text: impl fmt::Display) -> Diagnostic {
         self.lines.push(format!("help: {text}"));
@@ -172,6 +177,13 @@ impl Diagnostics {
         let result = attempt();
         self.found.borrow_mut().truncate(reported);
         result
+    }
+
+    /// Takes the errors that came after this many.
+    pub(crate) fn since(&self, reported: usize) -> Vec<Diagnostic> {
+        let mut found = self.found.borrow_mut();
+        let from = reported.min(found.len());
+        found.split_off(from)
     }
 
     /// The errors.

@@ -28,6 +28,7 @@ use crate::budget::{CompilerStage, Stage};
 use crate::diagnostic::Diagnostics;
 use crate::lower::Program;
 pub use crate::methods::MethodProgram;
+use crate::model::ByNumber;
 use crate::parse::Declaration;
 pub use crate::reference::{keys_for_editors, reference};
 
@@ -73,7 +74,8 @@ pub fn compile(graph: &Graph, item: TokenStream) -> Result<Program<'_>, Diagnost
 
 /// The program of a declaration with those of its methods, which have the same system and other dials.
 fn program<'g>(graph: &'g Graph, declaration: &Declaration, stage: &Stage) -> Result<Program<'g>, Diagnostics> {
-    let mut program = match program_of_steps(graph, declaration, stage)? {
+    let may_be_sites = declaration.methods.is_empty() && model::may_be_sites(declaration);
+    let mut program = match program_of_steps(graph, declaration, may_be_sites, stage)? {
         Program::Mechanics(program) => program,
         // a configuration that inputs move has no methods
         steered => return Ok(steered),
@@ -84,7 +86,7 @@ fn program<'g>(graph: &'g Graph, declaration: &Declaration, stage: &Stage) -> Re
         // formulas are ordered by when they were made: each method has a graph of its own, and the code that it has alone
         let mut steps = |declaration: &Declaration| {
             graph = graph.another();
-            program_of_steps(graph, declaration, stage)
+            program_of_steps(graph, declaration, false, stage)
         };
         let by_method = declaration.by(method);
         let found = match steps(&by_method) {
@@ -101,19 +103,32 @@ fn program<'g>(graph: &'g Graph, declaration: &Declaration, stage: &Stage) -> Re
     diagnostics.propagate(Program::Mechanics(program))
 }
 
-/// The program of a declaration as its own dials step it.
+/// The program of a declaration as its own dials step it. Where sites by a number have formulas of one site each, they are
+/// those.
 fn program_of_steps<'g>(
     graph: &'g Graph,
     declaration: &Declaration,
+    may_be_sites: bool,
     stage: &Stage,
 ) -> Result<Program<'g>, Diagnostics> {
-    let stages = || {
+    let stages = |graph: &'g Graph, by_number: ByNumber| {
         stage.set(CompilerStage::Model);
-        let model = model::model(graph, declaration)?;
+        let model = model::model(graph, declaration, by_number)?;
         stage.set(CompilerStage::Derive);
         let formulas = derive::derive(model)?;
         stage.set(CompilerStage::Lower);
         lower::lower(formulas)
     };
-    work::within(WORK, stages).unwrap_or_else(|Exhausted| work::give_up())
+    let both = || {
+        if !may_be_sites {
+            return stages(graph, ByNumber::Unrolled);
+        }
+        let by_sites = stages(graph, ByNumber::Sites);
+        // the types of too many sites mean nothing unrolled
+        if by_sites.is_ok() || model::outline(&Graph::new(), declaration).is_none() {
+            return by_sites;
+        }
+        stages(graph.another(), ByNumber::Unrolled)
+    };
+    work::within(WORK, both).unwrap_or_else(|Exhausted| work::give_up())
 }

@@ -64,6 +64,7 @@ mod declared {
             (x[3] - x[2]).norm_squared() == self.rod.powi(2),
         ],
         force      = |v| (0..4).map(|i| -self.drag * v[i]),
+        code       = unrolled,
     )]
     pub struct FourBeads {
         pub mass: f64,

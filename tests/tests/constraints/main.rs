@@ -10,6 +10,7 @@ mod derived;
 mod invariants;
 mod joined;
 mod moving;
+mod numbered;
 mod order;
 mod places;
 mod reactions;

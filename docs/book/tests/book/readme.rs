@@ -33,7 +33,8 @@ fn the_readme_shows_words_of_the_derivation() {
 #[test]
 fn the_readme_shows_five_formulas_of_the_derivation() {
     let graph = Graph::new();
-    let model = model::model(&graph, &parse::parse(declaration()).expect("a declaration")).expect("a system");
+    let model = model::model(&graph, &parse::parse(declaration()).expect("a declaration"), model::ByNumber::Unrolled)
+        .expect("a system");
     let latex = derive::derive(model).expect("formulas").latex().replace(r"\operatorname", r"\mathrm");
     let bare = |line: &str| line.trim_end_matches(r"\\").trim().to_owned();
     let formulas: Vec<String> = latex.lines().map(bare).collect();

@@ -98,7 +98,7 @@ impl<'g> Stencil<'g> {
         let place = SiteIndex { index, wraps: (wraps || there.wraps) && index != site };
         let known = self.places.iter().position(|known| *known == place);
         let number = known.unwrap_or(self.places.len());
-        let text = place.text();
+        let text = place.text(&power.length);
         if known.is_none() {
             self.places.push(place);
         }

@@ -178,7 +178,7 @@ impl<'g> MechanicsFormulas<'g> {
             let symbol = format!("V_{}, for each {}", number + 1, link.term.indices());
             terms.push(Formula::shorter(Id::Term(number), symbol.trim_end_matches(", for each "), [link.term.value]));
             for (place, slopes) in &link.gradient {
-                let symbol = format!("∂V_{}/∂{q}[{}]", number + 1, power.places[*place].text());
+                let symbol = format!("∂V_{}/∂{q}[{}]", number + 1, power.places[*place].text(&power.length));
                 gradients.push(Formula::shorter(Id::TermGradient(number, *place), symbol, slopes.clone()));
             }
         }

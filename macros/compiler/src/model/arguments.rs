@@ -1,24 +1,33 @@
 //! The two arguments of the action, whose names the other closures use, and their types.
 
-use proc_macro2::Ident;
 use syn::ext::IdentExt;
 use syn::{Generics, Type};
 
 use super::groups::{GroupNames, group};
+use super::power::Length;
 use super::scope::check_reserved;
-use super::shapes::{const_generic, last_name, plain, vectors};
+use super::shapes::{const_generic, last_name, number, plain, vectors};
 use crate::diagnostic::{Diagnostic, Diagnostics, bail, error, refuse, report};
 use crate::parse::{Argument, Declaration, Kinetic, Pattern, spell, spell_type};
 
+/// How a product by a number, `[SE<3>; 4]`, is read.
+#[derive(Copy, Clone, PartialEq, Eq)]
+pub enum ByNumber {
+    /// As a power, whose formulas are those of one site.
+    Sites,
+    /// As one group.
+    Unrolled,
+}
+
 /// The two arguments of the action: the group element and the configuration, with their types. Those of a power are those of one site.
-#[derive(Copy, Clone)]
+#[derive(Clone)]
 pub(super) struct TypedArguments<'d> {
     pub element: &'d Pattern,
     pub group: &'d Type,
     pub configuration: &'d Pattern,
     pub space: &'d Type,
-    /// The const generic N of a power.
-    pub sites: Option<&'d Ident>,
+    /// The number of sites of a power.
+    pub sites: Option<Length>,
     /// The input, as the closure that introduces it calls it.
     pub input: Option<&'d Pattern>,
     /// The velocity, as the Lagrangian calls it.
@@ -27,7 +36,11 @@ pub(super) struct TypedArguments<'d> {
 }
 
 /// The patterns and types of the two arguments of the action.
-pub(super) fn of_action<'d>(declaration: &'d Declaration, diagnostics: &'d Diagnostics) -> Option<TypedArguments<'d>> {
+pub(super) fn of_action<'d>(
+    declaration: &'d Declaration,
+    by_number: ByNumber,
+    diagnostics: &'d Diagnostics,
+) -> Option<TypedArguments<'d>> {
     let action = &declaration.action;
     let [element, configuration] = action.arguments.as_slice() else {
         let count = action.arguments.len();
@@ -63,22 +76,27 @@ pub(super) fn of_action<'d>(declaration: &'d Declaration, diagnostics: &'d Diagn
     };
     let (group, space) = (group?, space?);
     let types = TypedArguments { element, group, configuration, space, sites: None, input, velocity, diagnostics };
-    diagnostics.take(types.of_site(&declaration.generics))
+    diagnostics.take(types.of_site(&declaration.generics, by_number))
 }
 
 impl<'d> TypedArguments<'d> {
-    /// The types inside `[…; N]` of both arguments, if these have a const generic N for their length.
+    /// The types inside `[…; N]` of both arguments, if these have a const generic N for their length, or a number that is read
+    /// so.
     ///
     /// # Errors
     /// Where only one of them has, or another one.
-    fn of_site(self, generics: &'d Generics) -> Result<TypedArguments<'d>, Diagnostic> {
-        match (sites_of(self.group, generics), sites_of(self.space, generics)) {
+    fn of_site(self, generics: &Generics, by_number: ByNumber) -> Result<TypedArguments<'d>, Diagnostic> {
+        let sites = |ty: &'d Type| {
+            let is_read = |length: &Length| by_number == ByNumber::Sites || matches!(length, Length::Generic(_));
+            sites_of(ty, generics).filter(|(length, _)| is_read(length))
+        };
+        match (sites(self.group), sites(self.space)) {
             (None, None) => Ok(self),
             (Some((length, group)), Some((other, space))) if length == other => {
                 Ok(TypedArguments { group, space, sites: Some(length), ..self })
             }
-            (Some((length, inner)), _) => Err(unequal(self.space, inner, length)),
-            (None, Some((length, inner))) => Err(unequal(self.group, inner, length)),
+            (Some((length, inner)), _) => Err(unequal(self.space, inner, &length)),
+            (None, Some((length, inner))) => Err(unequal(self.group, inner, &length)),
         }
     }
 }
@@ -110,14 +128,18 @@ fn first_leaf(ty: &Type) -> &Type {
     }
 }
 
-fn unequal(ty: &Type, inner: &Type, length: &Ident) -> Diagnostic {
+fn unequal(ty: &Type, inner: &Type, length: &Length) -> Diagnostic {
     error!(ty, "`{}` is no power with {length} sites", spell_type(ty);
         help "write `[…; {length}]` for both, the group and the space that it moves";
         note "the other argument has {length} times `{}`, and each site is moved by its own element", spell_type(inner))
 }
 
-/// N and `T` of `[T; N]` with a const generic N.
-pub(super) fn sites_of<'t, 'd>(ty: &'t Type, generics: &'d Generics) -> Option<(&'d Ident, &'t Type)> {
+/// N and `T` of `[T; N]`, with a const generic N or a number.
+pub(super) fn sites_of<'t>(ty: &'t Type, generics: &Generics) -> Option<(Length, &'t Type)> {
     let Type::Array(array) = plain(ty) else { return None };
-    Some((const_generic(&spell(&array.len), generics)?, &*array.elem))
+    let length = match number(&array.len) {
+        Some(number) => Length::Number(number.base10_parse().ok()?),
+        None => Length::Generic(const_generic(&spell(&array.len), generics)?.clone()),
+    };
+    Some((length, &*array.elem))
 }

@@ -231,7 +231,7 @@ pub(super) fn scalar<'g>(
     let mut elaborator = Elaborator::new(context, &key, scope);
     let value = elaborator.elaborate(&closure.body)?;
     let tail = tail(&closure.body);
-    if let Some(count) = elaborator.context.power.as_ref().map(|power| power.count)
+    if let Some((count, length)) = elaborator.context.power.as_ref().map(|power| (power.count, power.length.clone()))
         && let Some(terms) = value.terms()
     {
         match sites::of_one_site(&terms, count, context.graph) {
@@ -239,7 +239,7 @@ pub(super) fn scalar<'g>(
             Err(reason) => {
                 refuse!(context.diagnostics, tail, "the {key} of a power is a sum over its sites, and {reason}";
                 help "write `(0..{count}).map(|i| …).sum()` with a value of site `i` alone";
-                help "{}", sites::unrolled(&key, count);
+                help "{}", sites::unrolled(&key, &length);
                 note "the equation of a step is solved site by site; terms that tie sites to each other belong to the potential")
             }
         }

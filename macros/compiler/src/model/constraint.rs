@@ -192,13 +192,13 @@ pub(super) fn equation<'g>(elaborator: &mut Elaborator<'_, '_, 'g>, syntax: &Syn
             let (a, b) = (left.describe(), right.describe());
             let zeros = [&left, &right].into_iter().filter_map(shape).find(|shape| shape.is_column() && shape.rows > 1);
             let is_zero = [&left, &right].into_iter().any(|side| side.matrix().is_some_and(|side| side.is_zero()));
-            let length = elaborator.context.power.as_ref().map(|sites| sites.length.to_string());
+            let length = elaborator.context.power.as_ref().map(|sites| sites.length.clone());
             if let Some(length) = length {
                 let of_all =
                     [&left, &right].into_iter().find(|side| matches!(side, Value::Sum(_) | Value::PerSite(..)));
                 match of_all {
                     Some(Value::Sum(_)) => refuse!(diagnostics, syntax, "the equation has a sum over all sites";
-                        help "{}", unrolled("constraint", length);
+                        help "{}", unrolled("constraint", &length);
                         note "a joint is of one site, or of two neighbours"),
                     Some(_) => refuse!(diagnostics, syntax, "the equation is of all sites at once";
                         help "write one of a site for each, as in `(0..{length}).map(|i| {} == …)`", first_site(syntax)),

@@ -9,6 +9,7 @@ use syn::ext::IdentExt;
 use syn::{Generics, Type};
 
 use super::arguments::sites_of;
+use super::power::Length;
 use super::scalar::Agreement;
 use super::shapes::{ENTRIES, GROWS, hint, last_name, last_segment, plain, size, type_parameter, vectors};
 use super::value::{Each, Value};
@@ -57,7 +58,7 @@ pub(super) fn read<'g>(
     graph: &'g Graph,
     declaration: &Declaration,
     spaces: &[&Type],
-    sites: Option<&syn::Ident>,
+    sites: Option<&Length>,
     diagnostics: &Diagnostics,
 ) -> Fields<'g> {
     let bounds = declaration.control.as_ref().and_then(|control| control.bounds.as_ref());
@@ -78,7 +79,7 @@ pub(super) fn read<'g>(
             known.insert(name, None);
             continue;
         };
-        let of_sites = sites_of(&field.ty, &declaration.generics).filter(|(length, _)| Some(*length) == sites);
+        let of_sites = sites_of(&field.ty, &declaration.generics).filter(|(length, _)| Some(length) == sites);
         let entry = of_sites.map(|(_, entry)| entry);
         let ty = field_type(entry.unwrap_or(&field.ty), &declaration.generics);
         let ty = diagnostics.take(ty.map_err(|error| error.unwrap_or_else(|| explain(field))));

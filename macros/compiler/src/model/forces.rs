@@ -104,7 +104,7 @@ impl<'g> ActedSystem<'_, '_, 'g> {
         let diagnostics = self.context.diagnostics;
         let ty = argument.ty.as_ref()?;
         let own = self.context.power.as_mut().and_then(|power| {
-            let (_, own) = sites_of(ty, self.names.generics).filter(|(length, _)| **length == power.length)?;
+            let (_, own) = sites_of(ty, self.names.generics).filter(|(length, _)| *length == power.length)?;
             power.has_own_inputs = true;
             Some(own)
         });

@@ -29,8 +29,10 @@ impl<'g> ActedSystem<'_, '_, 'g> {
         }
         let (diagnostics, sites) = (self.context.diagnostics, self.context.power.as_ref()?);
         let mut joints = Joints { all: Vec::new(), rows: 0, is_ring: false, is_tree: false };
-        for Read { range, sides } in all {
-            let Ends { own, before, order } = ends(sites, range, &sides, diagnostics)?;
+        let ends = all.iter().map(|Read { range, sides }| ends(sites, *range, sides, diagnostics));
+        let mut ends = ends.collect::<Option<Vec<Ends>>>()?;
+        close_ring(&mut ends, &all, sites);
+        for (Read { range, sides }, Ends { own, before, order }) in all.into_iter().zip(ends) {
             joints.is_ring |= order == Order::Ring;
             joints.is_tree |= order == Order::Tree;
             let term = Term { ranges: range.into_iter().collect(), value: sides.difference };
@@ -99,6 +101,26 @@ enum Order {
     Tree,
 }
 
+/// Joints of the last site and the first one, by numbers, close a ring if the last site hangs from the one before.
+fn close_ring(ends: &mut [Ends], all: &[Read<'_>], sites: &Sites<'_>) {
+    let graph = sites.count.graph();
+    let last = (sites.count - graph.integer(1)).expand();
+    let is_last = |at: usize| !sites.places[at].wraps && sites.places[at].index == last;
+    let is_first = |at: usize| !sites.places[at].wraps && sites.places[at].index.is_zero();
+    let hangs = |(end, read): (&Ends, &Read<'_>)| {
+        let homes = homes(read.range, &sites.places[end.own], sites.count);
+        end.order == Order::Chain && end.before.is_some() && meet(&homes, &Some((last, sites.count)))
+    };
+    let is_chain = ends.iter().zip(all).any(hangs);
+    for end in ends.iter_mut().filter(|_| is_chain) {
+        if let Some(before) = end.before.filter(|&before| is_last(end.own) && is_first(before))
+            && end.order == Order::Tree
+        {
+            *end = Ends { own: before, before: Some(end.own), order: Order::Ring };
+        }
+    }
+}
+
 fn ends<'g>(sites: &Sites<'g>, range: Option<Range<'g>>, sides: &Sides<'g>, diagnostics: &Diagnostics) -> Option<Ends> {
     let Written { place, text } = &sides.written;
     let mut read: Vec<usize> = Vec::new();
@@ -110,7 +132,7 @@ fn ends<'g>(sites: &Sites<'g>, range: Option<Range<'g>>, sides: &Sides<'g>, diag
         }
     }
     read.sort_unstable();
-    let name = |at: usize| format!("`{}[{}]`", sites.pattern, sites.places[at].text());
+    let name = |at: usize| format!("`{}[{}]`", sites.pattern, sites.places[at].text(&sites.length));
     let follows = |at: usize| match Linear::of(sites.places[at].index) {
         Some(linear) => linear.indices.first().copied().unwrap_or(0) == i64::from(range.is_some()),
         None => false,
@@ -191,17 +213,17 @@ impl<'g> Joints<'g> {
         sites: &Sites<'g>,
     ) -> Result<(), Diagnostic> {
         let count = term.value.shape().rows;
-        let of_site = homes(&term, &sites.places[own], sites.count);
+        let of_site = homes(term.ranges.first().copied(), &sites.places[own], sites.count);
         let is_parent = |joint: &&Joint<'g>| {
             let (Some(before), Some(other)) = (before, joint.before) else { return true };
-            !meet(&of_site, &homes(&joint.term, &sites.places[joint.own], sites.count))
+            !meet(&of_site, &homes(joint.term.ranges.first().copied(), &sites.places[joint.own], sites.count))
                 || has_same_parent(
                     [&sites.places[own], &sites.places[before]],
                     [&sites.places[joint.own], &sites.places[other]],
                 )
         };
         if let Some(joint) = self.all.iter().find(|joint| !is_parent(joint)) {
-            let name = |at: usize| format!("`{}[{}]`", sites.pattern, sites.places[at].text());
+            let name = |at: usize| format!("`{}[{}]`", sites.pattern, sites.places[at].text(&sites.length));
             let (own, known) = (name(own), name(joint.before.unwrap_or(joint.own)));
             let parent = name(before.unwrap_or(joint.own));
             return Err(
@@ -214,7 +236,8 @@ impl<'g> Joints<'g> {
         loop {
             let meets = |joint: &&Joint<'g>| {
                 let apart = joint.first + joint.count() <= first || first + count <= joint.first;
-                !apart && meet(&of_site, &homes(&joint.term, &sites.places[joint.own], sites.count))
+                !apart
+                    && meet(&of_site, &homes(joint.term.ranges.first().copied(), &sites.places[joint.own], sites.count))
             };
             let Some(other) = self.all.iter().find(meets) else { break };
             first = other.first + other.count();
@@ -233,11 +256,11 @@ fn has_same_parent<'g>(first: [&SiteIndex<'g>; 2], second: [&SiteIndex<'g>; 2]) 
 }
 
 /// The sites that are the later ones of a joint: from the first up to and without the second; `None` for all.
-fn homes<'g>(term: &Term<'g>, own: &SiteIndex<'g>, count: Expr<'g>) -> Option<Range<'g>> {
+fn homes<'g>(range: Option<Range<'g>>, own: &SiteIndex<'g>, count: Expr<'g>) -> Option<Range<'g>> {
     let graph = count.graph();
-    match term.ranges.first() {
+    match range {
         _ if own.wraps => None,
-        Some(range) => Some(homes_of(*range, own)),
+        Some(range) => Some(homes_of(range, own)),
         None => Some((own.index, (own.index + graph.integer(1)).expand())),
     }
 }

@@ -36,13 +36,14 @@ mod value;
 
 pub use crate::parse::dials::*;
 pub use crate::parse::{Located, Opaque};
+pub use arguments::ByNumber;
 pub(crate) use elaborate::functions_as_markdown;
 pub(crate) use features::{features_as_markdown, refused_with};
 pub(crate) use groups::groups_as_markdown;
 pub use groups::is_large;
 pub use layout::{Access, Layout, Part};
 pub use outline::{Nested, Outline, outline};
-pub use power::{Joint, Joints, Linear, Range, SiteIndex, Term};
+pub use power::{Joint, Joints, Length, Linear, Range, SiteIndex, Term};
 pub(crate) use shapes::{IN_LOOPS, spelled};
 pub(crate) use slots::arguments_of;
 pub use types::*;
@@ -61,16 +62,30 @@ use self::typed::{ActedSystem, Arguments, Typed};
 use crate::diagnostic::Diagnostics;
 use crate::parse::{self, Declaration, Potential};
 
+/// Whether a declaration may be one of sites by a number. Joints are faster site by site; the potential alone is not.
+pub fn may_be_sites(declaration: &Declaration) -> bool {
+    let Declaration { action, constraints, dials, generics, .. } = declaration;
+    let is_unrolled = dials.code.as_ref().is_some_and(|code| code.value == CodeForm::Unrolled);
+    let by_number = |argument: &parse::Argument| {
+        let sites = argument.ty.as_ref().and_then(|ty| arguments::sites_of(ty, generics));
+        matches!(sites, Some((Length::Number(_), _)))
+    };
+    !constraints.is_empty() && !is_unrolled && action.arguments.iter().all(by_number)
+}
+
 /// The model of a declaration.
-pub fn model<'g>(graph: &'g Graph, declaration: &Declaration) -> Result<Model<'g>, Diagnostics> {
+///
+/// # Errors
+/// Everything that is wrong with it. Read by sites, also closures that are no formulas of one site.
+pub fn model<'g>(graph: &'g Graph, declaration: &Declaration, by_number: ByNumber) -> Result<Model<'g>, Diagnostics> {
     let diagnostics = Diagnostics::new();
     let declared = declared::read_all(graph, &declaration.groups, &diagnostics);
     // a type cannot name a group that has an error
     diagnostics.propagate(())?;
     let diagnostics = Diagnostics::new();
     let names = GroupNames { generics: &declaration.generics, declared: &declared, diagnostics: &diagnostics };
-    let types = arguments::of_action(declaration, &diagnostics);
-    let sites = types.and_then(|types| types.sites);
+    let types = arguments::of_action(declaration, by_number, &diagnostics);
+    let sites = types.as_ref().and_then(|types| types.sites.as_ref());
     if sites.is_some() {
         sites::check(declaration, &diagnostics);
     }
@@ -78,12 +93,17 @@ pub fn model<'g>(graph: &'g Graph, declaration: &Declaration) -> Result<Model<'g
         // the types mean nothing in another order
         arguments::check_order(types, names)?;
     }
-    let groups = types.and_then(|types| spaces::read_groups(types.group, names));
-    let spaces = types.and_then(|types| spaces::read_spaces(types.space, names));
+    let groups = types.as_ref().and_then(|types| spaces::read_groups(types.group, names));
+    if let (Some(Length::Number(count)), Some(groups)) = (sites, &groups)
+        && !sites::are_many(*count, groups)
+    {
+        return Err(Diagnostics::new());
+    }
+    let spaces = types.as_ref().and_then(|types| spaces::read_spaces(types.space, names));
     let scalars: Vec<&syn::Type> =
         spaces.iter().flat_map(|spaces| &spaces.leaves).filter_map(|(leaf, _)| leaf.scalar).into_list();
     let fields = fields::read(graph, declaration, &scalars, sites, &diagnostics);
-    let (Some(types), Some(groups), Some(spaces)) = (types, groups, spaces) else { return Err(diagnostics) };
+    let (Some(types), Some(groups), Some(spaces)) = (&types, groups, spaces) else { return Err(diagnostics) };
     let typed = Typed::new(graph, types, groups, spaces);
     // before the laws of the action are looked at in all directions
     if let (Some(factors), Some(space)) = (&typed.factors, &typed.space)
@@ -92,10 +112,10 @@ pub fn model<'g>(graph: &'g Graph, declaration: &Declaration) -> Result<Model<'g
         diagnostics.push(error);
         return Err(diagnostics);
     }
-    let arguments = typed.arguments(graph, types);
-    let power = sites
-        .zip(typed.space.clone())
-        .map(|(length, space)| Sites::new(graph, length, space, types.configuration.spell(), fields.leaf_count()));
+    let arguments = typed.arguments(graph, types.clone());
+    let power = sites.zip(typed.space.clone()).map(|(length, space)| {
+        Sites::new(graph, length.clone(), space, types.configuration.spell(), fields.leaf_count())
+    });
     let mut context = Context::new(graph, &fields, &declaration.generics, power, &diagnostics);
     let formulas = ClosureValues::read(&mut context, declaration, &arguments, &typed, names);
     let Context { constants, power, .. } = context;

@@ -5,14 +5,14 @@ use quote::ToTokens;
 
 use super::groups::GroupNames;
 use super::spaces::{self, Product, SpaceType};
-use super::{Layout, ScalarType, arguments, declared};
+use super::{Layout, Length, ScalarType, arguments, declared};
 use crate::diagnostic::Diagnostics;
 use crate::parse::{Argument, Declaration, Pattern, Potential};
 
 /// The types of an integrator, without its mathematics.
 pub struct Outline {
-    /// The const generic that is the number of sites of a power. The other fields describe one site.
-    pub sites: Option<syn::Ident>,
+    /// The number of sites of a power. The other fields describe one site.
+    pub sites: Option<Length>,
     /// The group element.
     pub element: Nested,
     /// The configuration.
@@ -35,7 +35,7 @@ pub fn outline(graph: &Graph, declaration: &Declaration) -> Option<Outline> {
     let ignored = Diagnostics::new();
     let declared = declared::read_all(graph, &declaration.groups, &ignored);
     let names = GroupNames { generics: &declaration.generics, declared: &declared, diagnostics: &ignored };
-    let types = arguments::of_action(declaration, &ignored)?;
+    let types = arguments::of_action(declaration, arguments::ByNumber::Unrolled, &ignored)?;
     let groups = spaces::read_groups(types.group, names)?;
     let of_group = |(group, _): &(Group, _)| (group.element_shape(), *group == Group::UnitQuaternions);
     let nested =
@@ -47,7 +47,7 @@ pub fn outline(graph: &Graph, declaration: &Declaration) -> Option<Outline> {
     let spaces = spaces::read_spaces(types.space, names)?;
     let input = declaration.input().and_then(|argument| spaces::read_spaces(argument.ty.as_ref()?, names));
     Some(Outline {
-        sites: types.sites.cloned(),
+        sites: types.sites.clone(),
         input: input.map_or_else(point, nested),
         dimension: groups.leaves.iter().map(|(group, _)| group.dimension()).sum(),
         element: (groups.layout, groups.leaves.each(of_group)),

@@ -7,9 +7,55 @@
 #[cfg(test)]
 mod tests;
 
-use clebsch_symbolic::{Expr, IntoList, Rational, Role};
+use std::fmt;
+
+use clebsch_symbolic::{Expr, Graph, IntoList, Property, Rational, Role, Shape};
+use proc_macro2::{Ident, Literal, TokenStream};
+use quote::ToTokens;
 
 use super::Written;
+
+/// The number of sites of a power: a const generic, or a number.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Length {
+    /// N
+    Generic(Ident),
+    /// A number.
+    Number(usize),
+}
+
+impl Length {
+    /// Whether it is the const generic with this name.
+    pub(super) fn is_named(&self, name: &str) -> bool {
+        matches!(self, Length::Generic(own) if own == name)
+    }
+
+    /// The expression that stands for it in ranges and indices.
+    pub(super) fn count<'g>(&self, graph: &'g Graph) -> Expr<'g> {
+        match self {
+            Length::Generic(name) => graph.symbol(&name.to_string(), Shape::scalar(), Role::Sites, Property::General),
+            Length::Number(count) => graph.integer(*count as i64),
+        }
+    }
+}
+
+impl fmt::Display for Length {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Length::Generic(name) => name.fmt(f),
+            Length::Number(count) => count.fmt(f),
+        }
+    }
+}
+
+impl ToTokens for Length {
+    fn to_tokens(&self, tokens: &mut TokenStream) {
+        match self {
+            Length::Generic(name) => name.to_tokens(tokens),
+            Length::Number(count) => Literal::usize_unsuffixed(*count).to_tokens(tokens),
+        }
+    }
+}
 
 /// One site that terms read.
 #[derive(Clone, PartialEq, Eq)]
@@ -24,7 +70,7 @@ pub struct SiteIndex<'g> {
 pub type Range<'g> = (Expr<'g>, Expr<'g>);
 
 /// A term of a sum over sites, and the sums around it.
-#[derive(Clone, Debug)]
+#[derive(Clone, PartialEq, Debug)]
 pub struct Term<'g> {
     /// The range of each sum, the outermost first.
     pub ranges: Vec<Range<'g>>,
@@ -82,12 +128,12 @@ pub(super) fn index_name(depth: usize) -> String {
 
 impl<'g> SiteIndex<'g> {
     /// As a closure writes it, `(i + 1) % N`.
-    pub fn text(&self) -> String {
+    pub fn text(&self, length: &Length) -> String {
         let index = &self.index;
         match (self.wraps, index.as_symbol()) {
             (false, _) => index.to_string(),
-            (true, Some(_)) => format!("{index} % N"),
-            (true, None) => format!("({index}) % N"),
+            (true, Some(_)) => format!("{index} % {length}"),
+            (true, None) => format!("({index}) % {length}"),
         }
     }
 }

@@ -32,7 +32,7 @@ pub(super) fn size_argument(argument: &GenericArgument, generics: &Generics) -> 
 pub(crate) const IN_LOOPS: &str = "give a const generic for the number of equal sites, `struct Chain<const N: usize>` and `[SO<3>; N]`: then they are stepped in loops, however many they are";
 
 /// The number of a literal; `None` unless it is a literal integer.
-fn number(expr: &Expr) -> Option<&LitInt> {
+pub(super) fn number(expr: &Expr) -> Option<&LitInt> {
     match expr {
         Expr::Group(group) => number(&group.expr),
         Expr::Lit(ExprLit { lit: Lit::Int(number), .. }) => Some(number),

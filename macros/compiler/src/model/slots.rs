@@ -159,7 +159,7 @@ impl<'d> Matched<'d> {
         (0..arguments.len()).for_each(|position| matched.check_argument(position));
         matched.check_order();
         if closure.key == "lagrangian" && !matched.has(Slot::Velocity) && !matched.has_error() {
-            report!(names.diagnostics, closure.head, "the lagrangian has no velocity";
+            report!(matched.names.diagnostics, closure.head, "the lagrangian has no velocity";
                 help "write `{} …`", matched.head(Some(Slot::Velocity)));
         }
         matched

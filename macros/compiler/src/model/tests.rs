@@ -2,7 +2,7 @@
 
 use clebsch_symbolic::Graph;
 
-use super::{Model, model};
+use super::{ByNumber, Model, model};
 use crate::diagnostic::Diagnostics;
 use crate::parse::parse;
 
@@ -19,7 +19,9 @@ fn sides(action: &str) -> Result<String, Diagnostics> {
     let item = format!("#[clebsch(action = {action}, lagrangian = |{pattern}| {})] struct S;", energy.join(" + "));
     let declaration = parse(item.parse().expect("the table holds Rust"))?;
     let graph = Graph::new();
-    let Model::Mechanics(model) = model(&graph, &declaration)? else { panic!("a Lagrangian is of mechanics") };
+    let Model::Mechanics(model) = model(&graph, &declaration, ByNumber::Unrolled)? else {
+        panic!("a Lagrangian is of mechanics")
+    };
     let side = |factor: &super::Factor| match factor.moves {
         true => factor.side.to_string(),
         false => "moves nothing".to_string(),
@@ -180,7 +182,7 @@ fn sites_are_on_their_group() {
                     struct S{generics} {{ axis: Vector3<f64> }}"
                 );
                 let declaration = parse(item.parse().expect("the table holds Rust")).expect("a declaration");
-                let errors = model(&Graph::new(), &declaration).err();
+                let errors = model(&Graph::new(), &declaration, ByNumber::Unrolled).err();
                 assert!(errors.is_none(), "{item}\n{}", errors.unwrap_or_default());
             }
         }

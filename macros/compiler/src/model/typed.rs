@@ -38,7 +38,7 @@ pub(super) struct ActedSystem<'a, 'c, 'g> {
 impl<'g> Typed<'g> {
     pub fn new(
         graph: &'g Graph,
-        typed: TypedArguments,
+        typed: &TypedArguments,
         groups: Product<Group>,
         spaces: Product<SpaceType>,
     ) -> Typed<'g> {
@@ -101,7 +101,7 @@ impl<'d, 'g> Arguments<'d, 'g> {
 
     /// The arguments of a closure, with the slot that each takes.
     pub fn matched(&self, closure: &'d Closure, slots: &'static [Slot]) -> Matched<'d> {
-        Matched::new(self.names, closure, slots)
+        Matched::new(self.names.clone(), closure, slots)
     }
 
     /// The names in a closure that introduces none.

@@ -4,9 +4,9 @@ use std::ops::Deref;
 use std::rc::Rc;
 
 use clebsch_symbolic::{Expr, Graph, Group, Shape};
-use proc_macro2::{Ident, Span};
+use proc_macro2::Span;
 
-use super::power::{Joints, SiteIndex, Term};
+use super::power::{Joints, Length, SiteIndex, Term};
 use super::{Access, Layout};
 use crate::parse::{Dials, Discretization, Emit, Isotropy, Located, Opaque, Order, Promise, Signature, Summation};
 
@@ -447,9 +447,9 @@ pub struct Written {
 pub struct Power<'g> {
     /// The user's struct; that of the model is the site.
     pub item: Item,
-    /// The const generic N.
-    pub length: Ident,
-    /// The symbol N.
+    /// N
+    pub length: Length,
+    /// N in ranges and indices.
     pub sites: Expr<'g>,
     /// The sites that terms read.
     pub places: Vec<SiteIndex<'g>>,

@@ -6,7 +6,7 @@ use clebsch_symbolic::{Elements, Expr};
 use super::Layout;
 use super::power::{Range, Term};
 
-#[derive(Clone, Debug)]
+#[derive(Clone, PartialEq, Debug)]
 pub(super) enum Value<'g> {
     /// A matrix; scalars are 1×1.
     Matrix(Expr<'g>),

@@ -165,7 +165,7 @@ impl<'e, 'c, 'g> Elaborator<'e, 'c, 'g> {
 
     fn dispatch(&mut self, syntax: &Syntax) -> Option<Value<'g>> {
         match syntax {
-            Syntax::Array(array) => self.all(&array.elems).map(Value::Array),
+            Syntax::Array(array) => self.array(array),
             Syntax::Binary(binary) => self.binary(binary),
             Syntax::Block(block) if block.label.is_none() => self.with_names(|this| this.statements(&block.block)),
             Syntax::Call(call) => self.call(call),

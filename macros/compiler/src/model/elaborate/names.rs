@@ -40,7 +40,7 @@ impl<'g> Elaborator<'_, '_, 'g> {
             // a name whose definition has an error has no value, and the error was reported
             return value.clone();
         }
-        if let Some(power) = self.context.power.as_ref().filter(|power| power.length == name) {
+        if let Some(power) = self.context.power.as_ref().filter(|power| power.length.is_named(&name)) {
             return Some(Value::Matrix(power.count));
         }
         match name.as_str() {

@@ -59,7 +59,11 @@ impl<'g> Elaborator<'_, '_, 'g> {
     fn apply(&mut self, link: &ExprBinary, left: Value<'g>, right: Value<'g>) -> Option<Value<'g>> {
         let sites = self.context.power.as_ref().map(|power| power.count);
         match (&link.op, left, right) {
-            (BinOp::Rem(_), Value::Matrix(left), Value::Matrix(n)) if sites == Some(n) => Some(Value::Wrapped(left)),
+            (BinOp::Rem(_), Value::Matrix(left), Value::Matrix(n))
+                if sites == Some(n) && (n.as_number().is_none() || left.as_number().is_none()) =>
+            {
+                Some(Value::Wrapped(left))
+            }
             (_, left @ Value::Sum(_), right) | (_, left, right @ Value::Sum(_)) => self.sums(link, left, right),
             (_, left, _) if !left.is_operand() => self.no_matrix(link, &link.left, &left),
             (_, _, right) if !right.is_operand() => self.no_matrix(link, &link.right, &right),

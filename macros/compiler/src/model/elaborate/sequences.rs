@@ -1,9 +1,11 @@
 //! Arrays, tuples, ranges, and the operations on them: `[a, b]`, `(0..3).map(|i| …).sum()`.
 
 use clebsch_symbolic::{Expr, IntoList};
-use syn::{Expr as Syntax, ExprClosure, ExprMethodCall, ExprRange, ExprRepeat, RangeLimits};
+use syn::{Expr as Syntax, ExprArray, ExprClosure, ExprMethodCall, ExprRange, ExprRepeat, RangeLimits};
 
+use super::super::power::Length;
 use super::super::shapes::TERMS;
+use super::super::sites::Sites;
 use super::{Elaborator, Growth, Value};
 use crate::diagnostic::refuse;
 use crate::parse::{Pattern, spell};
@@ -16,6 +18,29 @@ impl<'g> Elaborator<'_, '_, 'g> {
     pub(super) fn all<'s>(&mut self, parts: impl IntoIterator<Item = &'s Syntax>) -> Option<Vec<Value<'g>>> {
         let values: Vec<Option<Value<'g>>> = parts.into_iter().map(|part| self.elaborate(part)).into_list();
         values.into_iter().collect()
+    }
+
+    /// `[a, b]`.
+    pub(super) fn array(&mut self, array: &ExprArray) -> Option<Value<'g>> {
+        let count = array.elems.len();
+        let is_of_sites = |sites: &Sites<'g>| sites.length == Length::Number(count) && sites.entry_of.is_none();
+        if !self.context.power.as_ref().is_some_and(is_of_sites) {
+            return self.all(&array.elems).map(Value::Array);
+        }
+        let mut is_read = true;
+        let mut entries = Vec::new();
+        for (site, entry) in array.elems.iter().enumerate() {
+            self.context.power.as_mut()?.entry_of = Some((site, false));
+            entries.push(self.elaborate(entry));
+            is_read &= self.context.power.as_mut()?.entry_of.take().is_some_and(|(_, is_read)| is_read);
+        }
+        let entries: Vec<Value<'g>> = entries.into_iter().collect::<Option<_>>()?;
+        let whole = (self.graph().integer(0), self.graph().integer(count as i64));
+        // the same formula at each site
+        match entries.first().filter(|first| is_read && entries.iter().all(|entry| entry == *first)) {
+            Some(each) => Some(Value::Sequence(whole, Box::new(each.clone()))),
+            None => Some(Value::Array(entries)),
+        }
     }
 
     /// `[a; 3]`.
@@ -52,6 +77,14 @@ impl<'g> Elaborator<'_, '_, 'g> {
 
     /// `.map(|i| …)`.
     pub(super) fn map(&mut self, call: &ExprMethodCall, parts: Vec<Value<'g>>) -> Option<Value<'g>> {
+        match self.range_by_number(&parts) {
+            Some(range) => self.map_of_sites(call, range, parts),
+            None => self.map_each(call, parts),
+        }
+    }
+
+    /// The values of the closure for all parts.
+    pub(super) fn map_each(&mut self, call: &ExprMethodCall, parts: Vec<Value<'g>>) -> Option<Value<'g>> {
         let (pattern, closure) = self.closure_of_map(call)?;
         // a mistake in one term is a mistake in all
         let values = parts.into_iter().map(|part| self.applied(&pattern, part, |this| this.elaborate(&closure.body)));

@@ -3,7 +3,7 @@
 use clebsch_symbolic::{Expr, IntoElements, IntoList, Property, Role, Shape};
 use syn::{BinOp, Expr as Syntax, ExprBinary, ExprIndex, ExprMethodCall, ExprRange, RangeLimits};
 
-use super::super::power::{Linear, Range, SiteIndex, Term, index_name, sites_for};
+use super::super::power::{Length, Linear, Range, SiteIndex, Term, index_name, sites_for};
 use super::super::sites::unrolled;
 use super::super::value::{Each, Value};
 use super::Elaborator;
@@ -42,6 +42,35 @@ impl<'g> Elaborator<'_, '_, 'g> {
     pub(super) fn map_of_range(&mut self, call: &ExprMethodCall, range: Range<'g>) -> Option<Value<'g>> {
         let value = self.for_each(call, range, Self::elaborate)?;
         Some(Value::Sequence(range, Box::new(value)))
+    }
+
+    /// The range of some numbers in a power by a number; `None` elsewhere.
+    pub(super) fn range_by_number(&self, parts: &[Value<'g>]) -> Option<Range<'g>> {
+        let power = self.context.power.as_ref()?;
+        matches!(power.length, Length::Number(_)).then(|| self.range_of_sites(parts))?
+    }
+
+    /// `(0..4).map(|i| …)` in a power by a number. Where its closure cannot be read once for all indices, it is read for each,
+    /// as of the components of a vector.
+    pub(super) fn map_of_sites(
+        &mut self,
+        call: &ExprMethodCall,
+        range: Range<'g>,
+        parts: Vec<Value<'g>>,
+    ) -> Option<Value<'g>> {
+        let (diagnostics, known) = (self.context.diagnostics, self.context.power.as_ref()?.known());
+        let reported = diagnostics.len();
+        let of_range = self.map_of_range(call, range);
+        if of_range.is_some() {
+            return of_range;
+        }
+        let errors = diagnostics.since(reported);
+        self.context.power.as_mut()?.forget(known);
+        let of_each = diagnostics.quietly(|| self.map_each(call, parts));
+        if of_each.is_none() {
+            diagnostics.extend(errors);
+        }
+        of_each
     }
 
     /// The range of numbers that follow each other.
@@ -179,9 +208,15 @@ impl<'g> Elaborator<'_, '_, 'g> {
             refuse!(self, &index.index, "`{}` leaves the sites 0..{name}", spell(&Syntax::Index(index.clone()));
                 help "write `({text}) % {name}` for a ring, or let the range end earlier, as `0..{name} - 1` does");
         }
-        let is_own = !place.wraps
-            && power.ranges.len() == 1
-            && place.index.as_symbol().is_some_and(|data| data.role == Role::Site(0));
+        let is_index =
+            || power.ranges.len() == 1 && place.index.as_symbol().is_some_and(|data| data.role == Role::Site(0));
+        let mut is_own = !place.wraps && is_index();
+        if let Some((site, is_read)) = &mut power.entry_of
+            && place.index == place.index.graph().integer(*site as i64)
+        {
+            *is_read = true;
+            is_own = true;
+        }
         match (of, ["potential", "constraint"].contains(&self.key)) {
             (_, false) if is_own => Some(own),
             (Each::Configuration, true) => {

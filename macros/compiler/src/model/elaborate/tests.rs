@@ -38,7 +38,8 @@ fn with_value<R>(expression: &str, look: impl FnOnce(&Value) -> R) -> Result<R, 
     let fields = fields::read(&graph, &declaration, &[], None, &diagnostics);
     diagnostics.propagate(())?;
     let diagnostics = Diagnostics::new();
-    let names = arguments::of_action(&declaration, &diagnostics).expect("two typed arguments");
+    let names =
+        arguments::of_action(&declaration, arguments::ByNumber::Unrolled, &diagnostics).expect("two typed arguments");
     let symbol = |name, shape, role, property| Value::Matrix(graph.symbol(name, shape, role, property));
     let point = |index, name| symbol(name, Shape::vector(2), Role::Configuration(index), Property::General);
     let arguments = Arguments {
