@@ -81,6 +81,20 @@ errors! {
             /// The sites, N.
             sites: usize,
         } => "the storage has {found} entries where there are {sites} sites: give one entry for each site";
+        /// A grid has no site in some direction, or more than can be numbered.
+        EmptyGrid {
+            /// The direction, from 0 on.
+            direction: usize,
+            /// The sites in this direction.
+            sites: usize,
+        } => "the grid has {sites} sites in direction {direction}: give each direction at least one, and all of them fewer than memory has";
+        /// A spacing of a grid is zero, negative, NaN or infinite.
+        Spacing {
+            /// The direction, from 0 on.
+            direction: usize,
+            /// The spacing that was given.
+            value: f64,
+        } => "the spacing in direction {direction} is {value}: it must be a finite number above zero";
         /// A field is not symmetric that is declared `#[clebsch(symmetric)]`, or that a cost needs to be symmetric.
         NotSymmetric {
             /// The field.

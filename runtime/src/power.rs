@@ -74,11 +74,7 @@ pub(crate) fn moved_site<P: Power<N>, const N: usize>(
     (q, n): (&Point<P, N>, &SiteMomentum<P, N>),
     u: &SiteInput<P, N>,
 ) -> Result<MovedSite<P, N>, Error> {
-    let at = At::new(site, c, t);
-    let left = SiteScheme::<P, N>::left(at, q, n);
-    let held = SiteScheme::<P, N>::held(q, n);
-    let (q, held, _) = SiteScheme::<P, N>::step(at, (q, &held, &left), u)?;
-    Ok((q, SiteScheme::<P, N>::momentum(&q, &held)))
+    scheme::moved(At::new(site, c, t), (q, n), u)
 }
 
 /// N equal sites, as `#[derive(Clebsch)]` declares them by a const generic N.

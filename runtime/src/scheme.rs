@@ -70,6 +70,7 @@ use core::fmt::Debug;
 use core::marker::PhantomData;
 use num_traits::Zero;
 
+pub(crate) use composed::{OfOrderEight, OfOrderFour, OfOrderSix};
 pub use composed::{Sizes, Stages, compose};
 pub use sites::{AtSite, InStorage, Stored};
 pub use split::{Kicks, split};
@@ -268,6 +269,19 @@ fn is_due(number: usize) -> bool {
 fn look<T: Scalar>(q: &impl Space<T>, held: &impl Space<T>) -> Result<(), Error> {
     let is_finite = q.all_finite() && held.all_finite();
     if is_finite { Ok(()) } else { Err(Error::NotFinite { name: "the state after a step" }) }
+}
+
+/// q and N after a step that starts anew, with the input u of its forces.
+#[inline(always)]
+pub(crate) fn moved<S: Clebsch>(
+    at: At<'_, S, Declared, Constants<S>>,
+    (q, mu): (&Q<S>, &Mu<S>),
+    u: &S::Input,
+) -> Result<(Q<S>, Mu<S>), Error> {
+    let left = S::Scheme::left(at, q, mu);
+    let held = S::Scheme::held(q, mu);
+    let (q, held, _) = S::Scheme::step(at, (q, &held, &left), u)?;
+    Ok((q, S::Scheme::momentum(&q, &held)))
 }
 
 /// Steps, one after the other.

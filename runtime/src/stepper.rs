@@ -59,10 +59,7 @@ debug_fields!(Stepper<S, M> where [S: Clebsch + Debug, M: Method<S>]: system, h,
 impl<S: Clebsch, M: Method<S>> Stepper<S, M> {
     /// Checks `h` and the parameters of `system`.
     pub(crate) fn new(system: S, h: S::Scalar) -> Result<Self, Error> {
-        (0..S::Scalar::LANES).try_for_each(|lane| match h.lane(lane) {
-            h if h.is_finite() && h != Zero::zero() => Ok(()),
-            h => Err(Error::StepSize { value: h.to_f64() }),
-        })?;
+        check_step_size(h)?;
         let constants = M::Scheme::constants(&system, h)?;
         Ok(Self { system, h, constants })
     }
@@ -161,6 +158,14 @@ impl<S: Clebsch, M: Method<S>> Stepper<S, M> {
         let projected = M::constrained(&self.system, constants, t, &q, &projected)?;
         self.checked_state(t, q, projected)
     }
+}
+
+/// A step size is finite, and not zero.
+pub(crate) fn check_step_size<T: Scalar>(h: T) -> Result<(), Error> {
+    (0..T::LANES).try_for_each(|lane| match h.lane(lane) {
+        h if h.is_finite() && h != Zero::zero() => Ok(()),
+        h => Err(Error::StepSize { value: h.to_f64() }),
+    })
 }
 
 // a bound of the method, not of the block: its error then names the missing part
@@ -282,7 +287,7 @@ pub fn check_state<S: Clebsch>(system: &S, q: &S::Configuration, mu: &S::Momentu
 }
 
 /// Whether q is on its orbit, and N is finite. Up to √ε of its largest component, N is a momentum that motions of q can have.
-fn check_momentum<S: Clebsch>(system: &S, q: &S::Configuration, mu: &S::Momentum) -> Result<(), Error> {
+pub(crate) fn check_momentum<S: Clebsch>(system: &S, q: &S::Configuration, mu: &S::Momentum) -> Result<(), Error> {
     check_on_orbit(q, system.orbit_defect(q))?;
     check_finite("the momentum", mu)?;
     check_violation(system.isotropy_defect(q, mu), mu)

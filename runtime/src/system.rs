@@ -77,6 +77,9 @@ pub trait Clebsch: Sized {
     /// Whether rounding may move a configuration off its orbit in one step, as it may on groups that are not compact.
     /// Then every step checks [`orbit_defect`](Self::orbit_defect). `false` as provided.
     const MAY_LEAVE_ORBIT: bool = false;
+    /// Whether the struct declares a site of a field, which is stepped on a lattice. `false` as provided.
+    #[doc(hidden)]
+    const IS_FIELD: bool = false;
     /// The derivation in words and formulas, with operation counts. With `emit = [latex]` there is a constant `DERIVATION_LATEX` too, for a paper.
     const DERIVATION: &'static str;
 
@@ -249,6 +252,12 @@ pub trait Clebsch: Sized {
     /// # Errors
     /// [`Error::StepSize`], and those of [`constants`](Self::constants).
     fn into_stepper(self, h: Self::Scalar) -> Result<Stepper<Self>, Error> {
+        const {
+            assert!(
+                !Self::IS_FIELD,
+                "a field is stepped on a grid: write `field.grid([64]).spacing([0.1]).stepper(h)`, with a size and a spacing for each direction"
+            );
+        }
         Stepper::new(self, h)
     }
 

@@ -23,6 +23,9 @@ const INSTANCES: [(&str, &[(&str, &str)]); 11] = [
     ("FirstOrderMolecules", &[("", "<8>")]),
 ];
 
+/// The directions of space of fields that have more than one.
+const DIRECTIONS: [(&str, &str); 1] = [("wave_map", "2")];
+
 /// The names in `f32` of the lanes of `f64`.
 const LANES: [&str; 2] = ["F64x4", "F64x8"];
 
@@ -123,7 +126,10 @@ fn roots<'a>(name: &str, systems: impl IntoIterator<Item = &'a System>) -> Strin
                 of_method("stepping", &format!(".{method}"), &format!(", {method}"));
             }
             let mut export = |kind: &str, more: &str| of_method(kind, "", more);
-            if !system.is_control_alone {
+            if system.is_field {
+                let directions = DIRECTIONS.iter().find(|(system, _)| *system == name).map_or("1", |(_, count)| count);
+                export("spreading", &format!(", {directions}"));
+            } else if !system.is_control_alone {
                 export("stepping", "");
             }
             if system.has_tangent {
@@ -149,6 +155,7 @@ struct System {
     methods: Vec<String>,
     is_control_alone: bool,
     is_controlled: bool,
+    is_field: bool,
     has_tangent: bool,
     has_boundary: bool,
 }
@@ -199,6 +206,7 @@ fn system<'a>(name: String, tokens: impl IntoIterator<Item = &'a Vec<TokenTree>>
         methods: tokens.clone().into_iter().flat_map(|tokens| methods(tokens)).collect(),
         is_control_alone,
         is_controlled: is_control_alone || says("effort"),
+        is_field: says("space"),
         has_tangent: emits("tangent"),
         has_boundary: emits("boundary"),
     }

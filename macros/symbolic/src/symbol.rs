@@ -55,6 +55,8 @@ pub enum Role {
     Site(usize),
     /// A leaf of the configuration at a place of a power, by the number of the place and of the leaf.
     At(usize, usize),
+    /// The spacing of the edges of a field in a direction.
+    Spacing(usize),
     /// The direction δ of a derivative along the chart coordinates of a block.
     Direction(usize),
     /// Σ⁻¹, the inverse of the inertia.

@@ -42,6 +42,11 @@ pub mod force_on {}
 /// Example: `constraint = |xi| [xi.z == 0]`
 pub mod constraint {}
 
+/// The energy of an edge from a site to its neighbour, in joules: one closure for each direction of space. The declaration is that of one site. The number of sites and their boundary are said at run time: `field.grid([64, 64])`. The first argument is a new name for the spacing of the direction, the last one for the configuration of the neighbour.
+///
+/// Example: `space = [|dx, q, next| (next - q).norm_squared() / (2 * dx.powi(2))]`
+pub mod space {}
+
 /// The velocity that an input gives, in the basis of the group. It moves the configuration directly, without mass or momentum.
 ///
 /// Example: `controls = |u: Vector2| vector![u.x, u.y, 0]`

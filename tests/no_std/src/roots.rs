@@ -80,6 +80,46 @@ macro_rules! export {
     };
 }
 
+/// A field on a grid, with all that its stepper can do.
+#[macro_export]
+macro_rules! spreading {
+    ($name:literal, $type:ty, $directions:literal) => {
+        const _: () = {
+            use clebsch::{Clebsch, Field, FieldState, FieldStepper, Grid, Sides};
+
+            type S = $type;
+            type T = <S as Clebsch>::Scalar;
+            type Q = <S as Clebsch>::Configuration;
+            type N = <S as Clebsch>::Momentum;
+            type Stepper = FieldStepper<S, Grid<T, $directions>>;
+            type State<'a> = FieldState<&'a mut [Q], &'a mut [N], <S as Clebsch>::Time>;
+
+            $crate::export!("stepper", $name, |system: &S,
+                                               sizes: &[usize; $directions],
+                                               spacing: &[T; $directions],
+                                               sides: &[Sides; $directions],
+                                               h: &T,
+                                               made: &mut Option<Stepper>| {
+                *made = Some(system.grid(*sizes).spacing(*spacing).sides(*sides).stepper(*h)?);
+            });
+            $crate::export!("state", $name, |stepper: &Stepper, q: &mut [Q], mu: &mut [N], energy: &mut T| {
+                *energy = stepper.energy(&stepper.state(q, mu)?)?;
+            });
+            $crate::export!("step", $name, |stepper: &Stepper, state: &mut State<'_>| {
+                stepper.step(state)?;
+            });
+            $crate::export!("advance", $name, |stepper: &Stepper, state: &mut State<'_>, steps: u64| {
+                stepper.advance(state, steps)?;
+            });
+            $crate::export!("step_with", $name, |stepper: &Stepper,
+                                                 state: &mut State<'_>,
+                                                 u: &[<S as Clebsch>::Input]| {
+                stepper.step_with(state, u)?;
+            });
+        };
+    };
+}
+
 /// A stepper with all that it can do, by the declared dials or by a method.
 #[macro_export]
 macro_rules! stepping {

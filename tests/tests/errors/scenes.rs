@@ -1,7 +1,7 @@
 //! Scenes that fail.
 
 use crate::Scene;
-use clebsch::{Clebsch, Controlled, Error, F64x4, Guess, Scalar, SiteStorage, Target};
+use clebsch::{Clebsch, Controlled, Error, F64x4, Field, Guess, Scalar, SiteStorage, Target};
 use clebsch_tests::fixtures::chaplygin_sleigh::ChaplyginSleigh;
 use clebsch_tests::fixtures::collocated_top::CollocatedTop;
 use clebsch_tests::fixtures::damped_body::DampedBody;
@@ -15,6 +15,7 @@ use clebsch_tests::fixtures::rolling_ball::RollingBall;
 use clebsch_tests::fixtures::spherical_pendulum::SphericalPendulum;
 use clebsch_tests::fixtures::spin_chain::SpinChain;
 use clebsch_tests::fixtures::steered_body::SteeredBody;
+use clebsch_tests::fixtures::wave_map::WaveMap;
 use nalgebra::{Matrix3, Quaternion, Vector1, Vector2, Vector3, Vector5};
 
 /// A potential whose gradient has the wrong sign.
@@ -132,6 +133,14 @@ fn parameters() -> Vec<Scene> {
                 .error,
             told: &["3 entries", "4 sites", "one entry for each site"],
         },
+        scene(
+            refused(WaveMap.grid([3, 0]).stepper(0.1)),
+            &["0 sites in direction 1", "give each direction at least one"],
+        ),
+        scene(
+            refused(WaveMap.grid([3, 3]).spacing([0.5, -0.5]).stepper(0.1)),
+            &["the spacing in direction 1 is -0.5", "above zero"],
+        ),
         scene(refused(top().stepper(0.0)), &["the step size is 0", "a finite number other than zero"]),
         scene(
             refused(broken.stepper(0.1)),

@@ -77,6 +77,7 @@ struct Numbers<'i> {
     equation: Option<&'i mut usize>,
     term: Option<&'i mut usize>,
     joint: Option<&'i mut usize>,
+    direction: Option<&'i mut usize>,
     place: Option<&'i mut usize>,
     momentum: Option<&'i mut usize>,
 }
@@ -193,6 +194,18 @@ catalogue! {
     Joint(joint: usize) = listed("rows of a joint", Hot);
     /// Its second derivative in time with constant velocities.
     JointBend(joint: usize) = unlisted("bend of a joint", Hot);
+    /// U of an edge of a field.
+    EdgeEnergy(direction: usize) = listed("energy of an edge", Hot);
+    /// −J(q, ∂₁U) and −J(q⁺, ∂₂U).
+    EdgeForces(direction: usize) = listed("forces of an edge", Hot).by(ClebschOptimalControl);
+    /// The group element of an edge.
+    EdgeElement = listed("element of an edge", Hot);
+    /// Its Cayley coordinates.
+    EdgeCoordinates = unlisted("Cayley coordinates of an edge", Hot);
+    /// −J(q, ∂V) of a site of a field.
+    SiteForce = listed("force on a site", Hot).by(ClebschOptimalControl);
+    /// The force on a site from its potential and from the edges to all neighbours.
+    ForceInside = unlisted("force on a site", Hot).by(ClebschOptimalControl);
     /// ξ′ of a site without joints.
     Acceleration = unlisted("acceleration of a site", Hot);
     /// Chart coordinates of a small motion of a site.

@@ -17,7 +17,8 @@ pub struct Lowered {
     /// The coefficients of ξᵢξⱼ, i ≤ j, in the kinetic energy, without those that are zero.
     /// `None` for matrix code and where they are too long to print.
     pub energy: Option<Vec<(usize, usize, String)>>,
-    /// Whether the gradient of a site of a power is gathered from the terms that read it.
+    /// Whether the gradient of a site of a power is gathered from the terms that read it. Of a field it is the force on a site,
+    /// and its edges.
     pub is_gathered: bool,
     /// Whether steps of a point on a sphere are made in the point and its velocity, without the matrices of the group.
     pub turns_in_plane: bool,
@@ -41,6 +42,7 @@ pub fn derivation(formulas: &MechanicsFormulas<'_>, lowered: &Lowered) -> String
     let item = model.power.as_ref().map_or(&model.item, |power| &power.item);
     let system = [
         sites(formulas, lowered),
+        edges(formulas, lowered),
         frames(model),
         energy(formulas, lowered),
         constant_in_space(formulas),
@@ -104,6 +106,25 @@ fn sites(formulas: &MechanicsFormulas<'_>, lowered: &Lowered) -> String {
         )
     };
     format!("A power: {length} sites, {equal}. The following is about one site.\n{terms}\n")
+}
+
+/// The description of a field.
+fn edges(formulas: &MechanicsFormulas<'_>, lowered: &Lowered) -> String {
+    let Some(field) = &formulas.field else { return String::new() };
+    let directions = match field.edges.len() {
+        1 => "one direction",
+        2 => "two directions",
+        _ => "three directions",
+    };
+    let found = if lowered.is_gathered {
+        "The force on a site is found from all of its edges at once; where some are missing, edge by edge."
+    } else {
+        "The force of each edge is added at both of its sites."
+    };
+    format!(
+        "A field: a site at each place of a grid with {directions}, and an edge from each site to the next. The following is about one site.\n\
+         An edge of the energy U(q, q⁺) pushes its site by f = −J(q, ∂₁U), and the next one by f⁺ = −J(q⁺, ∂₂U). {found}\n"
+    )
 }
 
 fn inputs(model: &System<'_>) -> String {

@@ -255,7 +255,7 @@ fn without_embeddings(expression: Expr<'_>) -> Expr<'_> {
 }
 
 /// An expression as it is or expanded, whichever is shorter.
-fn shorter(expression: Expr<'_>) -> Expr<'_> {
+pub(super) fn shorter(expression: Expr<'_>) -> Expr<'_> {
     let expanded = work::apart(EXPANSION, || expression.expand()).ok();
     expanded.filter(|expanded| length(*expanded) <= length(expression).min(LONGEST)).unwrap_or(expression)
 }

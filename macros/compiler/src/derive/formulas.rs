@@ -7,7 +7,7 @@ use clebsch_symbolic::{Chart, Expr, Group, IntoList};
 
 use super::energy::is_multiple_of_identity;
 use super::{
-    Collocation, ConstraintFormulas, DiscreteLagrangian, Energy, FormulaTable, InputStep, JointFormulas,
+    Collocation, ConstraintFormulas, DiscreteLagrangian, Energy, FieldFormulas, FormulaTable, InputStep, JointFormulas,
     MomentumEquation, Quantity, SiteTerm, Splitting, Substep, SymmetricParts, Symmetries, SystemFormulas, Vertical,
     exact, signature,
 };
@@ -94,6 +94,8 @@ pub struct MechanicsFormulas<'g> {
     pub constraint: Option<ConstraintFormulas<'g>>,
     /// The joints of a power; `None` where its sites move freely.
     pub joints: Option<JointFormulas<'g>>,
+    /// The forces of a field; `None` where there is one site.
+    pub field: Option<FieldFormulas<'g>>,
 }
 
 impl<'g> Deref for MechanicsFormulas<'g> {
@@ -141,6 +143,16 @@ impl MechanicsFormulas<'_> {
     /// Of how many steps of second order a step is composed, where it is.
     pub fn stages(&self) -> Option<usize> {
         self.model.order.stages().filter(|_| self.splitting.is_none() && !self.is_exact)
+    }
+
+    /// Whether nothing but the kinetic energy moves the system: no potential, and no other site.
+    pub(super) fn moves_freely(&self) -> bool {
+        self.potential_energy.is_zero() && self.links.is_empty() && self.field.is_none()
+    }
+
+    /// Whether this is the model of one of many sites.
+    pub(super) fn has_sites(&self) -> bool {
+        self.model.power.is_some() || self.field.is_some()
     }
 
     /// The same of a step of all sites of a power. Free sites whose motion is exact need none.
@@ -223,7 +235,8 @@ pub(super) fn is_timed(model: &Mechanics<'_>, lagrangian: &DiscreteLagrangian<'_
     let terms = model.power.iter().flat_map(|power| power.terms.iter().map(|term| &term.value));
     let joints = model.power.iter().flat_map(|power| &power.joints).flat_map(|joints| &joints.all);
     let joints = joints.map(|joint| &joint.term.value);
+    let of_field = model.field.iter().filter_map(|field| field.potential.as_ref());
     let mut constraint = model.constraint.iter().flat_map(|constraint| constraint.parts());
-    energies.iter().chain(forces).chain(terms).chain(joints).any(|part| part.depends_on(model.time))
+    energies.iter().chain(forces).chain(terms).chain(of_field).chain(joints).any(|part| part.depends_on(model.time))
         || constraint.any(|part| part.depends_on(model.time))
 }

@@ -143,5 +143,5 @@ pub(super) fn entries<'g>(model: &Mechanics<'g>) -> Vec<SiteTerm<'g>> {
     let entry =
         |joint: &Joint<'g>, i: usize| Term { ranges: joint.term.ranges.clone(), value: joint.term.value.entry(i, 0) };
     let terms = joints.flat_map(|joint| (0..joint.count()).map(move |i| entry(joint, i))).into_list();
-    of_terms(model, power, &terms)
+    of_terms(model, power.places.len(), &terms)
 }

@@ -21,6 +21,7 @@ mod energy;
 mod equation;
 mod equations;
 mod exact;
+mod field;
 mod force;
 mod formula;
 mod formulas;
@@ -66,6 +67,7 @@ pub use discrete_lagrangian::DiscreteLagrangian;
 pub use energy::Energy;
 use equation::Sources;
 pub use equation::{MomentumEquation, Solution, Structure};
+pub use field::{EdgeFormulas, FieldFormulas, expanded};
 pub use force::EdgeForce;
 pub use formula::{Formula, FormulaTable};
 use formulas::is_timed;
@@ -107,7 +109,11 @@ fn mechanics(mut model: Mechanics<'_>) -> Result<MechanicsFormulas<'_>, Diagnost
     // symmetries and Legendre transforms are those of the declared cost
     let declared = if declared == cost { lagrangian } else { discrete_lagrangian::separate(&model, declared) };
     substep::check_unmoved(&model, &lagrangian)?;
-    let potential_energy = energy::potential(&model, &declared)?;
+    let field = field::of(&model, &system);
+    let potential_energy = match &model.field {
+        Some(field) => field.potential.unwrap_or_else(|| model.graph.integer(0)),
+        None => energy::potential(&model, &declared)?,
+    };
     let covector = force::covector(&model, &system);
     let pushes = (potential_energy, covector.as_deref());
     let constraint = ConstraintFormulas::of(&model, &system, (&energy, inertia), pushes)?;
@@ -144,6 +150,7 @@ fn mechanics(mut model: Mechanics<'_>) -> Result<MechanicsFormulas<'_>, Diagnost
     let links = power::links(&model);
     let mut tied = joints::entries(&model);
     tied.extend(power::links(&model));
+    tied.extend(field::terms(&model));
     let pushes = (covector.as_deref(), constraint.as_ref());
     let symmetries = symmetry::find(&sources(1), &declared, pushes, &tied);
     check_offers(&model, &symmetries)?;
@@ -186,6 +193,7 @@ fn mechanics(mut model: Mechanics<'_>) -> Result<MechanicsFormulas<'_>, Diagnost
         covector,
         constraint,
         joints,
+        field,
         vertical,
     };
     summation::check(&formulas)?;

@@ -116,11 +116,11 @@ fn is_of_term<'g>(power: &Power<'g>, symbol: Expr<'g>) -> bool {
 
 /// The terms of a power, with their gradients; nothing else has any.
 pub(super) fn links<'g>(model: &Mechanics<'g>) -> Vec<SiteTerm<'g>> {
-    model.power.as_ref().map_or(Vec::new(), |power| of_terms(model, power, &power.terms))
+    model.power.as_ref().map_or(Vec::new(), |power| of_terms(model, power.places.len(), &power.terms))
 }
 
-/// Terms with their gradients.
-pub(super) fn of_terms<'g>(model: &Mechanics<'g>, power: &Power<'g>, terms: &[Term<'g>]) -> Vec<SiteTerm<'g>> {
+/// Terms with their gradients at so many places.
+pub(super) fn of_terms<'g>(model: &Mechanics<'g>, places: usize, terms: &[Term<'g>]) -> Vec<SiteTerm<'g>> {
     let link = |term: &Term<'g>| {
         let symbols = term.value.symbols();
         let at = |place: usize, leaf: usize| symbol_at(&symbols, place, leaf);
@@ -129,7 +129,7 @@ pub(super) fn of_terms<'g>(model: &Mechanics<'g>, power: &Power<'g>, terms: &[Te
             None => model.graph.zero(model.configurations[leaf].shape),
         };
         let leaves = 0..model.configurations.len();
-        let read = (0..power.places.len()).filter(|&place| leaves.clone().any(|leaf| at(place, leaf).is_some()));
+        let read = (0..places).filter(|&place| leaves.clone().any(|leaf| at(place, leaf).is_some()));
         let gradient = read.map(|place| (place, leaves.clone().map(|leaf| slope(place, leaf)).into_list())).into_list();
         SiteTerm { term: term.clone(), gradient }
     };

@@ -8,7 +8,7 @@ use clebsch_symbolic::{Elements, Expr, IntoList, Property, Role, indexed};
 
 use super::moves::inverse_by;
 use super::{Formula, FormulaTable, Id, JointRows, MechanicsFormulas, SteeredFormulas, SystemFormulas};
-use crate::model::{LeafSpace, Motion};
+use crate::model::{EdgeEnergy, LeafSpace, Motion};
 
 /// More conserved momenta are told by the first and the last of them.
 pub(super) const MOST_LISTED: usize = 16;
@@ -135,6 +135,7 @@ impl<'g> MechanicsFormulas<'g> {
         rows.extend(self.rows_of_lagrangian(&names));
         rows.extend(self.rows_of_terms(&names));
         rows.extend(self.rows_of_joints(&names));
+        rows.extend(self.rows_of_field(&names));
         rows.extend(self.rows_of_choice(&names));
         rows.extend(self.rows_of_conserved());
         for index in 0..self.substeps.len() {
@@ -210,6 +211,30 @@ impl<'g> MechanicsFormulas<'g> {
         rows.push(Formula::new(Id::SmallMotion, "x", [joints.moved]));
         rows.push(Formula::new(Id::MomentumOfVelocity, format!("Σ{xi} + A"), [joints.momentum]));
         rows
+    }
+
+    /// The energies and the forces of a field.
+    fn rows_of_field(&self, Names { q, f, .. }: &Names) -> Vec<Formula<'g>> {
+        let Some((field, declared)) = self.field.as_ref().zip(self.model.field.as_ref()) else { return Vec::new() };
+        let (mut energies, mut forces) = (Vec::new(), Vec::new());
+        for (number, (edge, EdgeEnergy { names: [own, next], .. })) in
+            field.edges.iter().zip(&declared.edges).enumerate()
+        {
+            let [own, next] = [own, next].map(|names| tuple(names.iter().cloned()));
+            let index = if field.edges.len() > 1 { format!("_{}", number + 1) } else { String::new() };
+            let read = if edge.element.is_empty() { format!("{own}, {next}") } else { f.clone() };
+            energies.push(Formula::shorter(Id::EdgeEnergy(number), format!("U{index}({read})"), [edge.energy]));
+            let both = [edge.on_site.as_slice(), &edge.on_neighbour].concat();
+            forces.push(Formula::shorter(Id::EdgeForces(number), format!("f{index}, f{index}⁺"), both));
+        }
+        energies.extend(forces);
+        if let Some(edge) = field.edges.iter().find(|edge| !edge.element.is_empty()) {
+            energies.push(Formula::new(Id::EdgeElement, f, edge.element.clone()));
+            energies.push(Formula::new(Id::EdgeCoordinates, "z", edge.coordinates.clone()));
+        }
+        energies.push(Formula::shorter(Id::SiteForce, format!("f({q})"), field.force_of_site.clone()));
+        energies.extend(field.force_inside.clone().map(|force| Formula::new(Id::ForceInside, "f", force)));
+        energies
     }
 
     /// The conserved momenta by their names, and the values of all of them, with the inverses of configurations by the formulas of their groups.

@@ -164,6 +164,18 @@ functions! {
         }
     }
 
+    /// `Field`: the energies of edges, and the forces on sites.
+    FIELD(true) {
+        /// The energy of an edge in a direction.
+        fn edge_energy(&self, direction: Index, spacing: &Spacings, q: &Q, next: &Q) -> T { Id::EdgeEnergy(0) }
+        /// The forces of an edge in a direction on its site and on the neighbour.
+        fn edge_forces(&self, direction: Index, spacing: &Spacings, q: &Q, next: &Q) -> (Mu, Mu) { Id::EdgeForces(0) }
+        /// The force of the potential on a site.
+        fn force_on_site(&self, t: T, q: &Q) -> Mu { Id::SiteForce }
+        /// The force on a site that has neighbours on both sides in each direction, of its potential and of all edges.
+        fn force_inside(&self, t: T, spacing: &Spacings, q: &Q, before: &Neighbours, after: &Neighbours) -> Mu { Id::ForceInside => }
+    }
+
     /// `VelocityEquation`, of a Lagrangian that is not quadratic.
     VELOCITY(false) {
         /// The Lagrangian of a velocity, its gradient and its Hessian.

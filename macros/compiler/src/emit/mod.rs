@@ -7,6 +7,7 @@ mod collocation;
 mod constants;
 mod control;
 mod equation;
+mod field;
 mod function;
 mod functions;
 mod matrices;
@@ -160,11 +161,11 @@ impl<'a, 'g> Emitter<'a, 'g> {
         let (power, constants, system) = (self.power(), self.constants_type(), self.system());
         // a conserved quantity of a power is a sum over its sites
         let conserves = self.power.is_none().then(|| self.conserves());
-        let constrained = self.constrained();
+        let (constrained, field) = (self.constrained(), self.field());
         let (variational, sensitive, controlled) = (self.variational(), self.sensitive(), self.controlled());
         let (check, parts, equations) = (self.potential_check(), self.parts(), self.equations());
         let (velocity, methods) = (self.velocity(), self.methods());
-        quote!(#power #constants #system #conserves #constrained #variational #sensitive #controlled #check #parts #equations #velocity #methods)
+        quote!(#power #constants #system #conserves #constrained #field #variational #sensitive #controlled #check #parts #equations #velocity #methods)
     }
 
     /// The blocks of all methods. The names of types are those of the outer block; types of steps have names of their

@@ -153,6 +153,10 @@ impl Scope<'_, '_> {
                 let length = &self.length;
                 self.rounded(quote!(#length as ::core::primitive::f64))
             }
+            Role::Spacing(direction) => {
+                let direction = size(direction);
+                quote!(spacing[#direction])
+            }
             Role::Multiplier => quote!(kappa #index),
             Role::Weight => quote!(z #index),
             Role::ChartWeight(number) => {

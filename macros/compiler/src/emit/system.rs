@@ -47,11 +47,13 @@ impl<'g> Emitter<'_, 'g> {
             let is_asked = self.method.is_none() || function.is_of_method();
             if is_asked { self.function_of_system(function, kernel) } else { None }
         });
+        let is_field = (self.model.field.is_some() && name.is_some()).then(|| flag("IS_FIELD", true));
         quote! {
             type Constants = C;
             type Scheme = #scheme;
 
             #name
+            #is_field
             const ORDER: ::core::primitive::u32 = #order;
             #free_motion
             #may_leave

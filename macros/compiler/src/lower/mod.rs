@@ -187,6 +187,7 @@ impl<'g> Maker<'_, 'g> {
         for number in 0..formulas.joints.as_ref().map_or(0, |joints| joints.all.len()) {
             self.rows([Id::JointPlaces(number), Id::Joint(number), Id::JointBend(number)]);
         }
+        self.field(formulas);
         self.rows([Id::Action, Id::MomentumMap]);
         if formulas.collocation.is_some() {
             self.add(Id::MomentumOfStep, |scalars, _| stack(scalars, &formulas.momentum_map, Hoisting::Nothing));
@@ -200,6 +201,42 @@ impl<'g> Maker<'_, 'g> {
         self.known_rows([Id::Gyroscopic, Id::ConservedMomenta, Id::Places, Id::Constraint, Id::MomentumOfVelocity]);
         self.known_rows([Id::PlaceCorrection, Id::Multipliers, Id::Reactions, Id::Acceleration, Id::SmallMotion]);
         gathered
+    }
+
+    /// The energies and the forces of a field.
+    fn field(&mut self, formulas: &MechanicsFormulas<'g>) {
+        let Some(field) = &formulas.field else { return };
+        for (direction, edge) in field.edges.iter().enumerate() {
+            self.rows([Id::EdgeEnergy(direction)]);
+            self.shorter(Id::EdgeForces(direction), &[&edge.on_site, &edge.on_neighbour]);
+        }
+        if let Some(edge) = field.edges.iter().find(|edge| !edge.element.is_empty()) {
+            self.add(Id::EdgeElement, |scalars, _| plain(scalars, &edge.element));
+        }
+        if let Some(edge) = field.edges.iter().find(|edge| !edge.coordinates.is_empty()) {
+            self.add(Id::EdgeCoordinates, |scalars, _| stack(scalars, &edge.coordinates, Hoisting::Nothing));
+        }
+        let site = (Id::SiteForce, &field.force_of_site);
+        let inside = field.force_inside.as_ref().map(|force| (Id::ForceInside, force));
+        for (id, force) in [site].into_iter().chain(inside).filter(|(_, force)| !force.is_empty()) {
+            self.shorter(id, &[force]);
+        }
+    }
+
+    /// The kernel of vectors, each of several parts: as they are or expanded, whichever takes fewer operations.
+    fn shorter(&mut self, id: Id, vectors: &[&Vec<Expr<'g>>]) {
+        let scalars = &mut self.scalars;
+        let mut of = |vectors: &[Vec<Expr<'g>>]| {
+            let outputs: Vec<Grid> = vectors.each(|parts| Grid::vector(entries(scalars, parts)));
+            kernel::kernel(scalars, &outputs, Hoisting::Nothing)
+        };
+        let plain = of(&vectors.each(|parts| (*parts).clone()));
+        let expanded = derive::expanded(vectors).map(|expanded| of(&expanded));
+        let kernel = match expanded {
+            Some(expanded) if expanded.cost().total() < plain.cost().total() => expanded,
+            _ => plain,
+        };
+        self.table.push((id, kernel));
     }
 
     /// The terms of a power with their gradients. The gradients are gathered by site if few terms read each site. The

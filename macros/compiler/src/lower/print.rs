@@ -198,7 +198,7 @@ impl MechanicsProgram<'_> {
         let lowered = Lowered {
             form: self.form.sentence(),
             energy: self.energy_coefficients(),
-            is_gathered: self.gathered.is_some(),
+            is_gathered: self.gathered.is_some() || self.gathers_edges(),
             turns_in_plane: self.turns_in_plane(),
             iterations: self.iterations(),
             costs: costs(&self.kernels()),

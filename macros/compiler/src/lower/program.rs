@@ -245,7 +245,21 @@ impl MechanicsProgram<'_> {
             [(places, Id::JointPlaces(joint)), (rows, Id::Joint(joint))]
         };
         let joints = (0..joints).flat_map(of_joint);
-        (0..links.len()).flat_map(of_term).chain(of_site).chain(others).chain(joints).into_list()
+        let field = self.formulas.field.as_ref();
+        let of_edge = |direction: usize| {
+            let names = [format!("energy_of_edge_{}", direction + 1), format!("forces_of_edge_{}", direction + 1)];
+            names.into_iter().zip([Id::EdgeEnergy(direction), Id::EdgeForces(direction)])
+        };
+        let edges = (0..field.map_or(0, |field| field.edges.len())).flat_map(of_edge);
+        let of_sites = [
+            ("element_of_edge", Id::EdgeElement),
+            ("coordinates_of_edge", Id::EdgeCoordinates),
+            ("force_on_site", Id::SiteForce),
+            ("force_inside", Id::ForceInside),
+        ];
+        let field =
+            edges.chain(of_sites.map(|(name, id)| (name.to_string(), id)).into_iter().filter(|_| field.is_some()));
+        (0..links.len()).flat_map(of_term).chain(of_site).chain(others).chain(joints).chain(field).into_list()
     }
 
     /// Whether a step or a method calls a kernel.
@@ -259,6 +273,19 @@ impl MechanicsProgram<'_> {
             Id::EndKick(index) => !self.steps[index].end_is_start,
             _ => true,
         }
+    }
+
+    /// Whether the force on a site of a field is found from all of its edges at once. It is where that takes no more operations
+    /// than each edge and the potential by themselves.
+    pub fn gathers_edges(&self) -> bool {
+        let Some(field) = self.formulas.field.as_ref().filter(|field| field.force_inside.is_some()) else {
+            return false;
+        };
+        let cost = |id: Id| self.find(id).map_or(0, |kernel| kernel.cost().total());
+        let by_edges: usize = (0..field.edges.len()).map(|direction| cost(Id::EdgeForces(direction))).sum();
+        // two additions of a momentum for each edge
+        let added = 2 * field.edges.len() * self.formulas.model.dimension();
+        cost(Id::ForceInside) <= by_edges + cost(Id::SiteForce) + added
     }
 
     /// The suffix of the functions of a substep.

@@ -9,6 +9,7 @@ mod control;
 mod declared;
 mod elaborate;
 pub(crate) mod features;
+mod field;
 mod fields;
 mod forces;
 mod groups;
@@ -89,6 +90,7 @@ pub fn model<'g>(graph: &'g Graph, declaration: &Declaration, by_number: ByNumbe
     if sites.is_some() {
         sites::check(declaration, &diagnostics);
     }
+    field::check(declaration, &diagnostics);
     if let Some(types) = &types {
         // the types mean nothing in another order
         arguments::check_order(types, names)?;
@@ -172,6 +174,15 @@ pub fn model<'g>(graph: &'g Graph, declaration: &Declaration, by_number: ByNumbe
     let declared_order = dials.order.as_ref().map_or(Order::Second, |order| order.value);
     // a composed step is one of all sites, made of steps of second order
     let order = if power.is_some() && declared_order.stages().is_some() { Order::Second } else { declared_order };
+    let is_field = !declaration.spaces.is_empty();
+    let order = if is_field && declared_order.stages().is_some() { Order::Second } else { order };
+    let mut potential = formulas.potential;
+    // the sites of a field are kicked by their potential and by their edges at once
+    let field = (is_field && !formulas.edges.is_empty()).then(|| FieldEnergies {
+        edges: formulas.edges,
+        potential: potential.take(),
+        order: declared_order,
+    });
     let power = power.map(|power| {
         let forces = force.iter().flat_map(|force| force.of_group.iter().chain(&force.on_configuration).flatten());
         let read = [kinetic.energy()].into_iter().chain(forces.copied()).into_list();
@@ -181,11 +192,12 @@ pub fn model<'g>(graph: &'g Graph, declaration: &Declaration, by_number: ByNumbe
     Ok(Model::Mechanics(Box::new(Mechanics {
         system: Rc::new(system),
         kinetic,
-        potential: formulas.potential,
+        potential,
         opaque: declaration.potential.as_ref().and_then(Potential::opaque).cloned(),
         force,
         constraint: formulas.constraint,
         power,
+        field,
         symmetries: formulas.symmetries,
         isotropy: if dials.emit.momentum { Isotropy::Free } else { isotropy },
         signature: dials.signature.as_ref().map_or(Signature::Definite, |signature| signature.value),
@@ -212,6 +224,8 @@ struct ClosureValues<'g> {
     constraint: Option<Constraint<'g>>,
     /// The constraint of a power.
     joints: Option<Joints<'g>>,
+    /// The energies of the edges of a field.
+    edges: Vec<EdgeEnergy<'g>>,
     input: Space<'g>,
     control: Option<InputChoice<'g>>,
     endpoint: Option<Expr<'g>>,
@@ -242,6 +256,7 @@ impl<'g> ClosureValues<'g> {
         let endpoint = optional(declaration.endpoint.as_ref(), |closure| system.endpoint(closure));
         let forces = system.forces(declaration);
         let is_power = system.context.power.is_some();
+        let edges = if is_power { Some(Vec::new()) } else { system.edges(declaration) };
         let first = declaration.constraints.first();
         let joints = optional(first.filter(|_| is_power), |_| system.joints(declaration));
         let constraint = optional(first.filter(|_| !is_power), |_| system.constraint(declaration));
@@ -251,6 +266,7 @@ impl<'g> ClosureValues<'g> {
             None if declaration.kinetic.is_steered() => return None,
             None => (kinetic.map(Mover::Momenta), forces?),
         };
+        let edges = edges?;
         let control = optional(declaration.control.as_ref(), |control| system.choice(control, &input))?;
         Some(ClosureValues {
             action,
@@ -262,6 +278,7 @@ impl<'g> ClosureValues<'g> {
             force,
             constraint: constraint?,
             joints: joints?,
+            edges,
             input,
             control,
             endpoint: endpoint?,

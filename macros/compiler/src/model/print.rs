@@ -6,8 +6,8 @@ use clebsch_symbolic::Group;
 
 use super::scalar::spell_scalar;
 use super::{
-    Isotropy, Joint, Kinetic, LeafSpace, Mechanics, Model, Motion, OfferedSymmetry, Order, Parameter, Side, Signature,
-    Steered, System, VelocityRows,
+    FieldEnergies, Isotropy, Joint, Kinetic, LeafSpace, Mechanics, Model, Motion, OfferedSymmetry, Order, Parameter,
+    Side, Signature, Steered, System, VelocityRows,
 };
 use crate::parse::joined;
 
@@ -37,6 +37,7 @@ impl fmt::Display for Mechanics<'_> {
         match self.potential {
             Some(potential) => writeln!(f, "  potential  {potential}")?,
             None if self.power.as_ref().is_some_and(|power| !power.terms.is_empty()) => {}
+            None if self.field.is_some() => {}
             None => writeln!(f, "  potential  none")?,
         }
         if let Some(power) = &self.power {
@@ -51,6 +52,10 @@ impl fmt::Display for Mechanics<'_> {
                 let indices = if indices.is_empty() { indices } else { format!(", for {indices}") };
                 writeln!(f, "  constraint {} = 0{indices}", term.value)?;
             }
+        }
+        if let Some(FieldEnergies { edges, potential, .. }) = &self.field {
+            potential.iter().try_for_each(|potential| writeln!(f, "  potential  {potential}"))?;
+            edges.iter().try_for_each(|edge| writeln!(f, "  edge       {}", edge.value))?;
         }
         if let Some(force) = &self.force {
             force.of_group.iter().flatten().try_for_each(|part| writeln!(f, "  force      {part}"))?;

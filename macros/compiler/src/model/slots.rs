@@ -53,6 +53,9 @@ const ARGUMENTS: [(&str, &[Slot]); 12] = [
 
 /// The arguments that the closure of a key may take, in their order, as the docs say it; `None` for a key without.
 pub(crate) fn arguments_of(key: &str) -> Option<String> {
+    if key == "space" {
+        return Some("a new name (spacing), the configuration, a new name (that of the neighbour). In place of the last two, a name (group element)".to_string());
+    }
     if key == "action" {
         return Some("a new name with its group (group element), a new name with its type (configuration)".to_string());
     }

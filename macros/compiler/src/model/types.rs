@@ -74,6 +74,8 @@ pub struct Mechanics<'g> {
     pub constraint: Option<Constraint<'g>>,
     /// The terms that tie sites to each other, if the declaration is a power and this is the model of a site.
     pub power: Option<Power<'g>>,
+    /// The energies of a field, if the declaration is one and this is the model of a site.
+    pub field: Option<FieldEnergies<'g>>,
     /// The symmetries that the user offers; whether cost and potential have them is still open.
     pub symmetries: Vec<OfferedSymmetry<'g>>,
     /// How to treat motions of the group that move no configuration.
@@ -125,9 +127,10 @@ impl Mechanics<'_> {
         self.compensated().is_some()
     }
 
-    /// The order as declared: of a power that of all sites together.
+    /// The order as declared: of a power or a field that of all sites together.
     pub fn declared_order(&self) -> Order {
-        self.power.as_ref().map_or(self.order, |power| power.order)
+        let of_sites = self.power.as_ref().map(|power| power.order);
+        of_sites.or_else(|| self.field.as_ref().map(|field| field.order)).unwrap_or(self.order)
     }
 
     /// Whether there are covectors to step: not under forces and constraints, which act in 𝔤*, and not without a
@@ -440,6 +443,33 @@ pub struct Written {
     pub place: crate::diagnostic::Location,
     /// Its text.
     pub text: String,
+}
+
+/// The energies of a field other than the kinetic energies of its sites.
+#[derive(Clone)]
+pub struct FieldEnergies<'g> {
+    /// Those of the edges, one for each direction of space.
+    pub edges: Vec<EdgeEnergy<'g>>,
+    /// V(t, q) of a site; the model of a site has no potential.
+    pub potential: Option<Expr<'g>>,
+    /// The order of a step of all sites; the model of a site has order 2 where that is composed.
+    pub order: Order,
+}
+
+/// The energy of an edge from a site to its neighbour in one direction.
+#[derive(Clone)]
+pub struct EdgeEnergy<'g> {
+    /// U, a function of the configurations at the places 0 and 1, the site and its neighbour. It may be of the group element
+    /// between them.
+    pub value: Expr<'g>,
+    /// The symbol of the spacing.
+    pub spacing: Expr<'g>,
+    /// The names of the leaves at both ends.
+    pub names: [Vec<String>; 2],
+    /// That element for each factor, a function of both configurations; empty where U is one.
+    pub element: Vec<Expr<'g>>,
+    /// The closure.
+    pub written: Written,
 }
 
 /// The data that turns the model of a site into a power.

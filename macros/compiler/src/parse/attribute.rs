@@ -57,10 +57,7 @@ fn read_item(stream: ParseStream, keys: &mut Keys) -> Result<(), Diagnostic> {
     }
     keys.has_unknown = true;
     let similar = nearest(&key.to_string(), KEYS.iter().map(|key| key.name)).and_then(found);
-    if let Some(later) = similar.filter(|similar| similar.comes_later()) {
-        return Err(Diagnostic::later(&key, format!("the key `{}`", later.name), None));
-    }
-    let known = KEYS.iter().filter(|key| !key.comes_later()).map(|key| key.name);
+    let known = KEYS.iter().map(|key| key.name);
     let help = match (expected::advice(&key), similar) {
         (Some(advice), _) => advice.to_string(),
         (None, Some(similar)) => format!("write `{}`", similar.name),
@@ -73,9 +70,6 @@ fn read_item(stream: ParseStream, keys: &mut Keys) -> Result<(), Diagnostic> {
 pub(super) fn read_value(key: &Ident, found: &Key, stream: ParseStream, keys: &mut Keys) -> Result<(), Diagnostic> {
     if !keys.give(key) {
         bail!(key, "`{key}` is given twice"; help "remove one of the two");
-    }
-    if found.comes_later() {
-        return Err(Diagnostic::later(key, format!("the key `{key}`"), None));
     }
     if stream.parse::<Token![=]>().is_err() {
         bail!(key, "the key `{key}` has no value"; help "write `{key} = {}`", found.example);

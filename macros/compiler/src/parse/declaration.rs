@@ -33,6 +33,8 @@ pub struct Declaration {
     pub force_on: Option<Closure>,
     /// The equations that the velocity obeys.
     pub constraints: Vec<Closure>,
+    /// The energies of the edges between sites of a field, one for each direction.
+    pub spaces: Vec<Closure>,
     /// The price and the bounds of a choice of inputs; `None` if there is no choice.
     pub control: Option<Choice>,
     /// The price of the end.
@@ -88,7 +90,7 @@ impl Declaration {
     /// All closures over the arguments of the action, the action first.
     pub fn closures(&self) -> impl Iterator<Item = &Closure> {
         let potential = self.potential.as_ref().and_then(Potential::closure);
-        let forces = self.force.iter().chain(&self.force_on).chain(&self.constraints);
+        let forces = self.force.iter().chain(&self.force_on).chain(&self.constraints).chain(&self.spaces);
         let energies = [Some(&self.action), Some(self.kinetic.closure()), potential];
         let control = self.control.iter().flat_map(|control| [Some(&control.price), control.bounds.as_ref()]);
         energies.into_iter().chain(control).flatten().chain(forces).chain(&self.endpoint).chain(&self.symmetries)
@@ -130,7 +132,8 @@ pub(super) fn assemble(input: &DeriveInput, mut keys: Keys, fields: Vec<Field>) 
     control::check_endpoint(&keys, control.as_ref());
     let [action, force, force_on, endpoint] =
         ["action", "force", "force_on", "endpoint"].map(|name| keys.closures.remove(name));
-    let [constraints, symmetries] = ["constraint", "symmetry"].map(|name| keys.lists.remove(name).unwrap_or_default());
+    let [constraints, spaces, symmetries] =
+        ["constraint", "space", "symmetry"].map(|name| keys.lists.remove(name).unwrap_or_default());
     let Keys { potential, groups, dials, methods, .. } = keys;
     let methods = methods::checked(&input.ident, methods, diagnostics);
     let action = action?;
@@ -146,6 +149,7 @@ pub(super) fn assemble(input: &DeriveInput, mut keys: Keys, fields: Vec<Field>) 
         force,
         force_on,
         constraints,
+        spaces,
         control,
         endpoint,
         symmetries,
@@ -195,7 +199,8 @@ impl fmt::Display for Declaration {
             None => {}
         }
         let control = self.control.iter().flat_map(|control| [Some(&control.price), control.bounds.as_ref()]).flatten();
-        let others = self.force.iter().chain(&self.force_on).chain(&self.constraints).chain(control);
+        let others =
+            self.force.iter().chain(&self.force_on).chain(&self.constraints).chain(&self.spaces).chain(control);
         others.chain(&self.endpoint).chain(&self.symmetries).try_for_each(|closure| entry(f, closure))?;
         for (name, value) in self.dials.given() {
             writeln!(f, "  {name:<10} = {}", value.value)?;

@@ -58,11 +58,9 @@ pub(super) enum Kind {
     /// Any other key. It has a function that reads it, and one that prints it and gives its place, if it was given.
     /// Last are the values from which it chooses, with meanings.
     Dial(fn(&mut Dials, Reader) -> Result<(), Diagnostic>, fn(&Dials) -> Option<Located<String>>, fn() -> Meanings),
-    /// Part of the language, but not of this version.
-    Later,
 }
 
-use Kind::{Closures, Dial, Later};
+use Kind::{Closures, Dial};
 
 const MECHANICS: &str = "`cost` or `lagrangian`";
 const PRICE: &str = "`cost`, the price of an input";
@@ -88,6 +86,8 @@ pub(super) const KEYS: [Key; 27] = [
         "A force as a covector of the configuration, in its shape. It takes the same arguments as `force`."),
     key("constraint", Closures, "|xi| [xi.z == 0]", "every motion is allowed", MECHANICS,
         "Equations that the motion obeys. With the velocity ξ among the arguments, a new name, they are affine in ξ, as for rolling without slipping. Without it they are equations of the configuration, as for joints. Both sides may be vectors, and a block with `let` ends in the list. An element `(0..3).map(|i| a == b)` is an equation for each number. `[closure, closure]` has both kinds."),
+    key("space", Closures, "[|dx, q, next| (next - q).norm_squared() / (2 * dx.powi(2))]", "a system without neighbours", MECHANICS,
+        "The energy of an edge from a site to its neighbour, in joules: one closure for each direction of space. The declaration is that of one site. The number of sites and their boundary are said at run time: `field.grid([64, 64])`. The first argument is a new name for the spacing of the direction, the last one for the configuration of the neighbour."),
     key("controls", Kind::Closure, "|u: Vector2| vector![u.x, u.y, 0]", "", PRICE,
         "The velocity that an input gives, in the basis of the group. It moves the configuration directly, without mass or momentum."),
     key("dynamics", Kind::Closure, "|h, x: Vector2, u: Vector1| x + h * vector![x.y, u.x]", "", PRICE,
@@ -124,7 +124,6 @@ pub(super) const KEYS: [Key; 27] = [
         "The scalar type: `f64`, `f32` or a type parameter of the struct. Fields and spaces that name a scalar decide it otherwise."),
     key("crate", Dial(|dials, value| value.path(&mut dials.krate), |dials| dials.krate.as_ref().map(super::spelling::tokens).map(somewhere), Vec::new), "::clebsch", "`::clebsch`", "",
         "The path of this crate, for a dependency that is renamed or re-exported."),
-    later("space"),
 ];
 
 type Text = &'static str;
@@ -138,11 +137,6 @@ const fn dial(name: Text, kind: Kind, example: Text, default: Text, needs: Text,
     Key { name, kind, example, default, needs, about, of_method: true }
 }
 
-/// A key of a later version.
-const fn later(name: Text) -> Key {
-    key(name, Later, "…", "", "", "")
-}
-
 /// A value as it is written, where it was given.
 fn text<T: ToString>(value: &Option<Located<T>>) -> Option<Located<String>> {
     value.as_ref().map(|located| located.to(located.value.to_string()))
@@ -154,10 +148,6 @@ fn somewhere(value: String) -> Located<String> {
 }
 
 impl Key {
-    pub fn comes_later(&self) -> bool {
-        matches!(self.kind, Kind::Later)
-    }
-
     /// The values that it chooses from, each with its meaning; none where it takes others.
     fn values(&self) -> Meanings {
         if let Dial(_, _, values) = self.kind { values() } else { Vec::new() }
@@ -239,7 +229,7 @@ pub(crate) fn keys_as_markdown(
     arguments: impl Fn(&str) -> Option<String>,
     refused: impl Fn(&str) -> Vec<String>,
 ) -> String {
-    let keys = || KEYS.iter().filter(|key| !key.comes_later());
+    let keys = || KEYS.iter();
     let head = "| key | example | default | needs |\n|---|---|---|---|\n";
     let table = keys().map(markdown_row).fold(head.to_string(), |table, row| table + &row);
     let sections = keys().map(|key| {
@@ -266,7 +256,7 @@ fn is_word(value: &str) -> bool {
 
 /// The documented items that stand for keys and for their words: empty modules.
 pub(crate) fn keys_as_rust() -> String {
-    let keys = KEYS.iter().filter(|key| !key.comes_later() && key.name != "crate");
+    let keys = KEYS.iter().filter(|key| key.name != "crate");
     let of_key = |key: &Key| {
         let (words, numbers): (Meanings, Meanings) = key.values().into_iter().partition(|(word, _)| is_word(word));
         let numbers: Vec<String> = numbers.iter().map(|(number, meaning)| format!("* {number}: {meaning}")).collect();

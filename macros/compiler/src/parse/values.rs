@@ -29,8 +29,6 @@ pub(super) fn read(name: &Ident, key: &Key, stream: ParseStream, keys: &mut Keys
         Kind::Potential => keys.potential = reader.closure(stream)?.map(Potential::Closure),
         Kind::Closures => keys.lists.extend([(key.name, reader.closures()?)]),
         Kind::Dial(read, ..) => read(&mut keys.dials, reader)?,
-        // by construction: keys that come later have no value read
-        Kind::Later => {}
     }
     Ok(())
 }

@@ -60,6 +60,21 @@ impl Group {
         }
     }
 
+    /// f⁻¹g, or g f⁻¹ with `from_left`. For rigid motions it is (RᵀS, Rᵀ(y − x)) of (R, x) and (S, y), or (S Rᵀ, y − S Rᵀx).
+    pub fn quotient<'g>(self, f: Expr<'g>, g: Expr<'g>, from_left: bool) -> Expr<'g> {
+        let Group::SpecialEuclidean(n) = self else {
+            let inverse = self.explicit_inverse(f);
+            return if from_left { self.compose(g, inverse) } else { self.compose(inverse, g) };
+        };
+        let [r, s] = [f, g].map(|element| element.block(0, 0, Shape::square(n)));
+        let [x, y] = [f, g].map(|element| element.block(0, n, Shape::vector(n)));
+        if from_left {
+            let turn = s * r.transpose();
+            return motion(turn, y - turn * x);
+        }
+        motion(r.transpose() * s, r.transpose() * (y - x))
+    }
+
     /// The tangent vector F·η, the derivative of F exp(εη): left translation of η.
     pub fn translate_left<'g>(self, f: Expr<'g>, eta: Expr<'g>) -> Expr<'g> {
         if self.is_translation() { eta } else { self.compose(f, eta) }

@@ -8,6 +8,7 @@ mod constraints;
 mod derivatives;
 mod ensembles;
 mod equations;
+mod fields;
 mod formulas;
 mod joints;
 mod matrices;

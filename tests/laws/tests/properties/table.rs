@@ -51,6 +51,14 @@ pub const PROPERTIES: &[(&str, &[Property])] = &[
         ("reactions_keep_joints_closed",                &["Joined::multipliers_of_joints", "Joined::reactions_of_joints", "Mobile::acceleration"]),
         ("rows_are_put_where_they_belong",              &["Rows::none", "Rows::put", "put_places"]),
     ]),
+    ("tests/laws/tests/properties/fields.rs", &[
+        ("grids_number_their_sites",              &["Grid::new", "Grid::sizes", "Grid::sites", "Grid::index", "Grid::place", "Grid::spacing", "Grid::spacings", "Lattice::sites", "Lattice::order", "Lattice::check"]),
+        ("sides_fix_their_sites",                 &["Grid::sides", "Grid::free", "Grid::fixed", "Grid::periodic", "Grid::is_fixed", "Domain::sides", "Domain::free", "Domain::fixed", "Domain::periodic", "Domain::lattice", "Lattice::has_fixed", "Lattice::is_fixed", "FieldStepper::lattice"]),
+        ("forces_of_edges_are_slopes",            &["Field::edge_energy", "Field::edge_forces", "Field::force_on_site", "Field::force_inside"]),
+        ("kicks_are_slopes_of_the_energy",        &["Lattice::kick", "Lattice::energy", "FieldStepper::energy", "Domain::spacing", "Domain::stepper"]),
+        ("fields_run_back",                       &["FieldStepper::step", "FieldStepper::advance", "FieldStepper::step_with", "FieldStepper::state", "FieldStepper::step_size", "FieldState::configuration", "FieldState::momentum", "FieldState::steps", "FieldState::time", "FieldState::into_storage", "Field::grid"]),
+        ("total_momenta_stay",                    &["FieldStepper::conserved", "FieldStepper::system", "Domain::various", "Population::each", "Population::number"]),
+    ]),
     ("tests/laws/tests/properties/derivatives.rs", &[
         ("tangent_maps_are_linear",      &["Tangent::apply", "Tangent::apply_transposed", "Tangent::then", "Tangent::identity", "Sensitivity::zero", "Sensitivity::after"]),
         ("tangent_maps_are_differences", &["Stepper::step_tangent", "Stepper::step_tangent_with", "Stepper::infinitesimal_motion"]),

@@ -133,7 +133,7 @@ pub(super) fn joints(formulas: &MechanicsFormulas<'_>) -> String {
 /// The conserved quantities, and those that are not known to be conserved.
 pub(super) fn conserved(formulas: &MechanicsFormulas<'_>) -> String {
     let symmetries = &formulas.symmetries;
-    let summed = if formulas.model.power.is_some() { ", summed over all sites" } else { "" };
+    let summed = if formulas.has_sites() { ", summed over all sites" } else { "" };
     let mut text = match symmetries.conserved.as_slice() {
         [] => {
             let known = if symmetries.undecided { " that could be proved" } else { "" };
@@ -170,7 +170,7 @@ fn for_any_axis(sentences: &[String]) -> Vec<String> {
 /// The parts that this problem does not need, and the facts that were not proved.
 pub(super) fn left_out(formulas: &MechanicsFormulas<'_>) -> String {
     let mut text = String::new();
-    if formulas.potential_energy.is_zero() && formulas.links.is_empty() {
+    if formulas.moves_freely() {
         text += "Left out: the kick, as there is no potential.\n";
     }
     text += if formulas.model.emit.momentum {

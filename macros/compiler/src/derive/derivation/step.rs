@@ -12,8 +12,9 @@ const COMPENSATED: &str = "Sums are compensated: the rounding errors of q and N 
 pub(super) fn scheme(formulas: &MechanicsFormulas<'_>, lowered: &Lowered) -> String {
     let model = &formulas.model;
     let mut text = format!("{}\n{}", order(formulas), stagger(formulas));
-    if let Some(stages) = formulas.stages().or_else(|| formulas.stages_of_sites()) {
-        let is_free = formulas.potential_energy.is_zero() && formulas.links.is_empty();
+    if let Some(stages) = formulas.stages().or_else(|| formulas.stages_of_sites()).or_else(|| stages_of_field(formulas))
+    {
+        let is_free = formulas.moves_freely();
         text += &format!(
             "{stages} such steps of sizes γ_i h, the same forwards and backwards and some of them negative, make a step of order {}{}.\n",
             model.declared_order(),
@@ -26,7 +27,7 @@ pub(super) fn scheme(formulas: &MechanicsFormulas<'_>, lowered: &Lowered) -> Str
     if let Some(splitting) = &formulas.splitting {
         text = split(model.order, splitting.has_gradient);
     }
-    if formulas.is_exact && !formulas.links.is_empty() {
+    if formulas.is_exact && !formulas.moves_freely() {
         text += "Between kicks a site moves exactly.\n";
     } else if formulas.is_exact {
         text = "No potential acts, and a step is the exact motion of the time h: there is no error in h.\n".to_string();
@@ -43,6 +44,11 @@ pub(super) fn scheme(formulas: &MechanicsFormulas<'_>, lowered: &Lowered) -> Str
         );
     }
     text
+}
+
+/// Of how many steps of second order a step of all sites of a field is composed, where it is.
+fn stages_of_field(formulas: &MechanicsFormulas<'_>) -> Option<usize> {
+    formulas.model.field.as_ref()?.order.stages()
 }
 
 /// How the momentum equations of a step are solved; both halves of a composed step tell the same, once.
@@ -77,7 +83,7 @@ fn order(formulas: &MechanicsFormulas<'_>) -> &'static str {
         (Order::Second, 1) if formulas.lagrangian.couples => {
             "The discrete Lagrangian is time-symmetric, ℓd(q, F; h) = −ℓd(Φ_F q, F⁻¹; −h), so the step is of second order. The cost couples configuration and group element: r(F) = T*∂_F K − J(q, ∂_q K) = N is solved, and N⁺ is the other trivialisation of ∂_F K."
         }
-        (Order::Second, 1) if formulas.potential_energy.is_zero() && formulas.links.is_empty() => {
+        (Order::Second, 1) if formulas.moves_freely() => {
             "The discrete Lagrangian is time-symmetric, K(h, F) = −K(−h, F⁻¹), so the step is of second order."
         }
         (Order::Second, 1) => {

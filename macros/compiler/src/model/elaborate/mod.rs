@@ -3,6 +3,7 @@
 mod access;
 mod block;
 mod constructors;
+mod element;
 mod errors;
 mod markdown;
 mod methods;

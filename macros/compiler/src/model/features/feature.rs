@@ -47,6 +47,7 @@ features! {
     ForceOn "`force_on`",
     Constraint "`constraint`",
     Symmetry "`symmetry`",
+    Field "`space`",
     Controls "`controls`",
     Dynamics "`dynamics`",
     Effort "`effort`",

@@ -15,12 +15,12 @@ const WITHOUT_MATRICES: &[Feature] =
 
 /// The refused features, the others, the message, the reason, and the replacement.
 #[rustfmt::skip]
-pub(super) const ROWS: [Row; 63] = [
+pub(super) const ROWS: [Row; 70] = [
     // inputs move the configuration
     row(&[Dynamics], &[Controls],
         "there are `controls` and `dynamics`, but one thing moves a configuration", "",
         "keep `controls` for motions of a group, `dynamics` for any map of a vector space"),
-    row(&[Lagrangian, Potential, Force, ForceOn, Constraint, Symmetry, Order, Tolerance, Iterations, Summation, Isotropy, Signature, Chart, Method], &[Controls, Dynamics],
+    row(&[Lagrangian, Potential, Force, ForceOn, Constraint, Field, Symmetry, Order, Tolerance, Iterations, Summation, Isotropy, Signature, Chart, Method], &[Controls, Dynamics],
         "a system with {beside} has no {refused}",
         "the inputs move the configuration directly, without mass, momentum or force",
         "leave it out, or leave out {beside}"),
@@ -158,6 +158,31 @@ pub(super) const ROWS: [Row; 63] = [
         "a power has no constraint with a velocity yet", LATER,
         "write a number in place of the const generic; equations of places alone are joints"),
     row(&[Method], &[Power], "a power has no other methods yet", LATER, ALL_SITES),
+    // fields
+    row(&[Field], &[Power],
+        "{refused} makes a declaration that of one site, and this one has an array of them", "",
+        "write the types of one site: how many there are is said at run time, `field.grid([64])`"),
+    row(&[Constraint], &[Field],
+        "the sites of a field cannot have a constraint yet", LATER,
+        "leave out the constraint; joints of a chain are for `[…; N]` with a const generic"),
+    row(&[Effort, Endpoint, Tangent, Boundary], &[Field],
+        "a field has no {refused}",
+        "the number of its sites is known at run time alone, and so is the size of that derivative",
+        "leave it out; for a few sites write `[…; 8]` in place of `space`"),
+    row(&[Momentum], &[Field],
+        "a field has no {refused}",
+        "sites without configurations do not act on each other",
+        "leave out the word `momentum`, or `space`"),
+    row(&[FirstOrder, Sixteenth], &[Field],
+        "a step of a field has order 2, 4, 6 or 8, not {name}",
+        "its sites are kicked before and after they move, half and half",
+        ORDER_2),
+    row(&[OpaquePotential, Symmetry, Summation, Method], &[Field],
+        "{refused} is not for a field yet", LATER,
+        "leave it out"),
+    row(&[Matrices], &[Field],
+        "the sites of a field have no matrix code yet", LATER,
+        UNROLLED),
     // groups
     row(&[Symmetry], &[LargeGroup],
         "a symmetry is offered, but `{name}` has more than 64 dimensions",

@@ -1,0 +1,85 @@
+//! The implementation of `Field`: the energies of the edges between sites, and the forces on sites.
+
+use clebsch_symbolic::IntoList;
+use proc_macro2::TokenStream;
+use quote::{format_ident, quote};
+
+use super::function::Body;
+use super::functions::FIELD;
+use super::scope::size;
+use super::{Emitter, flag};
+use crate::derive::Id;
+
+impl Emitter<'_, '_> {
+    /// The implementation of `Field`, where there are edges.
+    pub(super) fn field(&self) -> TokenStream {
+        let Some(field) = &self.formulas.field else { return TokenStream::new() };
+        let count = field.edges.len();
+        let directions = size(count);
+        let words = |word: &str| match word {
+            "Index" => Some(quote!(::core::primitive::usize)),
+            "Spacings" => Some(quote!([T; #directions])),
+            "Neighbours" => Some(quote!([&Q; #directions])),
+            _ => None,
+        };
+        let scope = self.scope_of_system();
+        let ends = quote!(let (q0, q1) = (q, next););
+        // the group element of an edge, and its coordinates
+        let element = self.program.find(Id::EdgeElement).map(|kernel| {
+            let (locals, element) = (scope.locals(kernel), scope.element(kernel, 0));
+            let coordinates = self.program.find(Id::EdgeCoordinates).map(|kernel| {
+                let coordinates = scope.body(kernel);
+                quote!(let x: &Mu = &{ #coordinates };)
+            });
+            quote!(let f: &F = &{ #locals #element }; #coordinates)
+        });
+        // one arm for each direction
+        let of_edges = |id: fn(usize) -> Id, value: &dyn Fn(usize) -> TokenStream| {
+            let arms = (0..count).map(|direction| {
+                let kernel = self.program.kernel(id(direction));
+                let element = element.as_ref().filter(|_| !field.edges[direction].element.is_empty());
+                let (locals, value) = (scope.locals(kernel), value(direction));
+                quote!(#element #locals #value)
+            });
+            let mut arms = arms.into_list();
+            let last = arms.pop();
+            let numbers = (0..arms.len()).map(size);
+            if arms.is_empty() {
+                quote!(#ends #last)
+            } else {
+                quote!(#ends match direction { #(#numbers => { #arms })* _ => { #last } })
+            }
+        };
+        let functions = self.functions(FIELD, (0, 0), &words, |function, kernel| {
+            Some(match function.name {
+                "edge_energy" => Body::from(of_edges(Id::EdgeEnergy, &|direction| {
+                    scope.scalar(self.program.kernel(Id::EdgeEnergy(direction)), 0)
+                })),
+                "edge_forces" => Body::from(of_edges(Id::EdgeForces, &|direction| {
+                    let kernel = self.program.kernel(Id::EdgeForces(direction));
+                    let [own, next] = [0, 1].map(|output| scope.output(kernel, output));
+                    quote!((#own, #next))
+                })),
+                "force_inside" => {
+                    let places = (0..count).map(|direction| {
+                        let (after, before) =
+                            (format_ident!("q{}", 1 + 2 * direction), format_ident!("q{}", 2 + 2 * direction));
+                        let direction = size(direction);
+                        quote!(let (#after, #before) = (after[#direction], before[#direction]);)
+                    });
+                    function.computes(&scope, kernel?).after(Some(quote!(let q0 = q; #(#places)*)))
+                }
+                _ => function.computes(&scope, kernel?),
+            })
+        });
+        let order = self.model.declared_order().number();
+        let flags =
+            [flag("GATHERS", self.program.gathers_edges()), flag("HAS_POTENTIAL", !field.force_of_site.is_empty())];
+        let items = quote! {
+            #(#flags)*
+            const ORDER_OF_FIELD: ::core::primitive::u32 = #order;
+            #functions
+        };
+        self.target.derived(Some(quote!(runtime::Field<#directions>)), items)
+    }
+}

@@ -1,0 +1,139 @@
+//! Fields: one declared site at each place of a grid, and an energy for each edge between neighbours.
+//!
+//! ```text
+//! S = Σ over edges in time of K(F) − h Σ over edges in space of U(q, q⁺) − h Σ over sites of V(q)
+//!
+//! N ← N − ½h (J(q, ∂V) + Σ over edges at q of J(q, ∂U)),    each site moves,    the same again
+//! ```
+//! A step is explicit in space: each site moves by itself. It is symmetric in time and of second order. It conserves the
+//! product of the symplectic forms of all sites, and the total momentum of each symmetry. Orders 4, 6 and 8 are compositions of it.
+
+mod domain;
+mod grid;
+mod sites;
+mod stepper;
+mod sweep;
+
+pub use domain::{Domain, Lattice};
+pub use grid::{Grid, Side, Sides};
+#[cfg(feature = "alloc")]
+pub use sites::Various;
+pub use sites::{Alike, Population};
+pub use stepper::{FieldState, FieldStepper};
+
+use crate::parts::{Mu, Q, T};
+use crate::space::plus;
+use crate::{Clebsch, Space};
+
+/// A site of a field with neighbours in D directions of space. `#[derive(Clebsch)]` implements it where there is the key `space`.
+///
+/// ```
+/// use clebsch::{Clebsch, Field};
+/// use nalgebra::Vector1;
+///
+/// /// A string of density 1 and tension 1, its displacement x.
+/// #[derive(Clebsch, Clone, Debug)]
+/// #[clebsch(
+///     action = |a: Translation<1>, x: Vector1| x + a,
+///     cost   = |h, a| a.norm_squared() / (2 * h),
+///     space  = |dx, x, next| (next - x).norm_squared() / (2 * dx.powi(2)),
+/// )]
+/// struct Strand;
+///
+/// let energy = Strand.edge_energy(0, &[0.5], &Vector1::new(1.0), &Vector1::new(2.0));
+/// assert_eq!(energy, 2.0);
+/// ```
+///
+/// One site by itself is not stepped. This does not compile:
+///
+/// ```compile_fail
+/// # use clebsch::Clebsch;
+/// # use nalgebra::Vector1;
+/// # #[derive(Clebsch, Clone, Debug)]
+/// # #[clebsch(
+/// #     action = |a: Translation<1>, x: Vector1| x + a,
+/// #     cost   = |h, a| a.norm_squared() / (2 * h),
+/// #     space  = |dx, x, next| (next - x).norm_squared() / (2 * dx.powi(2)),
+/// # )]
+/// # struct Strand;
+/// let stepper = Strand.stepper(0.1);
+/// ```
+#[diagnostic::on_unimplemented(
+    message = "`{Self}` is no field with {D} directions of space",
+    note = "a field has an energy for each direction, `space = [|dx, q, next| …, |dy, q, next| …]`, and a size for each, `grid([64, 64])`"
+)]
+pub trait Field<const D: usize>: Clebsch {
+    /// Whether the force on a site is found from all of its edges at once, by [`force_inside`](Self::force_inside).
+    #[doc(hidden)]
+    const GATHERS: bool;
+
+    /// Whether a site has a potential of its own.
+    #[doc(hidden)]
+    const HAS_POTENTIAL: bool;
+
+    /// The order of a step of all sites: 2, 4, 6 or 8.
+    const ORDER_OF_FIELD: u32;
+
+    /// The energy U of the edge from `q` to its neighbour `next` in a direction. `spacing` has the spacings of all directions.
+    fn edge_energy(&self, direction: usize, spacing: &[T<Self>; D], q: &Q<Self>, next: &Q<Self>) -> T<Self>;
+
+    /// The forces of this edge: −J(q, ∂₁U) on its site, and −J(next, ∂₂U) on the neighbour.
+    fn edge_forces(
+        &self,
+        direction: usize,
+        spacing: &[T<Self>; D],
+        q: &Q<Self>,
+        next: &Q<Self>,
+    ) -> (Mu<Self>, Mu<Self>);
+
+    /// The force of the potential on a site, −J(q, ∂V); 0 as provided.
+    #[inline]
+    fn force_on_site(&self, _t: T<Self>, _q: &Q<Self>) -> Mu<Self> {
+        Space::origin()
+    }
+
+    /// The force on a site between the neighbours `before` and `after` it in each direction: that of its potential, and those of
+    /// all edges.
+    fn force_inside(
+        &self,
+        t: T<Self>,
+        spacing: &[T<Self>; D],
+        q: &Q<Self>,
+        before: &[&Q<Self>; D],
+        after: &[&Q<Self>; D],
+    ) -> Mu<Self> {
+        let mut force = self.force_on_site(t, q);
+        for d in 0..D {
+            force = plus(&force, &self.edge_forces(d, spacing, before[d], q).1);
+            force = plus(&force, &self.edge_forces(d, spacing, q, after[d]).0);
+        }
+        force
+    }
+
+    /// A grid with so many sites in each direction, free at its ends, with the spacing 1.
+    ///
+    /// ```
+    /// # use clebsch::{Clebsch, Field};
+    /// # use nalgebra::Vector1;
+    /// # #[derive(Clebsch, Clone, Debug)]
+    /// # #[clebsch(
+    /// #     action = |a: Translation<1>, x: Vector1| x + a,
+    /// #     cost   = |h, a| a.norm_squared() / (2 * h),
+    /// #     space  = |dx, x, next| (next - x).norm_squared() / (2 * dx.powi(2)),
+    /// # )]
+    /// # struct Strand;
+    /// let stepper = Strand.grid([100]).spacing([0.01]).fixed().stepper(0.005)?;
+    /// let shape = |i: usize| Vector1::new((core::f64::consts::PI * i as f64 / 99.0).sin());
+    /// let mut state = stepper.state((0..100).map(shape).collect::<Vec<_>>(), vec![Vector1::zeros(); 100])?;
+    /// let energy = stepper.energy(&state)?;
+    /// stepper.advance(&mut state, 1000)?;
+    /// assert!((stepper.energy(&state)? / energy - 1.0).abs() < 1e-3);
+    /// # Ok::<(), clebsch::SiteError>(())
+    /// ```
+    fn grid(&self, sizes: [usize; D]) -> Domain<Self, Grid<T<Self>, D>>
+    where
+        Self: Clone,
+    {
+        Domain::new(self.clone(), Grid::new(sizes))
+    }
+}

@@ -1,0 +1,179 @@
+//! A field on a lattice, before it has a step size.
+
+use super::{Alike, Field, FieldStepper, Grid, Population, Sides};
+use crate::fields::getters;
+use crate::parts::{Mu, Q, T};
+use crate::{Clebsch, Error};
+use core::fmt::{self, Debug, Formatter};
+
+/// The places of the sites of a field, and the edges between them. It is a [`Grid`].
+///
+/// ```
+/// # use clebsch::{Clebsch, Grid, Lattice};
+/// # use nalgebra::Vector1;
+/// # #[derive(Clebsch, Clone, Debug)]
+/// # #[clebsch(
+/// #     action = |a: Translation<1>, x: Vector1| x + a,
+/// #     cost   = |h, a| a.norm_squared() / (2 * h),
+/// #     space  = |dx, x, next| (next - x).norm_squared() / (2 * dx.powi(2)),
+/// # )]
+/// # struct Strand;
+/// fn sites<G: Lattice<Strand>>(lattice: &G) -> usize {
+///     lattice.sites()
+/// }
+///
+/// assert_eq!(sites(&Grid::new([12])), 12);
+/// ```
+pub trait Lattice<S: Clebsch>: Clone {
+    /// The number of sites.
+    fn sites(&self) -> usize;
+
+    /// Whether a site does not move.
+    fn is_fixed(&self, site: usize) -> bool;
+
+    /// Whether any site does not move.
+    fn has_fixed(&self) -> bool;
+
+    /// Whether this can be the lattice of a field.
+    ///
+    /// # Errors
+    /// [`Error::EmptyGrid`] or [`Error::Spacing`].
+    fn check(&self) -> Result<(), Error>;
+
+    /// Adds the forces on all sites at a time, times a weight, to their momenta. `site` gives the parameters of a site, which may be alike.
+    #[doc(hidden)]
+    fn kick<'s>(&self, site: (impl Fn(usize) -> &'s S + Copy, bool), at: (T<S>, T<S>), q: &[Q<S>], mu: &mut [Mu<S>])
+    where
+        S: 's;
+
+    /// The energy of all edges.
+    #[doc(hidden)]
+    fn energy<'s>(&self, site: impl Fn(usize) -> &'s S + Copy, q: &[Q<S>]) -> T<S>
+    where
+        S: 's;
+
+    /// The order of a step.
+    #[doc(hidden)]
+    fn order() -> u32;
+}
+
+/// A field on a lattice. Made by [`Field::grid`].
+///
+/// ```
+/// use clebsch::{Clebsch, Error, Field};
+/// use nalgebra::Vector1;
+///
+/// /// A string, its displacement x.
+/// #[derive(Clebsch, Clone, Debug)]
+/// #[clebsch(
+///     action = |a: Translation<1>, x: Vector1| x + a,
+///     cost   = |h, a| a.norm_squared() / (2 * h),
+///     space  = |dx, x, next| (next - x).norm_squared() / (2 * dx.powi(2)),
+/// )]
+/// struct Strand;
+///
+/// let ring = Strand.grid([100]).spacing([0.01]).periodic();
+/// assert_eq!(ring.lattice().sites(), 100);
+/// assert!(ring.stepper(0.005).is_ok());
+///
+/// let refused = Strand.grid([100]).spacing([0.0]).stepper(0.005).unwrap_err();
+/// assert_eq!(refused, Error::Spacing { direction: 0, value: 0.0 });
+/// ```
+#[derive(Clone)]
+pub struct Domain<S: Clone, G, P: Population = Alike> {
+    systems: P::Of<S>,
+    lattice: G,
+}
+
+impl<S: Clone, G: Debug, P: Population> Debug for Domain<S, G, P> {
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Domain").field("lattice", &self.lattice).finish_non_exhaustive()
+    }
+}
+
+impl<S: Clebsch + Clone, G> Domain<S, G> {
+    pub(super) fn new(system: S, lattice: G) -> Self {
+        Self { systems: [system], lattice }
+    }
+}
+
+impl<S: Clebsch + Clone, G, P: Population> Domain<S, G, P> {
+    getters! {
+        /// The places of the sites.
+        ref lattice: G;
+    }
+
+    /// A stepper of step size `h`.
+    ///
+    /// # Errors
+    /// [`Error::StepSize`], [`Error::EmptyGrid`], [`Error::Spacing`], and those of the parameters, as for
+    /// [`Clebsch::stepper`].
+    pub fn stepper(self, h: T<S>) -> Result<FieldStepper<S, G, P>, Error>
+    where
+        G: Lattice<S>,
+    {
+        FieldStepper::new(self.systems, self.lattice, h)
+    }
+}
+
+impl<S: Field<D> + Clone, P: Population, const D: usize> Domain<S, Grid<T<S>, D>, P> {
+    /// The same with these spacings, in metres for SI units.
+    #[must_use]
+    pub fn spacing(self, spacing: [T<S>; D]) -> Self {
+        Self { lattice: self.lattice.spacing(spacing), ..self }
+    }
+
+    /// The same with these sides in each direction.
+    #[must_use]
+    pub fn sides(self, sides: [Sides; D]) -> Self {
+        Self { lattice: self.lattice.sides(sides), ..self }
+    }
+
+    /// The same, periodic in each direction.
+    #[must_use]
+    pub fn periodic(self) -> Self {
+        Self { lattice: self.lattice.periodic(), ..self }
+    }
+
+    /// The same with free sides in each direction.
+    #[must_use]
+    pub fn free(self) -> Self {
+        Self { lattice: self.lattice.free(), ..self }
+    }
+
+    /// The same with fixed sides in each direction: their sites do not move.
+    #[must_use]
+    pub fn fixed(self) -> Self {
+        Self { lattice: self.lattice.fixed(), ..self }
+    }
+}
+
+#[cfg(feature = "alloc")]
+impl<S: Field<D> + Clone, const D: usize> Domain<S, Grid<T<S>, D>> {
+    /// The same with parameters for each site by its place. The energy of an edge has those of the site at its start.
+    ///
+    /// ```
+    /// use clebsch::{Clebsch, Field};
+    /// use nalgebra::Vector1;
+    ///
+    /// /// A string of beads, its displacement x.
+    /// #[derive(Clebsch, Clone, Debug)]
+    /// #[clebsch(
+    ///     action = |a: Translation<1>, x: Vector1| x + a,
+    ///     cost   = |h, a| self.mass * a.norm_squared() / (2 * h),
+    ///     space  = |dx, x, next| (next - x).norm_squared() / (2 * dx),
+    /// )]
+    /// struct Beads { mass: f64 }
+    ///
+    /// // half a mass at each end
+    /// let mass = |[i]: [usize; 1]| Beads { mass: if i == 0 || i == 9 { 0.5 } else { 1.0 } };
+    /// let stepper = Beads { mass: 1.0 }.grid([10]).various(mass).stepper(0.1)?;
+    /// let state = stepper.state(vec![Vector1::zeros(); 10], vec![Vector1::new(1.0); 10])?;
+    /// assert_eq!(stepper.energy(&state)?, 8.0 / 2.0 + 2.0);
+    /// # Ok::<(), clebsch::SiteError>(())
+    /// ```
+    pub fn various(self, mut site: impl FnMut([usize; D]) -> S) -> Domain<S, Grid<T<S>, D>, super::Various> {
+        let systems = (0..self.lattice.sites()).map(|index| site(self.lattice.split(index))).collect();
+        Domain { systems, lattice: self.lattice }
+    }
+}

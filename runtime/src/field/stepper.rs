@@ -1,0 +1,450 @@
+//! Steps of all sites of a field, in place.
+
+use super::{Alike, Lattice, Population};
+use crate::fields::getters;
+use crate::parts::{Mu, Q, T, U};
+use crate::scheme::{At, Constants, OfOrderEight, OfOrderFour, OfOrderSix, Scheme, Sizes, moved};
+use crate::stepper::{check_momentum, check_on_orbit, check_step_size};
+use crate::{Clebsch, Conserved, Conserves, Declared, Error, Method, Scalar, SiteError, Space, Time};
+use core::fmt::{self, Debug, Formatter};
+use num_traits::Zero;
+
+/// The most sizes of the parts of a step: those of order 8.
+const SIZES: usize = 9;
+
+/// A field on a lattice with a step size.
+///
+/// Made by [`Domain::stepper`](super::Domain::stepper). One stepper serves any number of states.
+///
+/// ```
+/// # use clebsch::{Clebsch, Field};
+/// # use nalgebra::Vector1;
+/// # #[derive(Clebsch, Clone, Debug)]
+/// # #[clebsch(
+/// #     action = |a: Translation<1>, x: Vector1| x + a,
+/// #     cost   = |h, a| a.norm_squared() / (2 * h),
+/// #     space  = |dx, x, next| (next - x).norm_squared() / (2 * dx.powi(2)),
+/// # )]
+/// # struct Strand;
+/// let stepper = Strand.grid([4]).spacing([0.5]).periodic().stepper(0.1)?;
+/// let mut state = stepper.state([Vector1::zeros(); 4], [Vector1::new(2.0); 4])?;
+/// stepper.advance(&mut state, 10)?;
+/// assert!((state.configuration()[3].x - 2.0).abs() < 1e-14); // all move alike
+/// # Ok::<(), clebsch::SiteError>(())
+/// ```
+#[derive(Clone)]
+pub struct FieldStepper<S: Clebsch + Clone, G, P: Population = Alike> {
+    systems: P::Of<S>,
+    h: T<S>,
+    lattice: G,
+    stages: [Option<Stage<S, P>>; SIZES],
+}
+
+impl<S: Clebsch + Clone, G: Debug, P: Population> Debug for FieldStepper<S, G, P> {
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        f.debug_struct("FieldStepper").field("h", &self.h).field("lattice", &self.lattice).finish_non_exhaustive()
+    }
+}
+
+/// A part of a step: γ_i h with the constants of steps of this size. These are γ_1, …, γ_k, and the same backwards.
+#[derive(Clone)]
+struct Stage<S: Clebsch, P: Population> {
+    h: T<S>,
+    constants: P::Of<Constants<S>>,
+}
+
+/// The state of a field: a configuration q and a momentum N for each site, in storage of the user's choice.
+///
+/// `Points` and `Momenta` are vectors, arrays or slices of one configuration or momentum for each site.
+///
+/// ```
+/// # use clebsch::{Clebsch, Field};
+/// # use nalgebra::Vector1;
+/// # #[derive(Clebsch, Clone, Debug)]
+/// # #[clebsch(
+/// #     action = |a: Translation<1>, x: Vector1| x + a,
+/// #     cost   = |h, a| a.norm_squared() / (2 * h),
+/// #     space  = |dx, x, next| (next - x).norm_squared() / (2 * dx.powi(2)),
+/// # )]
+/// # struct Strand;
+/// let stepper = Strand.grid([3]).stepper(0.1)?;
+/// let (mut places, mut momenta) = ([Vector1::zeros(); 3], [Vector1::new(1.0); 3]);
+/// let mut state = stepper.state(&mut places[..], &mut momenta[..])?;
+/// stepper.step(&mut state)?;
+/// assert_eq!((state.steps(), state.momentum().len()), (1, 3));
+/// # Ok::<(), clebsch::SiteError>(())
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FieldState<Points, Momenta, Time = ()> {
+    configuration: Points,
+    momentum: Momenta,
+    time: Time,
+    steps: u64,
+    /// The error after which the state is that of no time.
+    failed: Option<SiteError>,
+}
+
+impl<Points, Momenta, C> FieldState<Points, Momenta, C> {
+    /// The storage: configurations and momenta.
+    pub fn into_storage(self) -> (Points, Momenta) {
+        (self.configuration, self.momentum)
+    }
+
+    getters! {
+        /// The configurations of all sites.
+        ref configuration: Points;
+        /// The momenta of all sites.
+        ref momentum: Momenta;
+        /// The number of steps that it has made, at most 2⁶⁴ − 1.
+        copy steps: u64;
+    }
+}
+
+impl<Points, Momenta, C> FieldState<Points, Momenta, C> {
+    /// The time t; 0 for a field that does not depend on it.
+    pub fn time<T: Scalar>(&self) -> T
+    where
+        C: Time<T>,
+    {
+        self.time.now()
+    }
+}
+
+/// The configurations and the momenta of a state.
+type Parts<'s, S> = (&'s [Q<S>], &'s [Mu<S>]);
+
+/// The error at a site.
+fn at<V>(site: usize, result: Result<V, Error>) -> Result<V, SiteError> {
+    result.map_err(|error| SiteError { site: Some(site), error })
+}
+
+impl From<Error> for SiteError {
+    fn from(error: Error) -> Self {
+        SiteError { site: None, error }
+    }
+}
+
+impl<S: Clebsch + Clone, G: Lattice<S>, P: Population> FieldStepper<S, G, P> {
+    pub(super) fn new(systems: P::Of<S>, lattice: G, h: T<S>) -> Result<Self, Error> {
+        lattice.check()?;
+        check_step_size(h)?;
+        let sizes: &[f64] = match G::order() {
+            4 => &OfOrderFour::SIZES,
+            6 => &OfOrderSix::SIZES,
+            8 => &OfOrderEight::SIZES,
+            _ => &[1.0],
+        };
+        let mut stages = [const { None }; SIZES];
+        for (stage, &size) in stages.iter_mut().zip(sizes) {
+            let h = T::<S>::from_f64(size) * h;
+            let constants = P::each(&systems, |_, system: &S| S::Scheme::constants(system, h))?;
+            *stage = Some(Stage { h, constants });
+        }
+        Ok(Self { systems, h, lattice, stages })
+    }
+
+    getters! {
+        /// The places of the sites.
+        ref lattice: G;
+    }
+
+    /// The declared site with the parameters of a site; `None` if there is none of this number.
+    #[inline]
+    pub fn system(&self, site: usize) -> Option<&S> {
+        self.systems.as_ref().get(P::number(site))
+    }
+
+    /// The step size h, seconds in SI units.
+    #[inline]
+    pub fn step_size(&self) -> T<S> {
+        self.h
+    }
+
+    /// The step of a composed one with its size and constants; `None` after the last.
+    fn stage(&self, number: usize) -> Option<&Stage<S, P>> {
+        let count = self.stages.iter().flatten().count();
+        let index = if number < count { number } else { (2 * count).checked_sub(number + 2)? };
+        self.stages.get(index)?.as_ref()
+    }
+
+    /// The parameters of all sites in their order, with the constants of one part of a step.
+    fn all<'a>(&'a self, stage: &'a Stage<S, P>) -> impl Iterator<Item = (&'a S, &'a Constants<S>)> {
+        let (systems, constants) = (self.systems.as_ref(), stage.constants.as_ref());
+        (0..self.lattice.sites()).map_while(|i| Some((systems.get(P::number(i))?, constants.get(P::number(i))?)))
+    }
+
+    /// The state with a configuration and a momentum for each site. Where the time matters it starts at 0.
+    ///
+    /// The momenta of sites on a fixed side are not read; they are 0 in the state.
+    ///
+    /// # Errors
+    /// [`Error::NumberOfSites`] for storage of another length than there are sites, and those of
+    /// [`Stepper::state`], with the site.
+    pub fn state<Points, Momenta>(
+        &self,
+        configuration: Points,
+        momentum: Momenta,
+    ) -> Result<FieldState<Points, Momenta, S::Time>, SiteError>
+    where
+        Points: AsRef<[Q<S>]> + AsMut<[Q<S>]>,
+        Momenta: AsRef<[Mu<S>]> + AsMut<[Mu<S>]>,
+    {
+        let time = Time::at(Zero::zero());
+        let mut state = FieldState { configuration, momentum, time, steps: 0, failed: None };
+        let (q, mu) = (state.configuration.as_ref(), state.momentum.as_mut());
+        self.check_lengths(q, mu)?;
+        self.clear_fixed(mu);
+        for (i, ((q, mu), system)) in q.iter().zip(&*mu).zip(self.each()).enumerate() {
+            at(i, check_momentum(system, q, mu).and_then(|()| system.check_kinetic_energy(Zero::zero(), q)))?;
+        }
+        Ok(state)
+    }
+
+    /// The parameters of all sites in their order.
+    fn each(&self) -> impl Iterator<Item = &S> {
+        let systems = self.systems.as_ref();
+        (0..self.lattice.sites()).map_while(|i| systems.get(P::number(i)))
+    }
+
+    fn check_lengths(&self, q: &[Q<S>], mu: &[Mu<S>]) -> Result<(), SiteError> {
+        let sites = self.lattice.sites();
+        match [q.len(), mu.len()].into_iter().find(|&found| found != sites) {
+            Some(found) => Err(Error::NumberOfSites { found, sites }.into()),
+            None => Ok(()),
+        }
+    }
+
+    /// The momenta of sites that do not move, to 0.
+    fn clear_fixed(&self, mu: &mut [Mu<S>]) {
+        if self.lattice.has_fixed() {
+            let fixed = mu.iter_mut().enumerate().filter(|(i, _)| self.lattice.is_fixed(*i));
+            fixed.for_each(|(_, mu)| *mu = Space::origin());
+        }
+    }
+
+    /// One step, in place.
+    ///
+    /// # Errors
+    /// Those of [`Stepper::step`], with the site. The state is then that of no time: each further step gives the same error.
+    pub fn step<Points, Momenta>(&self, state: &mut FieldState<Points, Momenta, S::Time>) -> Result<(), SiteError>
+    where
+        Points: AsRef<[Q<S>]> + AsMut<[Q<S>]>,
+        Momenta: AsRef<[Mu<S>]> + AsMut<[Mu<S>]>,
+    {
+        self.advance(state, 1)
+    }
+
+    /// So many steps, in place. Kicks that follow each other are one.
+    ///
+    /// # Errors
+    /// As [`step`](Self::step).
+    pub fn advance<Points, Momenta>(
+        &self,
+        state: &mut FieldState<Points, Momenta, S::Time>,
+        steps: u64,
+    ) -> Result<(), SiteError>
+    where
+        Points: AsRef<[Q<S>]> + AsMut<[Q<S>]>,
+        Momenta: AsRef<[Mu<S>]> + AsMut<[Mu<S>]>,
+    {
+        self.tried(state, steps, None)
+    }
+
+    /// One step, in place, during which the input of the forces on each site is that of `inputs`.
+    ///
+    /// # Errors
+    /// As [`step`](Self::step). [`Error::NumberOfSites`] for inputs of another number, and [`Error::NotFinite`] for one that is
+    /// not finite, with the site; the state is then unchanged.
+    pub fn step_with<Points, Momenta>(
+        &self,
+        state: &mut FieldState<Points, Momenta, S::Time>,
+        inputs: &[U<S>],
+    ) -> Result<(), SiteError>
+    where
+        Points: AsRef<[Q<S>]> + AsMut<[Q<S>]>,
+        Momenta: AsRef<[Mu<S>]> + AsMut<[Mu<S>]>,
+    {
+        let (found, sites) = (inputs.len(), self.lattice.sites());
+        if found != sites {
+            return Err(Error::NumberOfSites { found, sites }.into());
+        }
+        if let Some(site) = inputs.iter().position(|u| !u.all_finite()) {
+            return at(site, Err(Error::NotFinite { name: "the input" }));
+        }
+        self.tried(state, 1, Some(inputs))
+    }
+
+    /// Steps, and a note in the state where one fails.
+    fn tried<Points, Momenta>(
+        &self,
+        state: &mut FieldState<Points, Momenta, S::Time>,
+        steps: u64,
+        inputs: Option<&[U<S>]>,
+    ) -> Result<(), SiteError>
+    where
+        Points: AsRef<[Q<S>]> + AsMut<[Q<S>]>,
+        Momenta: AsRef<[Mu<S>]> + AsMut<[Mu<S>]>,
+    {
+        if let Some(error) = state.failed {
+            return Err(error);
+        }
+        let result = self.advanced(state, steps, inputs);
+        state.failed = result.err();
+        result
+    }
+
+    fn advanced<Points, Momenta>(
+        &self,
+        state: &mut FieldState<Points, Momenta, S::Time>,
+        steps: u64,
+        inputs: Option<&[U<S>]>,
+    ) -> Result<(), SiteError>
+    where
+        Points: AsRef<[Q<S>]> + AsMut<[Q<S>]>,
+        Momenta: AsRef<[Mu<S>]> + AsMut<[Mu<S>]>,
+    {
+        let FieldState { configuration, momentum, time, steps: made, .. } = state;
+        let (q, mu) = (configuration.as_mut(), momentum.as_mut());
+        let half = T::<S>::from_f64(0.5);
+        let Some(first) = self.stage(0).map(|stage| stage.h).filter(|_| steps > 0) else { return Ok(()) };
+        self.check_lengths(q, mu)?;
+        self.kick(time.now(), half * first, q, mu);
+        for number in 1..=steps {
+            let after = time.after_step(self.step_size());
+            let (mut t, mut index) = (time.now(), 0);
+            while let Some(stage) = self.stage(index) {
+                self.drift(stage, t, (q, mu), inputs)?;
+                index += 1;
+                // the kick at the end of this part of a step and that at the start of the next are one
+                let next = match self.stage(index) {
+                    Some(next) => {
+                        t += stage.h;
+                        next.h
+                    }
+                    None => {
+                        t = after.now();
+                        if number < steps { first } else { Zero::zero() }
+                    }
+                };
+                self.kick(t, half * (stage.h + next), q, mu);
+            }
+            *time = after;
+            *made = made.saturating_add(1);
+        }
+        // the momenta after the last kick
+        finite(q, mu, summed(mu.iter().map(Space::sum)))
+    }
+
+    /// Adds the forces on all sites, times `weight`, to their momenta.
+    fn kick(&self, t: T<S>, weight: T<S>, q: &[Q<S>], mu: &mut [Mu<S>]) {
+        let systems = self.systems.as_ref();
+        let Some(first) = systems.first() else { return };
+        let site = |site| systems.get(P::number(site)).unwrap_or(first);
+        self.lattice.kick((site, P::ARE_ALIKE), (t, weight), q, mu);
+    }
+
+    /// Moves all sites, each by itself.
+    fn drift(
+        &self,
+        stage: &Stage<S, P>,
+        t: T<S>,
+        (all_q, all_mu): (&mut [Q<S>], &mut [Mu<S>]),
+        inputs: Option<&[U<S>]>,
+    ) -> Result<(), SiteError> {
+        let (has_fixed, none, mut sum) = (self.lattice.has_fixed(), U::<S>::origin(), T::<S>::zero());
+        for (i, ((q, mu), (system, constants))) in all_q.iter_mut().zip(&mut *all_mu).zip(self.all(stage)).enumerate() {
+            if has_fixed && self.lattice.is_fixed(i) {
+                *mu = Space::origin();
+                continue;
+            }
+            let u = inputs.and_then(|inputs| inputs.get(i)).unwrap_or(&none);
+            (*q, *mu) = at(i, moved::<S>(At::new(system, constants, t), (q, mu), u))?;
+            if S::MAY_LEAVE_ORBIT {
+                at(i, check_on_orbit(q, system.orbit_defect(q)))?;
+            }
+            sum += q.sum() + mu.sum();
+        }
+        finite(all_q, all_mu, sum)
+    }
+
+    /// The kinetic energies of all sites, their potentials, and the energies of all edges.
+    ///
+    /// # Errors
+    /// [`Error::NumberOfSites`] for the state of another field.
+    pub fn energy<Points, Momenta>(&self, state: &FieldState<Points, Momenta, S::Time>) -> Result<T<S>, SiteError>
+    where
+        Points: AsRef<[Q<S>]>,
+        Momenta: AsRef<[Mu<S>]>,
+    {
+        let (q, mu) = self.parts(state)?;
+        let t = state.time.now();
+        let systems = self.systems.as_ref();
+        let (Some(stage), Some(first)) = (self.stage(0), systems.first()) else { return Ok(Zero::zero()) };
+        let sites = summed(q.iter().zip(mu).zip(self.all(stage)).map(|((q, mu), (system, constants))| {
+            let constants = S::Scheme::whole(constants);
+            <Declared as Method<S>>::kinetic_energy(system, constants, t, q, mu) + system.potential(t, q)
+        }));
+        Ok(sites + self.lattice.energy(|site| systems.get(P::number(site)).unwrap_or(first), q))
+    }
+
+    /// The momenta that no step changes, sums over all sites. A side that is fixed, or a lattice that is not the same
+    /// everywhere, may change them.
+    ///
+    /// # Errors
+    /// [`Error::NumberOfSites`] for the state of another field.
+    pub fn conserved<Points, Momenta, const K: usize>(
+        &self,
+        state: &FieldState<Points, Momenta, S::Time>,
+    ) -> Result<Conserved<T<S>, K>, SiteError>
+    where
+        S: Conserves<Conserved = Conserved<T<S>, K>>,
+        Points: AsRef<[Q<S>]>,
+        Momenta: AsRef<[Mu<S>]>,
+    {
+        let (q, mu) = self.parts(state)?;
+        let momenta = || q.iter().zip(mu).zip(self.each()).map(|((q, mu), system)| system.conserved(q, mu));
+        let names = momenta().next().map_or([""; K], |first| *first.names());
+        let values = core::array::from_fn(|k| summed(momenta().map(|momentum| momentum[k])));
+        Ok(Conserved::new(names, values))
+    }
+
+    fn parts<'s, Points, Momenta>(
+        &self,
+        state: &'s FieldState<Points, Momenta, S::Time>,
+    ) -> Result<Parts<'s, S>, SiteError>
+    where
+        Points: AsRef<[Q<S>]>,
+        Momenta: AsRef<[Mu<S>]>,
+    {
+        let (q, mu) = (state.configuration.as_ref(), state.momentum.as_ref());
+        self.check_lengths(q, mu)?;
+        Ok((q, mu))
+    }
+}
+
+/// All numbers of the sites are finite where their sum is, unless they are very large; the error names the first site with others.
+#[inline]
+fn finite<T: Scalar, Q: Space<T>, Mu: Space<T>>(q: &[Q], mu: &[Mu], sum: T) -> Result<(), SiteError> {
+    if sum.is_finite() {
+        return Ok(());
+    }
+    let wrong = q.iter().zip(mu).position(|(q, mu)| !(q.all_finite() && mu.all_finite()));
+    wrong.map_or(Ok(()), |site| at(site, Err(Error::NotFinite { name: "the state after a step" })))
+}
+
+/// The most numbers that are added one after the other.
+const RUN: usize = 256;
+
+/// The sum of many numbers. Runs are added by themselves first, so that less is rounded away.
+fn summed<T: Scalar>(numbers: impl Iterator<Item = T>) -> T {
+    let (mut total, mut run, mut count) = (T::zero(), T::zero(), 0);
+    for number in numbers {
+        run += number;
+        count += 1;
+        if count == RUN {
+            total += run;
+            (run, count) = (T::zero(), 0);
+        }
+    }
+    total + run
+}

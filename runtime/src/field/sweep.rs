@@ -1,0 +1,217 @@
+//! The forces on all sites of a grid, row by row. The sites of a row follow each other in the last direction.
+
+use super::{Field, Grid, Lattice};
+use crate::parts::{Mu, Q, T};
+use crate::space::plus;
+use crate::{Error, Space};
+use num_traits::Zero;
+
+/// `mu` with a force added, times `weight`.
+#[inline(always)]
+fn pushed<S: Field<D>, const D: usize>(mu: &Mu<S>, force: &Mu<S>, weight: T<S>) -> Mu<S> {
+    mu.zip_map(force, |mu, force| mu + weight * force)
+}
+
+/// A field on a grid at a time.
+struct Sweep<'a, S: Field<D>, P, const D: usize> {
+    /// The parameters of a site.
+    site: P,
+    /// Whether the force on a site is found from all of its edges at once: all of them have the same parameters then.
+    gathers: bool,
+    grid: &'a Grid<T<S>, D>,
+    t: T<S>,
+    weight: T<S>,
+    q: &'a [Q<S>],
+}
+
+impl<'s, S: Field<D> + 's, P: Fn(usize) -> &'s S + Copy, const D: usize> Sweep<'_, S, P, D> {
+    /// The force on one site, wherever it is.
+    fn force_at(&self, index: usize) -> Mu<S> {
+        let (system, spacing) = ((self.site)(index), self.grid.spacings());
+        let Some(q) = self.q.get(index) else { return Space::origin() };
+        let place = self.grid.split(index);
+        let (mut before, mut after) = ([q; D], [q; D]);
+        let (mut is_inside, mut neighbours) = (self.gathers, [[None; 2]; D]);
+        for d in 0..D {
+            let there = |site: usize| Some((site, self.q.get(site)?));
+            let around = self.grid.around(index, &place, d).map(|site| site.and_then(there));
+            match around {
+                [Some((_, first)), Some((_, last))] => (before[d], after[d]) = (first, last),
+                _ => is_inside = false,
+            }
+            neighbours[d] = around;
+        }
+        if is_inside {
+            return system.force_inside(self.t, spacing, q, &before, &after);
+        }
+        let mut force = if S::HAS_POTENTIAL { system.force_on_site(self.t, q) } else { Space::origin() };
+        for (d, [before, after]) in neighbours.into_iter().enumerate() {
+            if let Some((number, before)) = before {
+                force = plus(&force, &(self.site)(number).edge_forces(d, spacing, before, q).1);
+            }
+            if let Some((_, after)) = after {
+                force = plus(&force, &system.edge_forces(d, spacing, q, after).0);
+            }
+        }
+        force
+    }
+
+    /// Adds the force on one site, if it moves.
+    fn push_at(&self, index: usize, mu: &mut Mu<S>) {
+        if !self.grid.is_fixed(index) {
+            *mu = pushed::<S, D>(mu, &self.force_at(index), self.weight);
+        }
+    }
+
+    /// Adds the forces on the sites of a row that starts at a site.
+    fn gather(&self, start: usize, mu: &mut [Mu<S>]) {
+        let inner = self.inner(start, mu.len());
+        let last = mu.len().saturating_sub(1);
+        let Some((own, before, after)) = inner else {
+            mu.iter_mut().enumerate().for_each(|(j, mu)| self.push_at(start + j, mu));
+            return;
+        };
+        if let Some(mu) = mu.first_mut() {
+            self.push_at(start, mu);
+        }
+        let (system, spacing) = ((self.site)(start), self.grid.spacings());
+        let between = mu.get_mut(1..last).unwrap_or_default();
+        for (k, (mu, q)) in between.iter_mut().zip(own).enumerate() {
+            let (mut left, mut right) = ([q; D], [q; D]);
+            for d in 0..D {
+                let (Some(before), Some(after)) = (before[d].get(k), after[d].get(k)) else { break };
+                (left[d], right[d]) = (before, after);
+            }
+            *mu = pushed::<S, D>(mu, &system.force_inside(self.t, spacing, q, &left, &right), self.weight);
+        }
+        if last > 0
+            && let Some(mu) = mu.get_mut(last)
+        {
+            self.push_at(start + last, mu);
+        }
+    }
+
+    /// The sites of a row between its ends, and their neighbours in each direction. `None` on a side of the grid, and for a row
+    /// without such sites.
+    #[inline]
+    #[allow(clippy::type_complexity, reason = "three parts of one slice")]
+    fn inner(&self, start: usize, length: usize) -> Option<(&[Q<S>], [&[Q<S>]; D], [&[Q<S>]; D])> {
+        let count = length.checked_sub(2).filter(|count| *count > 0)?;
+        let part = |first: usize| self.q.get(first..first.checked_add(count)?);
+        let own = part(start + 1)?;
+        let (mut before, mut after) = ([own; D], [own; D]);
+        let place = self.grid.split(start);
+        for d in 0..D {
+            if d + 1 == D {
+                (before[d], after[d]) = (part(start)?, part(start + 2)?);
+                continue;
+            }
+            if self.grid.is_on_fixed_side(d, place[d]) {
+                return None;
+            }
+            let [first, last] = self.grid.around(start, &place, d);
+            (before[d], after[d]) = (part(first? + 1)?, part(last? + 1)?);
+        }
+        Some((own, before, after))
+    }
+
+    /// Adds the forces of all edges, one after the other.
+    fn scatter(&self, mu: &mut [Mu<S>]) {
+        let spacing = self.grid.spacings();
+        if S::HAS_POTENTIAL {
+            for (i, (mu, q)) in mu.iter_mut().zip(self.q).enumerate() {
+                *mu = pushed::<S, D>(mu, &(self.site)(i).force_on_site(self.t, q), self.weight);
+            }
+        }
+        self.each_edge(|d, [site, next]| {
+            let (Some(q), Some(neighbour)) = (self.q.get(site), self.q.get(next)) else { return };
+            let (own, other) = (self.site)(site).edge_forces(d, spacing, q, neighbour);
+            if let Some(mu) = mu.get_mut(site) {
+                *mu = pushed::<S, D>(mu, &own, self.weight);
+            }
+            if let Some(mu) = mu.get_mut(next) {
+                *mu = pushed::<S, D>(mu, &other, self.weight);
+            }
+        });
+    }
+
+    /// Visits each edge by its direction and the numbers of its sites.
+    #[inline(always)]
+    fn each_edge(&self, mut visit: impl FnMut(usize, [usize; 2])) {
+        let row = self.grid.row();
+        for start in (0..self.q.len()).step_by(row.max(1)) {
+            let place = self.grid.split(start);
+            for d in 0..D {
+                if d + 1 < D {
+                    let Some(next) = self.grid.around(start, &place, d)[1] else { continue };
+                    (0..row).for_each(|j| visit(d, [start + j, next + j]));
+                } else {
+                    (1..row).for_each(|j| visit(d, [start + j - 1, start + j]));
+                    if let Some(next) = self.grid.around(start + row - 1, &self.grid.split(start + row - 1), d)[1] {
+                        visit(d, [start + row - 1, next]);
+                    }
+                }
+            }
+        }
+    }
+}
+
+impl<S: Field<D>, const D: usize> Lattice<S> for Grid<T<S>, D> {
+    fn sites(&self) -> usize {
+        Grid::sites(self)
+    }
+
+    fn is_fixed(&self, site: usize) -> bool {
+        Grid::is_fixed(self, site)
+    }
+
+    fn has_fixed(&self) -> bool {
+        Grid::has_fixed(self)
+    }
+
+    fn check(&self) -> Result<(), Error> {
+        Grid::check(self)
+    }
+
+    fn kick<'s>(
+        &self,
+        (site, are_alike): (impl Fn(usize) -> &'s S + Copy, bool),
+        (t, weight): (T<S>, T<S>),
+        q: &[Q<S>],
+        mu: &mut [Mu<S>],
+    ) where
+        S: 's,
+    {
+        let sweep = Sweep { site, gathers: S::GATHERS && are_alike, grid: self, t, weight, q };
+        if !sweep.gathers {
+            return sweep.scatter(mu);
+        }
+        let row = self.row().max(1);
+        for (number, mu) in mu.chunks_mut(row).enumerate() {
+            sweep.gather(number * row, mu);
+        }
+    }
+
+    fn energy<'s>(&self, site: impl Fn(usize) -> &'s S + Copy, q: &[Q<S>]) -> T<S>
+    where
+        S: 's,
+    {
+        let (mut total, mut part, mut end) = (T::<S>::zero(), T::<S>::zero(), 0);
+        let sweep = Sweep { site, gathers: false, grid: self, t: Zero::zero(), weight: Zero::zero(), q };
+        // rows are added by themselves: sums of many numbers lose more
+        sweep.each_edge(|d, [number, next]| {
+            if number >= end {
+                total += part;
+                (part, end) = (Zero::zero(), end + self.row());
+            }
+            if let (Some(q), Some(neighbour)) = (q.get(number), q.get(next)) {
+                part += site(number).edge_energy(d, self.spacings(), q, neighbour);
+            }
+        });
+        total + part
+    }
+
+    fn order() -> u32 {
+        S::ORDER_OF_FIELD
+    }
+}

@@ -1,0 +1,239 @@
+//! Fields: grids, the forces of edges, and steps of all sites.
+
+use crate::arbitrary::{cases, vector};
+use clebsch::{Alike, Clebsch, Error, Field, Grid, Lattice, Population, Side, Sides, SiteError, Various};
+use nalgebra::{Rotation3, Vector3};
+use proptest::prelude::*;
+
+/// Spins with springs between them in two directions, in a field that grows with the time.
+#[derive(Clebsch, Clone, Debug)]
+#[clebsch(
+    action    = |F: SO<3>, q: Unit<Vector3>| F * q,
+    cost      = |h, F| (F - I).norm_squared() / (4 * h),
+    potential = |t, q| -self.field.dot(&q) * (1 + t),
+    space     = [
+        |dx, q, next| self.stiffness * (next - q).norm_squared() / (2 * dx.powi(2)),
+        |dy, q, next| self.exchange * q.dot(&next).powi(2) / dy + self.twist.dot(&q.cross(&next)),
+    ],
+    force     = |omega, torque: Vector3| torque,
+)]
+pub struct Spins {
+    pub field: Vector3<f64>,
+    pub stiffness: f64,
+    pub exchange: f64,
+    pub twist: Vector3<f64>,
+}
+
+/// The same without a field and without inputs.
+#[derive(Clebsch, Clone, Debug)]
+#[clebsch(
+    action = |F: SO<3>, q: Unit<Vector3>| F * q,
+    cost   = |h, F| (F - I).norm_squared() / (4 * h),
+    space  = [
+        |dx, q, next| self.stiffness * (next - q).norm_squared() / (2 * dx.powi(2)),
+        |dy, q, next| -self.exchange * q.dot(&next).powi(2) / dy,
+    ],
+)]
+pub struct FreeSpins {
+    pub stiffness: f64,
+    pub exchange: f64,
+}
+
+fn spins() -> Spins {
+    Spins { field: Vector3::new(0.1, -0.2, 0.3), stiffness: 0.8, exchange: 0.4, twist: Vector3::new(0.2, 0.1, -0.3) }
+}
+
+/// Unit vectors, and momenta across them.
+fn site() -> impl Strategy<Value = (Vector3<f64>, Vector3<f64>)> {
+    let is_long = |q: &Vector3<f64>| q.norm() > 0.1;
+    (vector::<3>(1.0).prop_filter("a direction", is_long), vector::<3>(1.0)).prop_map(|(q, p)| {
+        let q = q.normalize();
+        (q, q.cross(&p) * 0.2)
+    })
+}
+
+fn side() -> impl Strategy<Value = Sides> {
+    let one = || prop_oneof![Just(Side::Free), Just(Side::Fixed)];
+    prop_oneof![Just(Sides::Periodic), (one(), one()).prop_map(|(first, last)| Sides::Open(first, last))]
+}
+
+/// Configurations and momenta of so many sites.
+fn states(sites: usize) -> impl Strategy<Value = (Vec<Vector3<f64>>, Vec<Vector3<f64>>)> {
+    prop::collection::vec(site(), sites).prop_map(|sites| sites.into_iter().unzip())
+}
+
+#[track_caller]
+fn near(found: f64, expected: f64, tolerance: f64) {
+    assert!((found - expected).abs() <= tolerance, "{found} is not {expected}");
+}
+
+fn turned(q: &Vector3<f64>, axis: &Vector3<f64>) -> Vector3<f64> {
+    Rotation3::new(*axis) * q
+}
+
+proptest! {
+    #![proptest_config(cases(32))]
+
+    #[test]
+    fn grids_number_their_sites(sizes in [1_usize..5, 1..5, 1..5], spacing in [0.1_f64..2.0, 0.1..2.0, 0.1..2.0]) {
+        let grid = Grid::new(sizes).spacing(spacing);
+        prop_assert_eq!((grid.sizes(), *grid.spacings(), grid.sites()), (sizes, spacing, sizes.iter().product()));
+        for index in 0..grid.sites() {
+            let place = grid.place(index).expect("a site");
+            prop_assert_eq!(grid.index(place), Some(index));
+        }
+        prop_assert_eq!((grid.place(grid.sites()), grid.index(sizes)), (None, None));
+        let plane = Grid::new([sizes[0], sizes[1]]);
+        prop_assert_eq!((Lattice::<Spins>::sites(&plane), <Grid<f64, 2> as Lattice<Spins>>::order()), (plane.sites(), 2));
+        prop_assert_eq!(Lattice::<Spins>::check(&plane), Ok(()));
+        let empty = Lattice::<Spins>::check(&Grid::new([sizes[0], 0]));
+        prop_assert_eq!(empty, Err(Error::EmptyGrid { direction: 1, sites: 0 }));
+    }
+
+    #[test]
+    fn sides_fix_their_sites(sizes in [1_usize..5, 1..5], sides in [side(), side()]) {
+        let domain = spins().grid(sizes).sides(sides);
+        let grid = *domain.lattice();
+        let mut has_fixed = false;
+        for index in 0..grid.sites() {
+            let place = grid.place(index).expect("a site");
+            let is_fixed = (0..2).any(|d| match sides[d] {
+                Sides::Periodic => false,
+                Sides::Open(first, last) => {
+                    (place[d] == 0 && first == Side::Fixed) || (place[d] + 1 == sizes[d] && last == Side::Fixed)
+                }
+            });
+            prop_assert_eq!(grid.is_fixed(index), is_fixed);
+            prop_assert_eq!(Lattice::<Spins>::is_fixed(&grid, index), is_fixed);
+            has_fixed |= is_fixed;
+        }
+        prop_assert!(Lattice::<Spins>::has_fixed(&grid) || !has_fixed);
+        let domain = spins().grid(sizes);
+        let all = [domain.clone().free(), domain.clone().fixed(), domain.clone().periodic()].map(|domain| *domain.lattice());
+        let expected = [Sides::Open(Side::Free, Side::Free), Sides::Open(Side::Fixed, Side::Fixed), Sides::Periodic];
+        for ((grid, sides), by_hand) in all.into_iter().zip(expected).zip([Grid::free, Grid::fixed, Grid::periodic]) {
+            prop_assert_eq!(grid, Grid::new(sizes).sides([sides; 2]));
+            prop_assert_eq!(grid, by_hand(Grid::new(sizes)));
+        }
+        let stepper = domain.stepper(0.1).expect("a stepper");
+        prop_assert_eq!(*stepper.lattice(), Grid::new(sizes));
+    }
+
+    #[test]
+    fn forces_of_edges_are_slopes(
+        all in states(5), t in 0.0_f64..1.0, spacing in [0.4_f64..2.0, 0.4..2.0], axis in vector::<3>(1.0),
+    ) {
+        let (system, q, size) = (spins(), all.0, 1e-5);
+        for d in 0..2 {
+            let energy = |a: f64, b: f64| system.edge_energy(d, &spacing, &turned(&q[0], &(axis * a)), &turned(&q[1], &(axis * b)));
+            let (own, next) = system.edge_forces(d, &spacing, &q[0], &q[1]);
+            let slopes = [energy(size, 0.0) - energy(-size, 0.0), energy(0.0, size) - energy(0.0, -size)];
+            for (force, slope) in [own, next].iter().zip(slopes) {
+                near(force.dot(&axis), -slope / (2.0 * size), 1e-7 * (1.0 + axis.norm_squared() * 20.0));
+            }
+        }
+        let potential = |a: f64| system.potential(t, &turned(&q[0], &(axis * a)));
+        let slope = (potential(size) - potential(-size)) / (2.0 * size);
+        near(system.force_on_site(t, &q[0]).dot(&axis), -slope, 1e-7 * (1.0 + axis.norm_squared()));
+        // all edges at once
+        let mut sum = system.force_on_site(t, &q[0]);
+        for d in 0..2 {
+            sum += system.edge_forces(d, &spacing, &q[0], &q[1 + 2 * d]).0;
+            sum += system.edge_forces(d, &spacing, &q[2 + 2 * d], &q[0]).1;
+        }
+        let inside = system.force_inside(t, &spacing, &q[0], &[&q[2], &q[4]], &[&q[1], &q[3]]);
+        near((inside - sum).amax(), 0.0, 1e-12);
+    }
+
+    #[test]
+    fn kicks_are_slopes_of_the_energy(all in states(9), spacing in [0.4_f64..2.0, 0.4..2.0], sides in [side(), side()], axis in vector::<3>(1.0)) {
+        let (system, q) = (spins(), all.0);
+        let grid = Grid::new([3, 3]).spacing(spacing).sides(sides);
+        let mut kick = vec![Vector3::zeros(); 9];
+        grid.kick((|_| &system, true), (0.0, 0.5), &q, &mut kick);
+        let stepper = system.grid([3, 3]).spacing(spacing).sides(sides).stepper(0.1).expect("a stepper");
+        let whole = |q: &Vec<Vector3<f64>>| {
+            let state = stepper.state(q.clone(), vec![Vector3::zeros(); 9]).expect("a state");
+            stepper.energy(&state).expect("an energy")
+        };
+        let sites: f64 = q.iter().map(|q| system.potential(0.0, q)).sum();
+        near(whole(&q), sites + grid.energy(|_| &system, &q), 1e-12);
+        for site in 0..9 {
+            let moved = |a: f64| {
+                let mut q = q.clone();
+                q[site] = turned(&q[site], &(axis * a));
+                whole(&q)
+            };
+            let slope = (moved(1e-5) - moved(-1e-5)) / 2e-5;
+            let expected = if grid.is_fixed(site) { 0.0 } else { -0.5 * slope };
+            near(kick[site].dot(&axis), expected, 1e-6 * (1.0 + 100.0 * axis.norm_squared()));
+        }
+    }
+
+    #[test]
+    fn fields_run_back(all in states(6), sides in [side(), side()], torque in vector::<3>(1.0)) {
+        let (q, mu) = all;
+        let domain = spins().grid([2, 3]).sides(sides);
+        let (forth, back) = (domain.clone().stepper(0.05).expect("a stepper"), domain.stepper(-0.05).expect("a stepper"));
+        prop_assert_eq!((forth.step_size(), back.step_size()), (0.05, -0.05));
+        let run = || -> Result<(), SiteError> {
+            let start = forth.state(q.clone(), mu.clone())?;
+            let mut state = start.clone();
+            forth.advance(&mut state, 3)?;
+            forth.step(&mut state)?;
+            assert_eq!(state.steps(), 4);
+            near(state.time::<f64>(), 0.2, 1e-15);
+            back.advance(&mut state, 4)?;
+            for (found, expected) in state.configuration().iter().zip(start.configuration()) {
+                near((found - expected).amax(), 0.0, 1e-12);
+            }
+            for (found, expected) in state.momentum().iter().zip(start.momentum()) {
+                near((found - expected).amax(), 0.0, 1e-12);
+            }
+            // without a torque the input changes nothing, and with one it is an impulse
+            let (mut one, mut other, mut pushed) = (start.clone(), start.clone(), start.clone());
+            forth.step(&mut one)?;
+            forth.step_with(&mut other, &[Vector3::zeros(); 6])?;
+            assert_eq!(one, other);
+            forth.step_with(&mut pushed, &[torque * 1e-6; 6])?;
+            let (_, momenta) = pushed.into_storage();
+            for (site, (found, expected)) in momenta.iter().zip(one.momentum()).enumerate() {
+                let impulse = if forth.lattice().is_fixed(site) { Vector3::zeros() } else { torque * (0.05 * 1e-6) };
+                near((found - expected - impulse).amax(), 0.0, 1e-8 * (1.0 + torque.amax()));
+            }
+            Ok(())
+        };
+        match run() {
+            // momenta of random sites may be too large for the step
+            Err(SiteError { error: Error::Unsolvable { .. } | Error::StepTooLong { .. }, .. }) | Ok(()) => {}
+            Err(error) => prop_assert!(false, "{error}"),
+        }
+    }
+
+    #[test]
+    fn total_momenta_stay(all in states(8), weights in prop::collection::vec(0.5_f64..2.0, 8)) {
+        let (q, mu) = all;
+        let spins = |stiffness: f64| FreeSpins { stiffness, exchange: 0.4 };
+        let stepper = spins(1.0).grid([2, 4]).periodic().various(|[i, j]| spins(weights[4 * i + j])).stepper(0.05).expect("a stepper");
+        for (site, weight) in weights.iter().enumerate() {
+            prop_assert_eq!(stepper.system(site).map(|site| site.stiffness), Some(*weight));
+        }
+        prop_assert!(stepper.system(8).is_none());
+        let mut state = stepper.state(q, mu.clone()).expect("a state");
+        let before = stepper.conserved(&state).expect("momenta");
+        let sum: Vector3<f64> = mu.iter().sum();
+        for k in 0..3 {
+            near(before[k], sum[k], 1e-12);
+        }
+        if stepper.advance(&mut state, 10).is_ok() {
+            let after = stepper.conserved(&state).expect("momenta");
+            for k in 0..3 {
+                near(after[k], before[k], 1e-12);
+            }
+        }
+        let double = |site: usize, value: &f64| Ok::<_, Error>(value * 2.0 + site as f64);
+        prop_assert_eq!(Various::each(&weights, double).expect("values")[3], weights[3] * 2.0 + 3.0);
+        prop_assert_eq!(Alike::each(&[weights[0]], double).expect("a value"), [weights[0] * 2.0]);
+        prop_assert_eq!((Various::number(3), Alike::number(3)), (3, 0));
+    }
+}
