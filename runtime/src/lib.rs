@@ -67,7 +67,7 @@
 //! | `std` | elementary functions of the standard library in place of `libm`: those of the platform, [see below](crate#the-same-bits-everywhere) |
 //! | `lanes` | `F64x4`, `F64x8` and `F32x8`: several bodies side by side in vector registers, `no_std` and without heap |
 //! | `alloc` | `Ensemble`: many bodies, on the heap |
-//! | `rayon` | `Ensemble::par_advance`, on all cores; needs the standard library |
+//! | `rayon` | `Ensemble::par_advance` and `FieldStepper::par_advance`, on all cores; needs the standard library |
 //! | `num-dual` | the numbers of that crate as scalars, which carry derivatives; needs the standard library |
 //! | `double-double` | `DoubleDouble`: 31 digits for reference runs |
 //! | `generated` | the dial `emit = [generated]`: the constant `GENERATED`, the generated code as text |

@@ -40,10 +40,16 @@ pub trait Lattice<S: Clebsch>: Clone {
     /// [`Error::EmptyGrid`] or [`Error::Spacing`].
     fn check(&self) -> Result<(), Error>;
 
-    /// Adds the forces on all sites at a time, times a weight, to their momenta. `site` gives the parameters of a site, which may be alike.
+    /// Adds the forces at a time, times a weight, to the momenta of the sites from a number on. `site` gives the parameters of a
+    /// site, which may be alike.
     #[doc(hidden)]
-    fn kick<'s>(&self, site: (impl Fn(usize) -> &'s S + Copy, bool), at: (T<S>, T<S>), q: &[Q<S>], mu: &mut [Mu<S>])
-    where
+    fn kick<'s>(
+        &self,
+        site: (impl Fn(usize) -> &'s S + Copy, bool),
+        at: (T<S>, T<S>),
+        q: &[Q<S>],
+        mu: (usize, &mut [Mu<S>]),
+    ) where
         S: 's;
 
     /// The energy of all edges.

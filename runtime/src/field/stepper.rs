@@ -110,6 +110,16 @@ impl<Points, Momenta, C> FieldState<Points, Momenta, C> {
     }
 }
 
+/// The configurations and the momenta of sites.
+type Sites<'s, S> = (&'s mut [Q<S>], &'s mut [Mu<S>]);
+
+/// A part of a step: its number, and the time at which it starts.
+#[derive(Clone, Copy)]
+struct Part<T> {
+    number: usize,
+    t: T,
+}
+
 /// The configurations and the momenta of a state.
 type Parts<'s, S> = (&'s [Q<S>], &'s [Mu<S>]);
 
@@ -179,7 +189,7 @@ impl<S: Clebsch + Clone, G: Lattice<S>, P: Population> FieldStepper<S, G, P> {
     ///
     /// # Errors
     /// [`Error::NumberOfSites`] for storage of another length than there are sites, and those of
-    /// [`Stepper::state`], with the site.
+    /// [`Stepper::state`](crate::Stepper::state), with the site.
     pub fn state<Points, Momenta>(
         &self,
         configuration: Points,
@@ -225,7 +235,7 @@ impl<S: Clebsch + Clone, G: Lattice<S>, P: Population> FieldStepper<S, G, P> {
     /// One step, in place.
     ///
     /// # Errors
-    /// Those of [`Stepper::step`], with the site. The state is then that of no time: each further step gives the same error.
+    /// Those of [`Stepper::step`](crate::Stepper::step), with the site. The state is then that of no time: each further step gives the same error.
     pub fn step<Points, Momenta>(&self, state: &mut FieldState<Points, Momenta, S::Time>) -> Result<(), SiteError>
     where
         Points: AsRef<[Q<S>]> + AsMut<[Q<S>]>,
@@ -247,7 +257,7 @@ impl<S: Clebsch + Clone, G: Lattice<S>, P: Population> FieldStepper<S, G, P> {
         Points: AsRef<[Q<S>]> + AsMut<[Q<S>]>,
         Momenta: AsRef<[Mu<S>]> + AsMut<[Mu<S>]>,
     {
-        self.tried(state, steps, None)
+        self.tried(state, steps, |at, q, mu| self.kick(at, q, (0, mu)), |part, sites| self.drift(part, 0, sites, None))
     }
 
     /// One step, in place, during which the input of the forces on each site is that of `inputs`.
@@ -271,15 +281,17 @@ impl<S: Clebsch + Clone, G: Lattice<S>, P: Population> FieldStepper<S, G, P> {
         if let Some(site) = inputs.iter().position(|u| !u.all_finite()) {
             return at(site, Err(Error::NotFinite { name: "the input" }));
         }
-        self.tried(state, 1, Some(inputs))
+        let drift = |part: Part<T<S>>, sites: Sites<'_, S>| self.drift(part, 0, sites, Some(inputs));
+        self.tried(state, 1, |at, q, mu| self.kick(at, q, (0, mu)), drift)
     }
 
-    /// Steps, and a note in the state where one fails.
+    /// Steps made of kicks and drifts of all sites, and a note in the state where one fails.
     fn tried<Points, Momenta>(
         &self,
         state: &mut FieldState<Points, Momenta, S::Time>,
         steps: u64,
-        inputs: Option<&[U<S>]>,
+        kick: impl Fn((T<S>, T<S>), &[Q<S>], &mut [Mu<S>]),
+        drift: impl Fn(Part<T<S>>, Sites<'_, S>) -> Result<(), SiteError>,
     ) -> Result<(), SiteError>
     where
         Points: AsRef<[Q<S>]> + AsMut<[Q<S>]>,
@@ -288,7 +300,7 @@ impl<S: Clebsch + Clone, G: Lattice<S>, P: Population> FieldStepper<S, G, P> {
         if let Some(error) = state.failed {
             return Err(error);
         }
-        let result = self.advanced(state, steps, inputs);
+        let result = self.advanced(state, steps, kick, drift);
         state.failed = result.err();
         result
     }
@@ -297,7 +309,8 @@ impl<S: Clebsch + Clone, G: Lattice<S>, P: Population> FieldStepper<S, G, P> {
         &self,
         state: &mut FieldState<Points, Momenta, S::Time>,
         steps: u64,
-        inputs: Option<&[U<S>]>,
+        kick: impl Fn((T<S>, T<S>), &[Q<S>], &mut [Mu<S>]),
+        drift: impl Fn(Part<T<S>>, Sites<'_, S>) -> Result<(), SiteError>,
     ) -> Result<(), SiteError>
     where
         Points: AsRef<[Q<S>]> + AsMut<[Q<S>]>,
@@ -308,63 +321,74 @@ impl<S: Clebsch + Clone, G: Lattice<S>, P: Population> FieldStepper<S, G, P> {
         let half = T::<S>::from_f64(0.5);
         let Some(first) = self.stage(0).map(|stage| stage.h).filter(|_| steps > 0) else { return Ok(()) };
         self.check_lengths(q, mu)?;
-        self.kick(time.now(), half * first, q, mu);
-        for number in 1..=steps {
+        kick((time.now(), half * first), q, mu);
+        for step in 1..=steps {
             let after = time.after_step(self.step_size());
-            let (mut t, mut index) = (time.now(), 0);
-            while let Some(stage) = self.stage(index) {
-                self.drift(stage, t, (q, mu), inputs)?;
-                index += 1;
+            let mut part = Part { number: 0, t: time.now() };
+            while let Some(stage) = self.stage(part.number) {
+                drift(part, (q, mu))?;
+                part.number += 1;
                 // the kick at the end of this part of a step and that at the start of the next are one
-                let next = match self.stage(index) {
+                let next = match self.stage(part.number) {
                     Some(next) => {
-                        t += stage.h;
+                        part.t += stage.h;
                         next.h
                     }
                     None => {
-                        t = after.now();
-                        if number < steps { first } else { Zero::zero() }
+                        part.t = after.now();
+                        if step < steps { first } else { Zero::zero() }
                     }
                 };
-                self.kick(t, half * (stage.h + next), q, mu);
+                kick((part.t, half * (stage.h + next)), q, mu);
             }
             *time = after;
             *made = made.saturating_add(1);
         }
         // the momenta after the last kick
-        finite(q, mu, summed(mu.iter().map(Space::sum)))
+        finite(0, (q, mu), summed(mu.iter().map(Space::sum)))
     }
 
-    /// Adds the forces on all sites, times `weight`, to their momenta.
-    fn kick(&self, t: T<S>, weight: T<S>, q: &[Q<S>], mu: &mut [Mu<S>]) {
+    /// Adds the forces at a time, times `weight`, to the momenta of the sites from one on.
+    fn kick(&self, (t, weight): (T<S>, T<S>), q: &[Q<S>], mu: (usize, &mut [Mu<S>])) {
         let systems = self.systems.as_ref();
         let Some(first) = systems.first() else { return };
         let site = |site| systems.get(P::number(site)).unwrap_or(first);
         self.lattice.kick((site, P::ARE_ALIKE), (t, weight), q, mu);
     }
 
-    /// Moves all sites, each by itself.
+    /// Moves the sites from one on, each by itself.
     fn drift(
         &self,
-        stage: &Stage<S, P>,
-        t: T<S>,
-        (all_q, all_mu): (&mut [Q<S>], &mut [Mu<S>]),
+        Part { number, t }: Part<T<S>>,
+        first: usize,
+        (q, mu): Sites<'_, S>,
         inputs: Option<&[U<S>]>,
     ) -> Result<(), SiteError> {
-        let (has_fixed, none, mut sum) = (self.lattice.has_fixed(), U::<S>::origin(), T::<S>::zero());
-        for (i, ((q, mu), (system, constants))) in all_q.iter_mut().zip(&mut *all_mu).zip(self.all(stage)).enumerate() {
-            if has_fixed && self.lattice.is_fixed(i) {
-                *mu = Space::origin();
-                continue;
+        let Some(stage) = self.stage(number) else { return Ok(()) };
+        let (has_fixed, none) = (self.lattice.has_fixed(), U::<S>::origin());
+        let mut sum = T::<S>::zero();
+        match self.all(stage).next() {
+            // the loop that most fields have, without a question about each site
+            Some((system, constants)) if P::ARE_ALIKE && !has_fixed && inputs.is_none() => {
+                for (i, (q, mu)) in (first..).zip(q.iter_mut().zip(&mut *mu)) {
+                    let moved = drift_of_site(At::new(system, constants, t), (q, mu), &none);
+                    sum += moved.map_err(|error| (i, error))?;
+                }
             }
-            let u = inputs.and_then(|inputs| inputs.get(i)).unwrap_or(&none);
-            (*q, *mu) = at(i, moved::<S>(At::new(system, constants, t), (q, mu), u))?;
-            if S::MAY_LEAVE_ORBIT {
-                at(i, check_on_orbit(q, system.orbit_defect(q)))?;
+            _ => {
+                let sites = q.iter_mut().zip(&mut *mu).zip(self.all(stage).skip(first));
+                for (i, ((q, mu), (system, constants))) in (first..).zip(sites) {
+                    if has_fixed && self.lattice.is_fixed(i) {
+                        *mu = Space::origin();
+                        continue;
+                    }
+                    let u = inputs.and_then(|inputs| inputs.get(i)).unwrap_or(&none);
+                    let moved = drift_of_site(At::new(system, constants, t), (q, mu), u);
+                    sum += moved.map_err(|error| (i, error))?;
+                }
             }
-            sum += q.sum() + mu.sum();
         }
-        finite(all_q, all_mu, sum)
+        finite(first, (q, mu), sum)
     }
 
     /// The kinetic energies of all sites, their potentials, and the energies of all edges.
@@ -422,14 +446,29 @@ impl<S: Clebsch + Clone, G: Lattice<S>, P: Population> FieldStepper<S, G, P> {
     }
 }
 
-/// All numbers of the sites are finite where their sum is, unless they are very large; the error names the first site with others.
+/// Moves a site by itself, with the input u of its forces. Returns the sum of its numbers, which is finite where all of them are.
+#[inline(always)]
+fn drift_of_site<S: Clebsch>(
+    at: At<'_, S, Declared, Constants<S>>,
+    (q, mu): (&mut Q<S>, &mut Mu<S>),
+    u: &U<S>,
+) -> Result<T<S>, Error> {
+    (*q, *mu) = moved::<S>(at, (q, mu), u)?;
+    if S::MAY_LEAVE_ORBIT {
+        check_on_orbit(q, at.system.orbit_defect(q))?;
+    }
+    Ok(q.sum() + mu.sum())
+}
+
+/// All numbers of the sites from one on are finite where their sum is. Else the error names the first site with others, if it is not
+/// the sum that is too large.
 #[inline]
-fn finite<T: Scalar, Q: Space<T>, Mu: Space<T>>(q: &[Q], mu: &[Mu], sum: T) -> Result<(), SiteError> {
+fn finite<T: Scalar, Q: Space<T>, Mu: Space<T>>(first: usize, (q, mu): (&[Q], &[Mu]), sum: T) -> Result<(), SiteError> {
     if sum.is_finite() {
         return Ok(());
     }
     let wrong = q.iter().zip(mu).position(|(q, mu)| !(q.all_finite() && mu.all_finite()));
-    wrong.map_or(Ok(()), |site| at(site, Err(Error::NotFinite { name: "the state after a step" })))
+    wrong.map_or(Ok(()), |site| at(first + site, Err(Error::NotFinite { name: "the state after a step" })))
 }
 
 /// The most numbers that are added one after the other.
@@ -447,4 +486,45 @@ fn summed<T: Scalar>(numbers: impl Iterator<Item = T>) -> T {
         }
     }
     total + run
+}
+
+/// The sites that one thread takes at a time.
+#[cfg(feature = "rayon")]
+const SHARE: usize = 4096;
+
+#[cfg(feature = "rayon")]
+impl<S: Clebsch + Clone, G: Lattice<S>, P: Population> FieldStepper<S, G, P>
+where
+    Self: Sync,
+    T<S>: Send + Sync,
+    Q<S>: Send + Sync,
+    Mu<S>: Send + Sync,
+{
+    /// [`advance`](Self::advance) on all threads of the present pool, with the same bits.
+    ///
+    /// Needs the feature `rayon`.
+    ///
+    /// # Errors
+    /// As [`advance`](Self::advance).
+    pub fn par_advance<Points, Momenta>(
+        &self,
+        state: &mut FieldState<Points, Momenta, S::Time>,
+        steps: u64,
+    ) -> Result<(), SiteError>
+    where
+        Points: AsRef<[Q<S>]> + AsMut<[Q<S>]>,
+        Momenta: AsRef<[Mu<S>]> + AsMut<[Mu<S>]>,
+    {
+        use rayon::prelude::*;
+        let kick = |at: (T<S>, T<S>), q: &[Q<S>], mu: &mut [Mu<S>]| {
+            let shares = mu.par_chunks_mut(SHARE).enumerate();
+            shares.for_each(|(number, mu)| self.kick(at, q, (number * SHARE, mu)));
+        };
+        let drift = |part: Part<T<S>>, (q, mu): Sites<'_, S>| {
+            let shares = q.par_chunks_mut(SHARE).zip(mu.par_chunks_mut(SHARE)).enumerate();
+            let errors = shares.map(|(number, sites)| self.drift(part, number * SHARE, sites, None).err());
+            errors.reduce(|| None, Option::or).map_or(Ok(()), Err)
+        };
+        self.tried(state, steps, kick, drift)
+    }
 }

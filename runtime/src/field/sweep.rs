@@ -4,6 +4,7 @@ use super::{Field, Grid, Lattice};
 use crate::parts::{Mu, Q, T};
 use crate::space::plus;
 use crate::{Error, Space};
+use core::ops::Range;
 use num_traits::Zero;
 
 /// `mu` with a force added, times `weight`.
@@ -115,41 +116,50 @@ impl<'s, S: Field<D> + 's, P: Fn(usize) -> &'s S + Copy, const D: usize> Sweep<'
         Some((own, before, after))
     }
 
-    /// Adds the forces of all edges, one after the other.
-    fn scatter(&self, mu: &mut [Mu<S>]) {
+    /// Adds the forces of all edges of the sites from one on, one edge after the other.
+    fn scatter(&self, first: usize, mu: &mut [Mu<S>]) {
         let spacing = self.grid.spacings();
         if S::HAS_POTENTIAL {
-            for (i, (mu, q)) in mu.iter_mut().zip(self.q).enumerate() {
+            for (i, (mu, q)) in (first..).zip(mu.iter_mut().zip(self.q.iter().skip(first))) {
                 *mu = pushed::<S, D>(mu, &(self.site)(i).force_on_site(self.t, q), self.weight);
             }
         }
-        self.each_edge(|d, [site, next]| {
+        self.each_edge(first..first + mu.len(), |d, [site, next]| {
             let (Some(q), Some(neighbour)) = (self.q.get(site), self.q.get(next)) else { return };
             let (own, other) = (self.site)(site).edge_forces(d, spacing, q, neighbour);
-            if let Some(mu) = mu.get_mut(site) {
+            // a site before the first one has a number beyond all others
+            if let Some(mu) = mu.get_mut(site.wrapping_sub(first)) {
                 *mu = pushed::<S, D>(mu, &own, self.weight);
             }
-            if let Some(mu) = mu.get_mut(next) {
+            if let Some(mu) = mu.get_mut(next.wrapping_sub(first)) {
                 *mu = pushed::<S, D>(mu, &other, self.weight);
             }
         });
     }
 
-    /// Visits each edge by its direction and the numbers of its sites.
+    /// Visits each edge of some sites by its direction and the numbers of its ends, in an order that does not depend on the others.
     #[inline(always)]
-    fn each_edge(&self, mut visit: impl FnMut(usize, [usize; 2])) {
+    fn each_edge(&self, sites: Range<usize>, mut visit: impl FnMut(usize, [usize; 2])) {
         let row = self.grid.row();
+        let meets = |start: usize| start < sites.end && sites.start < start + row;
         for start in (0..self.q.len()).step_by(row.max(1)) {
             let place = self.grid.split(start);
             for d in 0..D {
                 if d + 1 < D {
                     let Some(next) = self.grid.around(start, &place, d)[1] else { continue };
-                    (0..row).for_each(|j| visit(d, [start + j, next + j]));
-                } else {
-                    (1..row).for_each(|j| visit(d, [start + j - 1, start + j]));
-                    if let Some(next) = self.grid.around(start + row - 1, &self.grid.split(start + row - 1), d)[1] {
-                        visit(d, [start + row - 1, next]);
+                    if meets(start) || meets(next) {
+                        let of_them = |j: &usize| sites.contains(&(start + j)) || sites.contains(&(next + j));
+                        (0..row).filter(of_them).for_each(|j| visit(d, [start + j, next + j]));
                     }
+                    continue;
+                }
+                let end = (start + row).min(sites.end.saturating_add(1));
+                ((start + 1).max(sites.start)..end).for_each(|site| visit(d, [site - 1, site]));
+                let last = start + row.saturating_sub(1);
+                if let Some(next) = self.grid.around(last, &self.grid.split(last), d)[1]
+                    && (sites.contains(&last) || sites.contains(&next))
+                {
+                    visit(d, [last, next]);
                 }
             }
         }
@@ -178,17 +188,22 @@ impl<S: Field<D>, const D: usize> Lattice<S> for Grid<T<S>, D> {
         (site, are_alike): (impl Fn(usize) -> &'s S + Copy, bool),
         (t, weight): (T<S>, T<S>),
         q: &[Q<S>],
-        mu: &mut [Mu<S>],
+        (first, mu): (usize, &mut [Mu<S>]),
     ) where
         S: 's,
     {
         let sweep = Sweep { site, gathers: S::GATHERS && are_alike, grid: self, t, weight, q };
         if !sweep.gathers {
-            return sweep.scatter(mu);
+            return sweep.scatter(first, mu);
         }
-        let row = self.row().max(1);
-        for (number, mu) in mu.chunks_mut(row).enumerate() {
-            sweep.gather(number * row, mu);
+        // row by row; the first and the last one need not be complete
+        let (mut start, mut others) = (first, mu);
+        while !others.is_empty() {
+            let place = self.split(start).last().copied().unwrap_or(0);
+            let length = self.row().saturating_sub(place).clamp(1, others.len());
+            let (row, behind) = others.split_at_mut_checked(length).unwrap_or_default();
+            sweep.gather(start, row);
+            (start, others) = (start + length, behind);
         }
     }
 
@@ -199,7 +214,7 @@ impl<S: Field<D>, const D: usize> Lattice<S> for Grid<T<S>, D> {
         let (mut total, mut part, mut end) = (T::<S>::zero(), T::<S>::zero(), 0);
         let sweep = Sweep { site, gathers: false, grid: self, t: Zero::zero(), weight: Zero::zero(), q };
         // rows are added by themselves: sums of many numbers lose more
-        sweep.each_edge(|d, [number, next]| {
+        sweep.each_edge(0..q.len(), |d, [number, next]| {
             if number >= end {
                 total += part;
                 (part, end) = (Zero::zero(), end + self.row());

@@ -7,4 +7,5 @@ mod elements;
 mod grids;
 mod reference;
 mod refused;
+mod threads;
 mod waves;

@@ -150,7 +150,11 @@ proptest! {
         let (system, q) = (spins(), all.0);
         let grid = Grid::new([3, 3]).spacing(spacing).sides(sides);
         let mut kick = vec![Vector3::zeros(); 9];
-        grid.kick((|_| &system, true), (0.0, 0.5), &q, &mut kick);
+        grid.kick((|_| &system, true), (0.0, 0.5), &q, (0, &mut kick));
+        // the forces on some sites alone
+        let mut some = vec![Vector3::zeros(); 4];
+        grid.kick((|_| &system, true), (0.0, 0.5), &q, (3, &mut some));
+        prop_assert_eq!(&some[..], &kick[3..7]);
         let stepper = system.grid([3, 3]).spacing(spacing).sides(sides).stepper(0.1).expect("a stepper");
         let whole = |q: &Vec<Vector3<f64>>| {
             let state = stepper.state(q.clone(), vec![Vector3::zeros(); 9]).expect("a state");
@@ -225,7 +229,11 @@ proptest! {
         for k in 0..3 {
             near(before[k], sum[k], 1e-12);
         }
-        if stepper.advance(&mut state, 10).is_ok() {
+        let mut other = state.clone();
+        let is_stepped = stepper.advance(&mut state, 10).is_ok();
+        prop_assert_eq!(stepper.par_advance(&mut other, 10).is_ok(), is_stepped);
+        if is_stepped {
+            prop_assert_eq!(&other, &state);
             let after = stepper.conserved(&state).expect("momenta");
             for k in 0..3 {
                 near(after[k], before[k], 1e-12);

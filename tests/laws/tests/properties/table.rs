@@ -57,7 +57,7 @@ pub const PROPERTIES: &[(&str, &[Property])] = &[
         ("forces_of_edges_are_slopes",            &["Field::edge_energy", "Field::edge_forces", "Field::force_on_site", "Field::force_inside"]),
         ("kicks_are_slopes_of_the_energy",        &["Lattice::kick", "Lattice::energy", "FieldStepper::energy", "Domain::spacing", "Domain::stepper"]),
         ("fields_run_back",                       &["FieldStepper::step", "FieldStepper::advance", "FieldStepper::step_with", "FieldStepper::state", "FieldStepper::step_size", "FieldState::configuration", "FieldState::momentum", "FieldState::steps", "FieldState::time", "FieldState::into_storage", "Field::grid"]),
-        ("total_momenta_stay",                    &["FieldStepper::conserved", "FieldStepper::system", "Domain::various", "Population::each", "Population::number"]),
+        ("total_momenta_stay",                    &["FieldStepper::conserved", "FieldStepper::par_advance", "FieldStepper::system", "Domain::various", "Population::each", "Population::number"]),
     ]),
     ("tests/laws/tests/properties/derivatives.rs", &[
         ("tangent_maps_are_linear",      &["Tangent::apply", "Tangent::apply_transposed", "Tangent::then", "Tangent::identity", "Sensitivity::zero", "Sensitivity::after"]),
