@@ -30,7 +30,10 @@ pub use crate::free_rotation_4d::{FreeRotation4, KeptRotation4, free_momentum_4d
 pub use crate::implicit::{
     Equation, Jacobian, LinearEquation, extent, orientation, solve, solve_fixed_point, solve_linear_equation, tolerance,
 };
-pub use crate::joints::{Branch, Joined, Limb, Mobile, Rows as JointRows, put_places};
+pub use crate::joints::{
+    Border, Branch, Joined, Limb, Loop, LoopedLimb, Loops, Mobile, Rows as JointRows, put_loop_values, put_loops,
+    put_places,
+};
 pub use crate::linear::{matrix, solve_dense, solve_symmetric};
 pub use crate::logarithm::logarithm;
 pub use crate::matrices::{Blocks, axial, determinant, embedded, hat, matrix_of, shifted};

@@ -11,6 +11,7 @@
 //! as a block tridiagonal matrix. The momentum after the step is N⁺ + Aᵀμ, whose velocity obeys A ξ = −∂φ/∂t at q⁺.
 
 mod blocks;
+mod loops;
 mod solver;
 mod tree;
 
@@ -24,8 +25,9 @@ use core::array::from_fn;
 use nalgebra::{SMatrix, SVector};
 use num_traits::Zero;
 
+pub use loops::{Border, BorderOf, Loop, Loops, put_loop_values, put_loops};
 pub(crate) use solver::{Joints, least_of_steps};
-pub use tree::{Branch, Limb};
+pub use tree::{Branch, Limb, LoopedLimb};
 
 /// The rows of one site.
 #[derive(Clone, Copy, Debug)]
@@ -120,6 +122,9 @@ fn solutions<T: Scalar, C, B, const N: usize, const R: usize, const M: usize>(
     all
 }
 
+/// The multipliers of each site, and those of the loops.
+pub type WithLoops<P, const N: usize, const R: usize, const M: usize> = ([SVector<T<P>, R>; N], BorderOf<P, N, R, M>);
+
 /// A site, whose velocity follows from its momentum.
 pub trait Mobile<const M: usize>: Clebsch<Momentum = SVector<<Self as Clebsch>::Scalar, M>> {
     /// Σ⁻¹μ
@@ -168,7 +173,7 @@ pub trait Joined<const N: usize, const R: usize, const M: usize>: Power<N, Site:
     /// Whether a joint reads the last site and the first one.
     const IS_RING: bool;
 
-    /// `()` in chains and rings, [`Limb`] in trees.
+    /// `()` in chains and rings, [`Limb`] in trees, and [`LoopedLimb`] in trees with loops.
     type Branch: Branch<T<Self>, R, M>;
 
     /// The other site that the joints of a site read. It is an earlier one, but in a ring for the first site.
@@ -192,6 +197,25 @@ pub trait Joined<const N: usize, const R: usize, const M: usize>: Power<N, Site:
         x: &SVector<T<Self>, M>,
         y: &SVector<T<Self>, M>,
     ) -> SVector<T<Self>, R>;
+
+    /// The rows of the equations that close loops.
+    #[inline(always)]
+    fn loop_rows(&self, _t: T<Self>, _q: &Q<Self>, _loops: &mut [Loop<T<Self>, M>]) {}
+
+    /// φ of these equations.
+    #[inline(always)]
+    fn loop_places(&self, _t: T<Self>, _q: &Q<Self>, _loops: &mut [Loop<T<Self>, M>]) {}
+
+    /// φ″ of these equations with constant velocities of all sites.
+    #[inline(always)]
+    fn loop_bends(
+        &self,
+        _t: T<Self>,
+        _q: &Q<Self>,
+        _velocities: &[SVector<T<Self>, M>; N],
+        _loops: &mut [Loop<T<Self>, M>],
+    ) {
+    }
 
     /// Whether all sites obey their joints.
     ///
@@ -252,13 +276,26 @@ pub trait Joined<const N: usize, const R: usize, const M: usize>: Power<N, Site:
         q: &Q<Self>,
         push: &Mu<Self>,
     ) -> [SVector<T<Self>, R>; N] {
+        self.multipliers_with_loops(c, t, q, push).0
+    }
+
+    /// The same, and those of the loops.
+    fn multipliers_with_loops(
+        &self,
+        c: &Constants<Self, N>,
+        t: T<Self>,
+        q: &Q<Self>,
+        push: &Mu<Self>,
+    ) -> WithLoops<Self, N, R, M> {
         let mut room = from_fn(|_| Joint::default());
-        let found =
-            Joints::<Self, N, R, M>::new(self, c, &mut room).and_then(|mut joints| joints.multipliers(t, q, push));
-        match found {
-            Ok(()) => solutions(&room),
-            Err(_) => [SVector::from_element(T::<Self>::zero() / T::<Self>::zero()); N],
+        let found = Joints::<Self, N, R, M>::new(self, c, &mut room)
+            .and_then(|mut joints| joints.multipliers(t, q, push).map(|()| joints.border));
+        if let Ok(border) = found {
+            return (solutions(&room), border);
         }
+        let (nan, mut border) = (T::<Self>::zero() / T::<Self>::zero(), BorderOf::<Self, N, R, M>::new());
+        border.all_mut().iter_mut().for_each(|row| row.value = nan);
+        ([SVector::from_element(nan); N], border)
     }
 
     /// The multipliers λ of the motion N′ = N′_free + Aᵀλ through (q, N), with the input u of the forces.
@@ -273,9 +310,24 @@ pub trait Joined<const N: usize, const R: usize, const M: usize>: Power<N, Site:
         mu: &Mu<Self>,
         u: &Self::Input,
     ) -> Result<[SVector<T<Self>, R>; N], Error> {
+        self.reactions_with_loops(c, t, q, mu, u).map(|(joints, _)| joints)
+    }
+
+    /// The same, and those of the loops.
+    ///
+    /// # Errors
+    /// [`Error::DependentConstraints`].
+    fn reactions_with_loops(
+        &self,
+        c: &Constants<Self, N>,
+        t: T<Self>,
+        q: &Q<Self>,
+        mu: &Mu<Self>,
+        u: &Self::Input,
+    ) -> Result<WithLoops<Self, N, R, M>, Error> {
         let mut room = from_fn(|_| Joint::default());
-        let found =
-            Joints::<Self, N, R, M>::new(self, c, &mut room).and_then(|mut joints| joints.reactions(t, (q, mu), u));
-        found.map(|()| solutions(&room)).map_err(|(_, error)| error)
+        let found = Joints::<Self, N, R, M>::new(self, c, &mut room)
+            .and_then(|mut joints| joints.reactions(t, (q, mu), u).map(|()| joints.border));
+        found.map(|border| (solutions(&room), border)).map_err(|(_, error)| error)
     }
 }

@@ -1,6 +1,7 @@
 //! The multipliers of joints, by block elimination from the first site to the last, in a tree from the leaves to the root.
 
 use super::blocks::{Backward, Elimination, Forward, Place};
+use super::loops::{Border, BorderOf};
 use super::{Branch, Joined, JointOf, Mobile};
 use crate::constraint::{Violation, check_place};
 use crate::parts::{Mu, Q, T};
@@ -41,9 +42,10 @@ fn is_worse(ratio: f64, worst: f64) -> bool {
 
 /// The joints of a power at one configuration, in the room of its sites.
 pub(crate) struct Joints<'a, P: Joined<N, R, M>, const N: usize, const R: usize, const M: usize> {
-    system: &'a P,
+    pub(super) system: &'a P,
     constants: &'a Constants<P, N>,
     pub(super) room: &'a mut [JointOf<P, N, R, M>; N],
+    pub(super) border: BorderOf<P, N, R, M>,
 }
 
 impl<'a, P: Joined<N, R, M>, const N: usize, const R: usize, const M: usize> Joints<'a, P, N, R, M> {
@@ -63,7 +65,7 @@ impl<'a, P: Joined<N, R, M>, const N: usize, const R: usize, const M: usize> Joi
                 joint.constants = Some(made);
             }
         }
-        Ok(Self { system, constants, room })
+        Ok(Self { system, constants, room, border: Border::new() })
     }
 
     /// Whether joints make a tree.
@@ -87,7 +89,7 @@ impl<'a, P: Joined<N, R, M>, const N: usize, const R: usize, const M: usize> Joi
 
     /// The result of `give` for a site and its constants.
     #[inline(always)]
-    fn of_site<V>(&self, site: usize, give: impl FnOnce(&P::Site, &scheme::Constants<P::Site>) -> V) -> V {
+    pub(super) fn of_site<V>(&self, site: usize, give: impl FnOnce(&P::Site, &scheme::Constants<P::Site>) -> V) -> V {
         let constants = self.room[site].constants.as_ref().unwrap_or(&self.constants.site);
         give(&self.system.site(site), constants)
     }
@@ -148,7 +150,14 @@ impl<'a, P: Joined<N, R, M>, const N: usize, const R: usize, const M: usize> Joi
             last = own;
         }
         let Elimination { zeros, first, .. } = elimination;
-        match if Self::IS_TREE { self.factor_tree(least) } else { (zeros, first) } {
+        let (mut zeros, mut first) = if Self::IS_TREE { self.factor_tree(least) } else { (zeros, first) };
+        if Self::HAS_LOOPS {
+            let (more, site) = self.factor_loops(t, q, least);
+            number += BorderOf::<P, N, R, M>::COUNT;
+            first = if zeros == 0 { site } else { first };
+            zeros += more;
+        }
+        match (zeros, first) {
             (0, _) => Ok(()),
             (zeros, first) => {
                 Err((first, Error::DependentConstraints { rank: number.saturating_sub(zeros), rows: number }))
@@ -215,6 +224,7 @@ impl<'a, P: Joined<N, R, M>, const N: usize, const R: usize, const M: usize> Joi
         let h = self.constants.part(1.0);
         self.at(t, q, least_of_steps())?;
         self.room.iter_mut().for_each(|joint| joint.multipliers = Space::origin());
+        self.forget_loops();
         if Self::IS_TREE {
             self.gather(|joint| joint.multipliers);
         }
@@ -235,6 +245,7 @@ impl<'a, P: Joined<N, R, M>, const N: usize, const R: usize, const M: usize> Joi
             if Self::IS_TREE {
                 self.solve_tree();
                 self.room.iter_mut().for_each(|joint| joint.multipliers -= joint.block.right * per_step);
+                self.correct_loops(per_step);
                 self.gather(|joint| joint.multipliers);
                 continue;
             }
@@ -274,6 +285,11 @@ impl<'a, P: Joined<N, R, M>, const N: usize, const R: usize, const M: usize> Joi
         if P::IS_RING {
             (0..N).for_each(|i| self.violation(end, next, i, (&mut site, &mut worst), &mut forward));
         }
+        self.loop_violations(end, next, |at, ratio| {
+            if is_worse(ratio, worst) {
+                (site, worst) = (at, ratio);
+            }
+        });
         Ok((site, worst))
     }
 
@@ -340,6 +356,7 @@ impl<'a, P: Joined<N, R, M>, const N: usize, const R: usize, const M: usize> Joi
             self.forward(i, slip, &mut forward);
             last = own;
         }
+        self.loop_slip(mu, &mut violation, &mut worst);
         (violation, worst)
     }
 
@@ -371,6 +388,7 @@ impl<'a, P: Joined<N, R, M>, const N: usize, const R: usize, const M: usize> Joi
             let push = &push[i];
             moved[i] = self.of_site(i, |_, c| <P::Site as Mobile<M>>::mobility(SiteScheme::<P, N>::whole(c), push));
         }
+        self.put_loop_bends(t, q, None);
         self.solve_along(&moved, &[Space::origin(); N]);
         Ok(())
     }
@@ -396,12 +414,20 @@ impl<'a, P: Joined<N, R, M>, const N: usize, const R: usize, const M: usize> Joi
         for i in 0..N {
             bends[i] = -self.system.bend_at(t, q, i, &velocities[i], &velocities[Self::parent(i)]);
         }
+        self.put_loop_bends(t, q, Some(&velocities));
         self.solve_along(&accelerations, &bends);
         Ok(())
     }
 
-    /// Solves S x = A v + w with v of each site and w of its rows.
+    /// Solves S x = A v + w with v of each site and w of its rows. Those of the loops are known.
     fn solve_along(&mut self, along: &[SVector<T<P>, M>; N], more: &[SVector<T<P>, R>; N]) {
+        self.put_along(along, more);
+        self.put_loops_along(along);
+        self.backward();
+    }
+
+    /// Takes the right sides A v + w.
+    pub(super) fn put_along(&mut self, along: &[SVector<T<P>, M>; N], more: &[SVector<T<P>, R>; N]) {
         let mut forward = Forward::new();
         for i in 0..N {
             let joint = &self.room[i];
@@ -411,7 +437,6 @@ impl<'a, P: Joined<N, R, M>, const N: usize, const R: usize, const M: usize> Joi
             }
             self.forward(i, right, &mut forward);
         }
-        self.backward();
     }
 
     /// Moves q to φ = 0 by motions −Σ⁻¹Aᵀ S⁻¹φ, until φ no longer falls.
@@ -424,6 +449,11 @@ impl<'a, P: Joined<N, R, M>, const N: usize, const R: usize, const M: usize> Joi
             self.at(t, q, T::<P>::EPSILON.sqrt())?;
             let (mut site, mut worst, mut forward) = (0, 0.0, Forward::new());
             (0..N).for_each(|i| self.violation(t, q, i, (&mut site, &mut worst), &mut forward));
+            self.loop_violations(t, q, |at, ratio| {
+                if is_worse(ratio, worst) {
+                    (site, worst) = (at, ratio);
+                }
+            });
             let most = T::<P>::EPSILON.to_f64().sqrt().recip();
             if worst <= ROUNDING || (worst <= most && worst >= last / 2.0) {
                 return Ok(());
@@ -457,7 +487,7 @@ impl<'a, P: Joined<N, R, M>, const N: usize, const R: usize, const M: usize> Joi
             let entries = rows.own.zip_map(&rows.before, |a, b| a.abs() + b.abs());
             check_place(&places, &entries, &size).map_err(|error| (i, error))?;
         }
-        Ok(())
+        Self::check_loops(system, t, q)
     }
 
     /// By how much the velocity of N violates the joints at q, and the site where it does most.

@@ -11,6 +11,7 @@
 //! Source: Baraff, *Linear-time dynamics using Lagrange multipliers*, SIGGRAPH (1996).
 
 use super::blocks::invert;
+use super::loops::{Border, Column, Loops};
 use super::{Joined, JointOf, Joints};
 use crate::parts::T;
 use crate::{Scalar, Space};
@@ -31,10 +32,34 @@ pub struct Limb<T, const R: usize, const M: usize> {
     pub(super) velocity: SVector<T, M>,
 }
 
+impl<T: Scalar, const R: usize, const M: usize> Limb<T, R, M> {
+    /// The push of all joints on the site.
+    #[inline(always)]
+    pub(super) fn push(&self) -> &SVector<T, M> {
+        &self.push
+    }
+
+    #[inline(always)]
+    pub(super) fn add_push(&mut self, push: &SVector<T, M>) {
+        self.push += push;
+    }
+}
+
+/// The room of a site in a tree with L rows of loops.
+#[derive(Clone, Debug)]
+pub struct LoopedLimb<T, const R: usize, const M: usize, const L: usize> {
+    limb: Limb<T, R, M>,
+    /// Its share in the solves for the rows of loops.
+    columns: [Column<T, R, M>; L],
+}
+
 /// The room that a joint has in addition, by the order in which joints are eliminated.
 pub trait Branch<T, const R: usize, const M: usize>: Clone + core::fmt::Debug {
     /// Whether joints make a tree, and no chain.
     const IS_TREE: bool;
+
+    /// The loops of all sites.
+    type Border: Border<T, M>;
 
     /// Empty room.
     fn new() -> Self;
@@ -44,10 +69,23 @@ pub trait Branch<T, const R: usize, const M: usize>: Clone + core::fmt::Debug {
 
     /// The same.
     fn limb_mut(&mut self) -> Option<&mut Limb<T, R, M>>;
+
+    /// The share of the site in the solves for the rows of loops.
+    #[inline(always)]
+    fn columns(&self) -> &[Column<T, R, M>] {
+        &[]
+    }
+
+    /// The same.
+    #[inline(always)]
+    fn columns_mut(&mut self) -> &mut [Column<T, R, M>] {
+        &mut []
+    }
 }
 
-impl<T, const R: usize, const M: usize> Branch<T, R, M> for () {
+impl<T: Scalar, const R: usize, const M: usize> Branch<T, R, M> for () {
     const IS_TREE: bool = false;
+    type Border = Loops<T, M, 0>;
 
     #[inline(always)]
     fn new() -> Self {}
@@ -65,6 +103,7 @@ impl<T, const R: usize, const M: usize> Branch<T, R, M> for () {
 
 impl<T: Scalar, const R: usize, const M: usize> Branch<T, R, M> for Limb<T, R, M> {
     const IS_TREE: bool = true;
+    type Border = Loops<T, M, 0>;
 
     fn new() -> Self {
         let (zero, moved) = (SVector::from_element(T::zero()), SMatrix::from_element(T::zero()));
@@ -79,6 +118,35 @@ impl<T: Scalar, const R: usize, const M: usize> Branch<T, R, M> for Limb<T, R, M
     #[inline(always)]
     fn limb_mut(&mut self) -> Option<&mut Limb<T, R, M>> {
         Some(self)
+    }
+}
+
+impl<T: Scalar, const R: usize, const M: usize, const L: usize> Branch<T, R, M> for LoopedLimb<T, R, M, L> {
+    const IS_TREE: bool = true;
+    type Border = Loops<T, M, L>;
+
+    fn new() -> Self {
+        Self { limb: Limb::new(), columns: [Column::zero(); L] }
+    }
+
+    #[inline(always)]
+    fn limb(&self) -> Option<&Limb<T, R, M>> {
+        Some(&self.limb)
+    }
+
+    #[inline(always)]
+    fn limb_mut(&mut self) -> Option<&mut Limb<T, R, M>> {
+        Some(&mut self.limb)
+    }
+
+    #[inline(always)]
+    fn columns(&self) -> &[Column<T, R, M>] {
+        &self.columns
+    }
+
+    #[inline(always)]
+    fn columns_mut(&mut self) -> &mut [Column<T, R, M>] {
+        &mut self.columns
     }
 }
 
@@ -129,8 +197,15 @@ impl<P: Joined<N, R, M>, const N: usize, const R: usize, const M: usize> Joints<
         (all, site)
     }
 
-    /// Solves S x = right in the blocks. The pushes Aᵀx of the sites stay in the limbs.
+    /// Solves S x = right in the blocks, and in the loops. The pushes of the sites stay in the limbs.
     pub(super) fn solve_tree(&mut self) {
+        self.border_right();
+        self.solve_branches();
+        self.close();
+    }
+
+    /// The same without loops.
+    pub(super) fn solve_branches(&mut self) {
         for joint in self.room.iter_mut() {
             if let Some(limb) = joint.branch.limb_mut() {
                 (limb.drift, limb.push) = (Space::origin(), Space::origin());
@@ -160,7 +235,7 @@ impl<P: Joined<N, R, M>, const N: usize, const R: usize, const M: usize> Joints<
         }
     }
 
-    /// Gathers the pushes Aᵀx of all joints at their sites.
+    /// Gathers the pushes Aᵀx of all joints at their sites, with those of the multipliers of loops.
     pub(super) fn gather(&mut self, x: impl Fn(&JointOf<P, N, R, M>) -> SVector<T<P>, R>) {
         for joint in self.room.iter_mut() {
             if let Some(limb) = joint.branch.limb_mut() {
@@ -177,6 +252,7 @@ impl<P: Joined<N, R, M>, const N: usize, const R: usize, const M: usize> Joints<
                 limb.push += joint.rows.own.transpose() * x;
             }
         }
+        self.gather_loops();
     }
 
     /// The push that was gathered at a site.

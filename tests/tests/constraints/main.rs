@@ -9,6 +9,7 @@ mod coordinates;
 mod derived;
 mod invariants;
 mod joined;
+mod loops;
 mod moving;
 mod numbered;
 mod order;

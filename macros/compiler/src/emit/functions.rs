@@ -147,6 +147,16 @@ functions! {
         fn bend_at(&self, t: T, q: &Sites, site: Index, x: &Mu, mu: &Mu) -> Places { Id::JointBend(0) }
     }
 
+    /// `Joined`: the joints that close loops.
+    LOOPS(false) {
+        /// The rows of the equations that close loops.
+        fn loop_rows(&self, t: T, q: &Sites, loops: &mut LoopRows) -> () { Id::Joint(0) }
+        /// The values of the equations that close loops.
+        fn loop_places(&self, t: T, q: &Sites, loops: &mut LoopRows) -> () { Id::JointPlaces(0) }
+        /// The second derivatives in time of these equations with constant velocities of all sites.
+        fn loop_bends(&self, t: T, q: &Sites, velocities: &Velocities, loops: &mut LoopRows) -> () { Id::JointBend(0) }
+    }
+
     /// `Mobile`: a site whose velocity follows from its momentum.
     MOBILE(true) {
         /// The velocity of a momentum, less that of the momentum 0.

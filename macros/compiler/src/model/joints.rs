@@ -11,7 +11,7 @@ use super::power::{Joint, Joints, Linear, Range, SiteIndex, Term};
 use super::sites::{Sites, unrolled};
 use super::slots::{CONSTRAINT, Slot};
 use super::typed::ActedSystem;
-use crate::diagnostic::{Diagnostic, Diagnostics, error, refuse};
+use crate::diagnostic::{Diagnostic, Diagnostics, bail, refuse};
 use crate::parse::{Closure, Declaration};
 
 /// One equation, for all indices of its range.
@@ -28,21 +28,15 @@ impl<'g> ActedSystem<'_, '_, 'g> {
             all.extend(self.joints_of(closure)?);
         }
         let (diagnostics, sites) = (self.context.diagnostics, self.context.power.as_ref()?);
-        let mut joints = Joints { all: Vec::new(), rows: 0, is_ring: false, is_tree: false };
         let ends = all.iter().map(|Read { range, sides }| ends(sites, *range, sides, diagnostics));
         let mut ends = ends.collect::<Option<Vec<Ends>>>()?;
         close_ring(&mut ends, &all, sites);
-        for (Read { range, sides }, Ends { own, before, order }) in all.into_iter().zip(ends) {
-            joints.is_ring |= order == Order::Ring;
-            joints.is_tree |= order == Order::Tree;
-            let term = Term { ranges: range.into_iter().collect(), value: sides.difference };
-            let added = joints.add(term, (own, before), sides.written, sites);
-            diagnostics.take(added)?;
-        }
-        if let Some(joint) = joints.all.iter().find(|_| joints.is_ring && joints.is_tree) {
-            refuse!(diagnostics, joint.written.place, "these joints close a loop in a tree";
-                help "{}", unrolled("constraint", &sites.length);
-                note "joints are eliminated in a chain, in a ring, or in a tree from its leaves")
+        let is_loop = diagnostics.take(loops(&mut ends, &all, sites))?;
+        let is = |order: Order| ends.iter().any(|end| end.order == order);
+        let is_tree = is(Order::Tree) || is_loop.contains(&true);
+        let mut joints = Joints { all: Vec::new(), rows: 0, is_ring: is(Order::Ring), is_tree, loops: 0 };
+        for ((Read { range, sides }, ends), is_loop) in all.into_iter().zip(ends).zip(is_loop) {
+            joints.add(range, sides, (&ends, is_loop), sites);
         }
         Some(joints)
     }
@@ -201,51 +195,89 @@ fn homes_of<'g>((from, to): Range<'g>, own: &SiteIndex<'g>) -> Range<'g> {
 }
 
 impl<'g> Joints<'g> {
-    /// Adds a joint, in the first rows that no other joint of the same sites has.
-    ///
-    /// # Errors
-    /// A second parent of a site: it closes a loop.
-    fn add(
-        &mut self,
-        term: Term<'g>,
-        (own, before): (usize, Option<usize>),
-        written: Written,
-        sites: &Sites<'g>,
-    ) -> Result<(), Diagnostic> {
-        let count = term.value.shape().rows;
-        let of_site = homes(term.ranges.first().copied(), &sites.places[own], sites.count);
-        let is_parent = |joint: &&Joint<'g>| {
-            let (Some(before), Some(other)) = (before, joint.before) else { return true };
-            !meet(&of_site, &homes(joint.term.ranges.first().copied(), &sites.places[joint.own], sites.count))
-                || has_same_parent(
-                    [&sites.places[own], &sites.places[before]],
-                    [&sites.places[joint.own], &sites.places[other]],
-                )
+    /// Adds a joint: one of a loop behind all others, else in the first rows that no other joint of the same sites has.
+    fn add(&mut self, range: Option<Range<'g>>, sides: Sides<'g>, (ends, is_loop): (&Ends, bool), sites: &Sites<'g>) {
+        let Sides { difference: value, written } = sides;
+        let (count, own) = (value.shape().rows, ends.own);
+        let of_site = homes(range, &sites.places[own], sites.count);
+        let meets = |joint: &&Joint<'g>, first: usize| {
+            let apart = joint.first + joint.count() <= first || first + count <= joint.first;
+            let others = || homes(joint.term.ranges.first().copied(), &sites.places[joint.own], sites.count);
+            !joint.is_loop && !apart && meet(&of_site, &others())
         };
-        if let Some(joint) = self.all.iter().find(|joint| !is_parent(joint)) {
-            let name = |at: usize| format!("`{}[{}]`", sites.pattern, sites.places[at].text(&sites.length));
-            let (own, known) = (name(own), name(joint.before.unwrap_or(joint.own)));
-            let parent = name(before.unwrap_or(joint.own));
-            return Err(
-                error!(written.place, "{own} has two earlier sites, {known} and {parent}: these joints may close a loop";
-                help "{}", unrolled("constraint", &sites.length);
-                note "in a tree the joints of a site read it and one earlier site"),
-            );
-        }
         let mut first = 0;
-        loop {
-            let meets = |joint: &&Joint<'g>| {
-                let apart = joint.first + joint.count() <= first || first + count <= joint.first;
-                !apart
-                    && meet(&of_site, &homes(joint.term.ranges.first().copied(), &sites.places[joint.own], sites.count))
-            };
-            let Some(other) = self.all.iter().find(meets) else { break };
-            first = other.first + other.count();
+        if is_loop {
+            first = self.loops;
+            // by construction: the range of a loop has numbers for ends
+            self.loops += count * range.map_or(Some(1), length).unwrap_or(1);
+        } else {
+            while let Some(other) = self.all.iter().find(|joint| meets(joint, first)) {
+                first = other.first + other.count();
+            }
+            self.rows = self.rows.max(first + count);
         }
-        self.rows = self.rows.max(first + count);
-        self.all.push(Joint { term, own, before, first, written });
-        Ok(())
+        let term = Term { ranges: range.into_iter().collect(), value };
+        self.all.push(Joint { term, own, before: ends.before, first, is_loop, written });
     }
+}
+
+/// Which joints close a loop: their later site hangs from another one. Those of a range whose end is N come first.
+///
+/// # Errors
+/// A loop for each site of such a range, and a ring by remainders in a tree.
+fn loops<'g>(ends: &mut [Ends], all: &[Read<'g>], sites: &Sites<'g>) -> Result<Vec<bool>, Diagnostic> {
+    let is_tree = ends.iter().any(|end| end.order == Order::Tree);
+    for (end, read) in ends.iter_mut().zip(all).filter(|(end, _)| is_tree && end.order == Order::Ring) {
+        let wraps = |at: usize| sites.places[at].wraps;
+        let Some(before) = end.before.filter(|&before| !wraps(before) && !wraps(end.own)) else {
+            bail!(read.sides.written.place, "these joints close a loop in a tree by a remainder";
+                help "let the range end before, and write the joint of `{0}[{1} - 1]` and `{0}[0]` by itself", sites.pattern, sites.length;
+                note "in a tree the joints of a site read it and one earlier site, and a joint more closes a loop");
+        };
+        *end = Ends { own: before, before: Some(end.own), order: Order::Tree };
+    }
+    let is_numbered = |joint: usize| all[joint].range.is_none_or(|range| length(range).is_some());
+    let joints = 0..ends.len();
+    let in_turn = joints.clone().filter(|&joint| !is_numbered(joint)).chain(joints.filter(|&joint| is_numbered(joint)));
+    let mut is_loop = vec![false; ends.len()];
+    let mut known: Vec<usize> = Vec::new();
+    for joint in in_turn {
+        let Some(other) = known.iter().copied().find(|&other| !have_one_parent(sites, [joint, other], ends, all))
+        else {
+            known.push(joint);
+            continue;
+        };
+        if !is_numbered(joint) {
+            let name = |at: usize| format!("`{}[{}]`", sites.pattern, sites.places[at].text(&sites.length));
+            let (place, [joint, other]) = (all[joint].sides.written.place, [&ends[joint], &ends[other]]);
+            let (own, known) = (name(joint.own), name(other.before.unwrap_or(other.own)));
+            let parent = name(joint.before.unwrap_or(other.own));
+            bail!(place, "{own} has two earlier sites, {known} and {parent}: each of these joints closes a loop";
+                help "{}", unrolled("constraint", &sites.length);
+                note "a loop is solved for all of its equations at once, and there may be only a number of them");
+        }
+        is_loop[joint] = true;
+    }
+    Ok(is_loop)
+}
+
+/// Whether no site hangs from another one by the first joint than by the second.
+fn have_one_parent<'g>(sites: &Sites<'g>, pair: [usize; 2], ends: &[Ends], all: &[Read<'g>]) -> bool {
+    let [own, other] = pair.map(|joint| &ends[joint]);
+    let (Some(before), Some(parent)) = (own.before, other.before) else { return true };
+    let [first, second] = pair.map(|joint| homes(all[joint].range, &sites.places[ends[joint].own], sites.count));
+    !meet(&first, &second)
+        || has_same_parent(
+            [&sites.places[own.own], &sites.places[before]],
+            [&sites.places[other.own], &sites.places[parent]],
+        )
+}
+
+/// The number of indices of a range with numbers for ends.
+fn length((from, to): Range<'_>) -> Option<usize> {
+    let (from, to) = (Linear::of(from)?, Linear::of(to)?);
+    let is_number = |end: &Linear| end.sites == 0 && end.indices.iter().all(|&index| index == 0);
+    (is_number(&from) && is_number(&to)).then(|| usize::try_from(to.constant - from.constant).unwrap_or(0))
 }
 
 /// Whether two joints of the same site have the same parent: by the number of sites between, or by its own number.

@@ -89,6 +89,8 @@ pub struct Joints<'g> {
     pub is_ring: bool,
     /// Whether a joint reads two sites that are no neighbours.
     pub is_tree: bool,
+    /// The rows of all joints that close a loop in a tree.
+    pub loops: usize,
 }
 
 /// An equation φ = 0 for each index of its range.
@@ -100,8 +102,10 @@ pub struct Joint<'g> {
     pub own: usize,
     /// The place of its parent, an earlier site; `None` where it reads one site.
     pub before: Option<usize>,
-    /// The number of its first row among those of its later site.
+    /// The number of its first row: among those of its later site, or among those of all loops.
     pub first: usize,
+    /// Whether it closes a loop in a tree: its later site hangs from another one.
+    pub is_loop: bool,
     /// The equation as it was written.
     pub written: Written,
 }

@@ -1,7 +1,10 @@
 //! Joints between neighbouring sites: their rows are differences of their equations, and states and steps obey them.
 
 use crate::arbitrary::{cases, vector};
-use clebsch::__private::{Branch, Joined, JointRows, Limb, Mobile, Power, put_places};
+use clebsch::__private::{
+    Border, Branch, Joined, JointRows, Limb, Loop, LoopedLimb, Loops, Mobile, Power, put_loop_values, put_loops,
+    put_places,
+};
 use clebsch::{Clebsch, Constrained, Error, SiteStorage};
 use clebsch_tests::oracle::near::assert_near;
 use nalgebra::{Matrix3, SVector, Vector2, Vector3};
@@ -43,6 +46,25 @@ pub struct Crane<const N: usize> {
 pub struct Twigs<const N: usize> {
     pub mass: [f64; N],
     pub rod: f64,
+}
+
+/// The same with three rods that close loops. The end of the first of them moves.
+#[derive(Clebsch, Clone, Debug)]
+#[clebsch(
+    action     = |a: [Translation<2>; N], x: [Vector2; N]| (0..N).map(|i| x[i] + a[i]),
+    lagrangian = |v| (0..N).map(|i| self.mass[i] * v[i].norm_squared() / 2).sum(),
+    constraint = |t, x| [
+        (1..3).map(|i| (x[i] - x[0]).norm_squared() == self.rod),
+        (3..5).map(|i| (x[i] - x[1]).norm_squared() == self.rod),
+        (x[5] - x[4]).norm_squared() == self.rod,
+        (x[3] - x[2] - self.speed * t * Vector2::x()).norm_squared() == self.rod,
+        (4..6).map(|i| (x[i] - x[i - 4]).norm_squared() == self.rod),
+    ],
+)]
+pub struct Web<const N: usize> {
+    pub mass: [f64; N],
+    pub rod: f64,
+    pub speed: f64,
 }
 
 fn crane() -> Crane<3> {
@@ -215,6 +237,34 @@ proptest! {
         }
     }
 
+    /// Rows and values of loops are put where they belong, and K is inverted. Its zero pivots are counted.
+    #[test]
+    fn loops_are_put_where_they_belong(entries in vector::<6>(1.0), first in 0_usize..4) {
+        let mut loops = <Loops<f64, 2, 3> as Border<f64, 2>>::new();
+        prop_assert_eq!(<Loops<f64, 2, 3> as Border<f64, 2>>::COUNT, 3);
+        let row = |i: usize| [entries[i], entries[i + 1]];
+        put_loops(loops.all_mut(), first, [4, 2], [[row(0), row(1)], [row(2), row(3)]], [entries[4], entries[5]]);
+        put_loop_values(loops.all_mut(), first, [1.0, 2.0]);
+        for (i, Loop { sites, along, velocity, value, .. }) in loops.all().iter().enumerate() {
+            let number = i.checked_sub(first).filter(|number| *number < 2);
+            let expected = number.map_or(([0; 2], [Vector2::zeros(); 2], 0.0, 0.0), |k| ([4, 2], [row(k).into(), row(k + 2).into()], entries[4 + k], 1.0 + k as f64));
+            prop_assert_eq!((*sites, *along, *velocity, *value), expected);
+        }
+        let mut loops = <Loops<f64, 2, 3> as Border<f64, 2>>::new();
+        let root = Matrix3::new(2.0, 0.0, 0.0, entries[0], 3.0, 0.0, entries[1], entries[2], 1.5);
+        let matrix = root * root.transpose();
+        put_loop_values(loops.all_mut(), 0, (matrix * Vector3::new(entries[3], entries[4], entries[5])).into());
+        prop_assert_eq!(loops.factor(|i, j| matrix[(i, j)], 1e-12), 0);
+        loops.solve();
+        assert_near(&loops.values(), &Vector3::new(entries[3], entries[4], entries[5]), 1e-12, "the solution");
+        prop_assert_eq!(loops.factor(|i, j| root[(i, 0)] * root[(j, 0)], 1e-12), 3 - usize::from(root[(0, 0)] != 0.0));
+        let mut limb = <LoopedLimb<f64, 2, 2, 3> as Branch<f64, 2, 2>>::new();
+        prop_assert_eq!((limb.columns().len(), limb.columns_mut().len()), (3, 3));
+        prop_assert!(limb.limb().is_some() && limb.limb_mut().is_some());
+        let mut limb = <Limb<f64, 2, 2> as Branch<f64, 2, 2>>::new();
+        prop_assert_eq!((limb.columns().len(), limb.columns_mut().len()), (0, 0));
+    }
+
     /// The parents of a tree are those of its equations, and a push Aᵀκ has the multipliers κ, wherever the beads are.
     /// Its sites have room for their children, which those of a chain have not.
     #[test]
@@ -252,6 +302,72 @@ proptest! {
         for (found, kappa) in found.iter().zip(&kappa) {
             assert_near(found, kappa, 1e-9, "the multipliers");
         }
+    }
+
+    /// The rows of rods that close loops are differences of their equations, and a push of all rods has its multipliers.
+    #[test]
+    fn multipliers_of_loops_are_those_of_their_pushes(places in vector::<12>(2.0), motion in vector::<12>(1.0), masses in vector::<6>(0.9), kappa in vector::<8>(1.0), t in -1.0_f64..1.0) {
+        let web = Web::<6> { mass: std::array::from_fn(|i| 1.0 + masses[i]), rod: 1.0, speed: 0.3 };
+        let points = |all: &SVector<f64, 12>| -> [Vector2<f64>; 6] { std::array::from_fn(|i| Vector2::new(all[2 * i], all[2 * i + 1])) };
+        let (q, motions) = (points(&places), points(&motion));
+        let rows_at = |t: f64, q: &[Vector2<f64>; 6]| {
+            let mut loops = <Loops<f64, 2, 3> as Border<f64, 2>>::new();
+            web.loop_rows(t, q, loops.all_mut());
+            web.loop_places(t, q, loops.all_mut());
+            loops
+        };
+        let loops = rows_at(t, &q);
+        let sites: Vec<[usize; 2]> = loops.all().iter().map(|row| row.sites).collect();
+        prop_assert_eq!(sites, vec![[3, 2], [4, 0], [5, 1]]);
+        let along = |s: f64| rows_at(t + s, &points(&(places + motion * s))).values();
+        let small = 1e-4;
+        let change = (along(small) - along(-small)) / (2.0 * small);
+        let mut bends = loops;
+        web.loop_bends(t, &q, &motions, bends.all_mut());
+        let bend = (along(small) - 2.0 * loops.values() + along(-small)) / (small * small);
+        assert_near(&bends.values(), &bend, 1e-5, "the bends");
+        for (i, row) in loops.all().iter().enumerate() {
+            let [a, b] = row.sites;
+            let rate = row.along[0].dot(&motions[a]) + row.along[1].dot(&motions[b]) - row.velocity;
+            assert_near(&SVector::from([rate]), &SVector::from([change[i]]), 1e-6, "the rate of a rod");
+        }
+        let rows: [JointRows<f64, 1, 2>; 6] = std::array::from_fn(|site| web.rows_at(t, &q, site));
+        let mut dense = nalgebra::DMatrix::zeros(8, 12);
+        for site in 1..6 {
+            prop_assert!(rows[site].are_there[0]);
+            let parent = Web::<6>::parent(site).expect("a parent");
+            for k in 0..2 {
+                dense[(site - 1, 2 * site + k)] = rows[site].own[k];
+                dense[(site - 1, 2 * parent + k)] = rows[site].before[k];
+            }
+        }
+        for (i, row) in loops.all().iter().enumerate() {
+            for (site, along) in row.sites.iter().zip(&row.along) {
+                (0..2).for_each(|k| dense[(5 + i, 2 * site + k)] = along[k]);
+            }
+        }
+        // rows that nearly depend on each other have no digits left
+        let values = dense.singular_values();
+        prop_assume!(values.min() > 0.05);
+        let push = dense.transpose() * nalgebra::DVector::from_column_slice(kappa.as_slice());
+        let push: [Vector2<f64>; 6] = std::array::from_fn(|i| Vector2::new(push[2 * i], push[2 * i + 1]));
+        let constants = web.constants(0.01)?;
+        let (joints, found) = web.multipliers_with_loops(&constants, t, &q, &push);
+        for site in 1..6 {
+            assert_near(&joints[site], &SVector::from([kappa[site - 1]]), 1e-8, "the multipliers of the tree");
+        }
+        assert_near(&found.values(), &kappa.fixed_rows::<3>(5).into_owned(), 1e-8, "the multipliers of the loops");
+        // no force acts but those of the rods: A Σ⁻¹Aᵀλ = −φ″
+        let mu: [Vector2<f64>; 6] = std::array::from_fn(|i| motions[i] * web.mass[i]);
+        let (joints, loops) = web.reactions_with_loops(&constants, t, &q, &mu, &())?;
+        let pulls = SVector::<f64, 8>::from_fn(|i, _| if i < 5 { joints[i + 1].x } else { loops.values()[i - 5] });
+        let mobility = nalgebra::DMatrix::from_fn(12, 12, |i, j| if i == j { 1.0 / web.mass[i / 2] } else { 0.0 });
+        let held = &dense * mobility * dense.transpose() * nalgebra::DVector::from_column_slice(pulls.as_slice());
+        let bend = SVector::<f64, 8>::from_fn(|i, _| match i {
+            0..5 => web.bend_at(t, &q, i + 1, &motions[i + 1], &motions[Web::<6>::parent(i + 1).unwrap_or(0)]).x,
+            _ => bends.values()[i - 5],
+        });
+        assert_near(&SVector::<f64, 8>::from_column_slice(held.as_slice()), &-bend, 1e-8, "the bends of all rods");
     }
 
     /// With the reactions the joints stay closed: φ″ = 0. The accelerations of bodies alone are differences of their steps.

@@ -122,10 +122,16 @@ pub(super) fn joints(formulas: &MechanicsFormulas<'_>) -> String {
         (_, true) => ("neighbours", "block tridiagonal, with a block in each corner"),
         _ => ("neighbours", "block tridiagonal"),
     };
+    let loops = match joints.loops {
+        0 => String::new(),
+        count => format!(
+            " Loops close by {count} of the equations: they are a border of S, with a dense matrix of {count}x{count}."
+        ),
+    };
     format!(
         "Joints between {sites}: {texts}. Their forces Aᵀλ act along their rows at both ends of the step, and q⁺ obeys them. \
          The velocity of N⁺ is tangent to them: A·Σ⁻¹·N⁺ = b at the end of the step.\n\
-         The multipliers are found by sweeps over all sites, λ ← λ − S⁻¹φ(q⁺)/h. S = A·Σ⁻¹·Aᵀ at q is {blocks}: a sweep takes O(N) operations. \
+         The multipliers are found by sweeps over all sites, λ ← λ − S⁻¹φ(q⁺)/h. S = A·Σ⁻¹·Aᵀ at q is {blocks}: a sweep takes O(N) operations.{loops} \
          The step is time-symmetric, symplectic on the momenta that are tangent to the joints, and obeys them to rounding.\n"
     )
 }

@@ -1,15 +1,14 @@
 //! Joints between neighbouring sites: the values and the rows of the equations whose later site is a given one.
 
-use clebsch_symbolic::IntoList;
 use proc_macro2::TokenStream;
 use quote::quote;
 
-use super::terms::Terms;
+use super::terms::{Terms, site};
 use crate::derive::{Id, JointRows};
 use crate::emit::Emitter;
 use crate::emit::block::Target;
 use crate::emit::function::{self, Body, no_words};
-use crate::emit::functions::{JOINED, MOBILE};
+use crate::emit::functions::{JOINED, LOOPS, MOBILE};
 use crate::emit::scope::size;
 use crate::model::{Joint, Power};
 
@@ -37,9 +36,15 @@ impl<'g> Emitter<'_, 'g> {
         let mobile = self.target.derived(Some(quote!(runtime::Mobile<#dimension>)), of_site);
         let is_ring = joints.is_ring;
         let terms = Terms::new(self, power);
-        let branch = if joints.is_tree { quote!(runtime::Limb<T, #most, #dimension>) } else { quote!(()) };
+        let loops = size(joints.loops);
+        let branch = match joints.loops {
+            0 if joints.is_tree => quote!(runtime::Limb<T, #most, #dimension>),
+            0 => quote!(()),
+            _ => quote!(runtime::LoopedLimb<T, #most, #dimension, #loops>),
+        };
         let formulas = self.formulas.joints.iter().flat_map(|joints| &joints.all);
-        let numbered: Vec<_> = joints.all.iter().zip(formulas).enumerate().into_list();
+        let all = joints.all.iter().zip(formulas).enumerate();
+        let (closing, numbered): (Vec<_>, Vec<_>) = all.partition(|(_, (joint, _))| joint.is_loop);
         let parent = joints.is_tree.then(|| {
             let of_joint = |(_, (joint, rows)): &(usize, (&Joint<'g>, &JointRows<'g>))| terms.parent((joint, rows));
             let statements: TokenStream = numbered.iter().map(of_joint).collect();
@@ -107,6 +112,7 @@ impl<'g> Emitter<'_, 'g> {
                 }
             }))
         });
+        let of_loops = (joints.loops > 0).then(|| self.loops(&terms, &closing, length));
         let joined = target.derived(
             Some(quote!(runtime::Joined<#length, #most, #dimension>)),
             quote! {
@@ -114,12 +120,31 @@ impl<'g> Emitter<'_, 'g> {
                 type Branch = #branch;
                 #parent
                 #functions
+                #of_loops
             },
         );
+        let reactions = quote!([runtime::SVector<T, #most>; #length]);
+        let trait_of_joints = quote!(runtime::Joined::<#length, #most, #dimension>);
+        let (reactions, multipliers, of_motion) = if joints.loops == 0 {
+            let multipliers = quote!(#trait_of_joints::multipliers_of_joints(self, c, t, q, mu));
+            (reactions, multipliers, quote!(#trait_of_joints::reactions_of_joints(self, c, t, q, mu, u)))
+        } else {
+            (
+                quote!((#reactions, runtime::SVector<T, #loops>)),
+                quote! {
+                    let (joints, loops) = #trait_of_joints::multipliers_with_loops(self, c, t, q, mu);
+                    (joints, loops.values())
+                },
+                quote! {
+                    let (joints, loops) = #trait_of_joints::reactions_with_loops(self, c, t, q, mu, u)?;
+                    runtime::Ok((joints, loops.values()))
+                },
+            )
+        };
         let constrained = target.derived(
             Some(quote!(runtime::Constrained)),
             quote! {
-                type Reactions = [runtime::SVector<T, #most>; #length];
+                type Reactions = #reactions;
 
                 fn momentum_of_velocity(
                     &self,
@@ -141,7 +166,7 @@ impl<'g> Emitter<'_, 'g> {
                     q: &Self::Configuration,
                     mu: &Self::Momentum,
                 ) -> Self::Reactions {
-                    runtime::Joined::<#length, #most, #dimension>::multipliers_of_joints(self, c, t, q, mu)
+                    #multipliers
                 }
                 fn reactions_of_motion(
                     &self,
@@ -151,10 +176,59 @@ impl<'g> Emitter<'_, 'g> {
                     mu: &Self::Momentum,
                     u: &Self::Input,
                 ) -> ::core::result::Result<Self::Reactions, runtime::Error> {
-                    runtime::Joined::<#length, #most, #dimension>::reactions_of_joints(self, c, t, q, mu, u)
+                    #of_motion
                 }
             },
         );
         quote!(#mobile #joined #constrained #reacting)
+    }
+    /// The functions of joints that close loops.
+    fn loops(
+        &self,
+        terms: &Terms<'_, '_, 'g>,
+        closing: &[(usize, (&Joint<'g>, &JointRows<'g>))],
+        length: &Option<TokenStream>,
+    ) -> TokenStream {
+        let dimension = size(self.dimension);
+        let words = |word: &str| match word {
+            "Sites" => Some(quote!([Q; #length])),
+            "Velocities" => Some(quote!([Mu; #length])),
+            "LoopRows" => Some(quote!([runtime::Loop<T, #dimension>])),
+            _ => None,
+        };
+        let statement = |name: &str, number: usize, joint: &Joint<'g>| {
+            let id = match name {
+                "loop_rows" => Id::Joint(number),
+                "loop_places" => Id::JointPlaces(number),
+                _ => Id::JointBend(number),
+            };
+            let kernel = self.program.kernel(id);
+            let entries = |output: usize| terms.entries(kernel, output);
+            // by construction: a joint that closes a loop reads two sites
+            let [own, before] = [site(joint.own), site(joint.before.unwrap_or(joint.own))];
+            let put = if name == "loop_rows" {
+                let nested = |output: usize| {
+                    let entries = entries(output);
+                    let rows = entries.chunks(self.dimension).map(|row| quote!([#(#row),*]));
+                    quote!([#(#rows),*])
+                };
+                let (rows, velocity) = ([nested(0), nested(1)], entries(2));
+                quote!(runtime::put_loops(loops, row, [#own, #before], [#(#rows),*], [#(#velocity),*]);)
+            } else {
+                let values = entries(0);
+                quote!(runtime::put_loop_values(loops, row, [#(#values),*]);)
+            };
+            let velocities = |leave: &TokenStream| {
+                let given = || quote!(let (runtime::Some(x), runtime::Some(mu)) = (velocities.get(#own), velocities.get(#before)) else { #leave };);
+                (name == "loop_bends").then(given)
+            };
+            terms.of_loop(joint, kernel, (velocities, put))
+        };
+        self.functions(LOOPS, (0, 0), &words, |function, _| {
+            let statements = closing.iter().map(|&(number, (joint, _))| statement(function.name, number, joint));
+            let statements: TokenStream = statements.collect();
+            let velocities = (function.name == "loop_bends").then(|| quote!(, velocities));
+            Some(Body::from(quote!(let _ = (t, q #velocities); #statements)))
+        })
     }
 }

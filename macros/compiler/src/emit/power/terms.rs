@@ -97,6 +97,37 @@ impl<'e, 'a, 'g> Terms<'e, 'a, 'g> {
         self.at_site((&self.power.places, Some(joint.own)), &found, kernel, put)
     }
 
+    /// Statements for all indices of a joint that closes a loop: `row` is the first of its rows. Those in `before` know the
+    /// indices of its sites, and leave by a label or a word.
+    pub(super) fn of_loop(
+        &self,
+        joint: &Joint<'g>,
+        kernel: &Kernel,
+        (before, put): (impl Fn(&TokenStream) -> Option<TokenStream>, TokenStream),
+    ) -> TokenStream {
+        let (all, first, count) = (self.power.places.as_slice(), size(joint.first), size(joint.count()));
+        let places: Vec<usize> = [Some(joint.own), joint.before].into_iter().flatten().into_list();
+        let indices = || -> TokenStream { places.iter().map(|&place| self.index_of(all, place)).collect() };
+        let statement = |leave: TokenStream| {
+            let before = before(&leave).map(|before| [indices(), before]);
+            let read = self.reading((all, None), &places, kernel, leave, put.clone());
+            before.into_iter().flatten().chain([read]).collect::<TokenStream>()
+        };
+        let Some(&(from, to)) = joint.term.ranges.first() else {
+            let statement = statement(quote!(break 'term));
+            return quote!('term: { let row = #first; #statement });
+        };
+        let [start, end] = [from, to].map(|expr| linear(expr, &self.emitter.length));
+        let statement = statement(quote!(continue));
+        let each = (joint.count() > 1).then(|| quote!(* #count));
+        quote! {
+            for i0 in #start..#end {
+                let row = #first + (i0 - #start) as ::core::primitive::usize #each;
+                #statement
+            }
+        }
+    }
+
     /// A statement that returns the parent of a site, if this joint gives it one.
     pub(super) fn parent(&self, (joint, rows): (&Joint<'g>, &JointRows<'g>)) -> TokenStream {
         let Some(before) = joint.before else { return TokenStream::new() };
@@ -244,7 +275,7 @@ impl<'e, 'a, 'g> Terms<'e, 'a, 'g> {
 }
 
 /// The name of the index of the site at a place.
-fn site(place: usize) -> Ident {
+pub(super) fn site(place: usize) -> Ident {
     format_ident!("at{place}")
 }
 
