@@ -168,6 +168,8 @@ macro_rules! every_scene {
             }, Vector2::new(0.8, 0.0), 0.02;
             branching_bodies: branching_bodies::BranchingBodies<7> { second_moment: inertia(), mass: 0.7, weight: 9.81, near: Vector3::z(), far: -Vector3::z(), side: -Vector3::z() },
                 [hanging(1.0), hanging(3.0), hanging(3.0), hanging(5.0), hanging(5.0), hanging(5.0), hanging(7.0)], 0.02;
+            braced_beads: braced_beads::BracedBeads { mass: [0.5, 0.4, 0.7, 0.3, 0.2, 0.6, 0.4], long: 4.64_f64.sqrt(), short: 0.8_f64.sqrt() },
+                [(0.0, -1.0), (-0.8, -1.6), (0.0, -2.0), (0.8, -1.6), (0.6, -2.8), (0.8, -2.6), (0.0, -3.6)].map(|(x, y)| Vector2::new(x, y)), 0.02;
             suslovs_body: suslov::Suslov { inertia: inertia() }, turned(), 0.1;
             a_sided_pair: sided_pair::SidedPair { }, (turned(), unit()), 0.1;
             a_top_of_eighth_order: eighth_order_top::EighthOrderTop { moments: principal(), weight: 1.3, center: centre() }, turned(), 0.05;

@@ -1,6 +1,7 @@
 //! Loops in trees of joints: against RATTLE with a dense matrix, and against the same bodies unrolled.
 
 use clebsch::{Clebsch, Drive, Error, SiteStorage};
+use clebsch_tests::fixtures::braced_beads::BracedBeads;
 use nalgebra::{DMatrix, DVector, Matrix3, Rotation2, SVector, Vector2, Vector3};
 
 mod declared {
@@ -87,30 +88,6 @@ mod declared {
             feet: [nalgebra::Vector2<f64>; 3],
             corners: [nalgebra::Vector2<f64>; 3],
         }
-    }
-
-    /// Beads on rods, a tree whose first bead swings from the origin. Struts brace it: they close loops.
-    #[derive(Clebsch, Clone, Debug)]
-    #[clebsch(
-        action     = |a: [Translation<2>; 7], x: [Vector2; 7]| (0..7).map(|i| x[i] + a[i]),
-        lagrangian = |v| (0..7).map(|i| self.mass[i] * v[i].norm_squared() / 2).sum(),
-        potential  = |x| (0..7).map(|i| self.mass[i] * 9.81 * x[i].y).sum(),
-        constraint = |x| [
-            x[0].norm_squared() == 1,
-            (1..4).map(|i| (x[i] - x[0]).norm_squared() == 1),
-            (x[4] - x[2]).norm_squared() == 1,
-            (5..7).map(|i| (x[i] - x[i - 2]).norm_squared() == 1),
-            (x[6] - x[1]).norm_squared() == self.long.powi(2),
-            (2..4).map(|i| (x[i] - x[i - 1]).norm_squared() == self.short.powi(2)),
-        ],
-    )]
-    pub struct BracedBeads {
-        /// Kilograms.
-        pub mass: [f64; 7],
-        /// The strut of the beads 6 and 1, metres.
-        pub long: f64,
-        /// The struts of the beads 1, 2 and 3, metres.
-        pub short: f64,
     }
 
     /// A fan of beads with a strut too many.
