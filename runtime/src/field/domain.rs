@@ -179,7 +179,9 @@ impl<S: Field<D> + Clone, const D: usize> Domain<S, Grid<T<S>, D>> {
     /// # Ok::<(), clebsch::SiteError>(())
     /// ```
     pub fn various(self, mut site: impl FnMut([usize; D]) -> S) -> Domain<S, Grid<T<S>, D>, super::Various> {
-        let systems = (0..self.lattice.sites()).map(|index| site(self.lattice.split(index))).collect();
+        // sizes that are refused have no sites
+        let sites = if self.lattice.check_sizes().is_ok() { self.lattice.sites() } else { 0 };
+        let systems = (0..sites).map(|index| site(self.lattice.split(index))).collect();
         Domain { systems, lattice: self.lattice }
     }
 }

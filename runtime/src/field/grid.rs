@@ -129,16 +129,17 @@ impl<T: Scalar, const D: usize> Grid<T, D> {
         &self.spacing
     }
 
-    /// The number of all sites.
+    /// The number of all sites, at most that of the largest `usize`.
     #[inline]
     pub fn sites(&self) -> usize {
-        self.sizes.iter().product()
+        self.sizes.iter().fold(1, |all: usize, size| all.saturating_mul(*size))
     }
 
     /// The number of the site at a place; `None` outside of the grid.
     pub fn index(&self, place: [usize; D]) -> Option<usize> {
         let is_inside = place.iter().zip(&self.sizes).all(|(place, size)| place < size);
-        is_inside.then(|| place.iter().zip(&self.sizes).fold(0, |index, (place, size)| index * size + place))
+        let next = |index: usize, (place, size): (&usize, &usize)| index.checked_mul(*size)?.checked_add(*place);
+        place.iter().zip(&self.sizes).try_fold(0, next).filter(|_| is_inside)
     }
 
     /// The place of a site; `None` if there is none of this number.
@@ -185,10 +186,23 @@ impl<T: Scalar, const D: usize> Grid<T, D> {
     /// The numbers of the sites before and after one in a direction.
     #[inline]
     pub(super) fn around(&self, index: usize, place: &[usize; D], direction: usize) -> [Option<usize>; 2] {
-        let stride: usize = self.sizes.iter().skip(direction + 1).product();
+        let stride = self.sizes.iter().skip(direction + 1).fold(1, |all: usize, size| all.saturating_mul(*size));
         let (own, size) = (place[direction], self.sizes[direction]);
         let start = index - own * stride;
         self.sides[direction].around(own, size).map(|place| place.map(|place| start + place * stride))
+    }
+
+    /// There is a site, and each has a number.
+    ///
+    /// # Errors
+    /// [`Error::EmptyGrid`].
+    pub(super) fn check_sizes(&self) -> Result<(), Error> {
+        let sites = self.sizes.iter().try_fold(1_usize, |all, &size| all.checked_mul(size));
+        if sites.is_some_and(|sites| sites > 0) {
+            return Ok(());
+        }
+        let direction = self.sizes.iter().position(|&size| size == 0).unwrap_or(0);
+        Err(Error::EmptyGrid { direction, sites: self.sizes.get(direction).copied().unwrap_or(0) })
     }
 
     /// The sizes and the spacings can be those of a grid.
@@ -196,11 +210,7 @@ impl<T: Scalar, const D: usize> Grid<T, D> {
     /// # Errors
     /// [`Error::EmptyGrid`] or [`Error::Spacing`].
     pub(super) fn check(&self) -> Result<(), Error> {
-        let sites = self.sizes.iter().try_fold(1_usize, |all, &size| all.checked_mul(size));
-        if sites.is_none_or(|sites| sites == 0) {
-            let direction = self.sizes.iter().position(|&size| size == 0).unwrap_or(0);
-            return Err(Error::EmptyGrid { direction, sites: self.sizes.get(direction).copied().unwrap_or(0) });
-        }
+        self.check_sizes()?;
         for (direction, spacing) in self.spacing.iter().enumerate() {
             for value in (0..T::LANES).map(|lane| spacing.lane(lane).to_f64()) {
                 if !(value.is_finite() && value > 0.0) {

@@ -177,10 +177,10 @@ impl<S: Clebsch + Clone, G: Lattice<S>, P: Population> FieldStepper<S, G, P> {
         self.stages.get(index)?.as_ref()
     }
 
-    /// The parameters of all sites in their order, with the constants of one part of a step.
-    fn all<'a>(&'a self, stage: &'a Stage<S, P>) -> impl Iterator<Item = (&'a S, &'a Constants<S>)> {
+    /// The parameters of the sites from one on in their order, with the constants of one part of a step.
+    fn all<'a>(&'a self, first: usize, stage: &'a Stage<S, P>) -> impl Iterator<Item = (&'a S, &'a Constants<S>)> {
         let (systems, constants) = (self.systems.as_ref(), stage.constants.as_ref());
-        (0..self.lattice.sites()).map_while(|i| Some((systems.get(P::number(i))?, constants.get(P::number(i))?)))
+        (first..self.lattice.sites()).map_while(|i| Some((systems.get(P::number(i))?, constants.get(P::number(i))?)))
     }
 
     /// The state with a configuration and a momentum for each site. Where the time matters it starts at 0.
@@ -367,7 +367,7 @@ impl<S: Clebsch + Clone, G: Lattice<S>, P: Population> FieldStepper<S, G, P> {
         let Some(stage) = self.stage(number) else { return Ok(()) };
         let (has_fixed, none) = (self.lattice.has_fixed(), U::<S>::origin());
         let mut sum = T::<S>::zero();
-        match self.all(stage).next() {
+        match self.all(first, stage).next() {
             // the loop that most fields have, without a question about each site
             Some((system, constants)) if P::ARE_ALIKE && !has_fixed && inputs.is_none() => {
                 for (i, (q, mu)) in (first..).zip(q.iter_mut().zip(&mut *mu)) {
@@ -376,7 +376,7 @@ impl<S: Clebsch + Clone, G: Lattice<S>, P: Population> FieldStepper<S, G, P> {
                 }
             }
             _ => {
-                let sites = q.iter_mut().zip(&mut *mu).zip(self.all(stage).skip(first));
+                let sites = q.iter_mut().zip(&mut *mu).zip(self.all(first, stage));
                 for (i, ((q, mu), (system, constants))) in (first..).zip(sites) {
                     if has_fixed && self.lattice.is_fixed(i) {
                         *mu = Space::origin();
@@ -404,7 +404,7 @@ impl<S: Clebsch + Clone, G: Lattice<S>, P: Population> FieldStepper<S, G, P> {
         let t = state.time.now();
         let systems = self.systems.as_ref();
         let (Some(stage), Some(first)) = (self.stage(0), systems.first()) else { return Ok(Zero::zero()) };
-        let sites = summed(q.iter().zip(mu).zip(self.all(stage)).map(|((q, mu), (system, constants))| {
+        let sites = summed(q.iter().zip(mu).zip(self.all(0, stage)).map(|((q, mu), (system, constants))| {
             let constants = S::Scheme::whole(constants);
             <Declared as Method<S>>::kinetic_energy(system, constants, t, q, mu) + system.potential(t, q)
         }));

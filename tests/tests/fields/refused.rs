@@ -13,6 +13,10 @@ fn grids_without_sites_and_spacings_of_zero_are_refused() {
     assert_eq!(refused([3, 3], [0.0, 1.0]), Error::Spacing { direction: 0, value: 0.0 });
     assert_eq!(refused([3, 3], [1.0, -0.5]), Error::Spacing { direction: 1, value: -0.5 });
     assert!(matches!(refused([3, 3], [1.0, f64::NAN]), Error::Spacing { direction: 1, .. }));
+    let huge = WaveMap.grid([usize::MAX, usize::MAX]);
+    assert_eq!((huge.lattice().sites(), huge.lattice().index([usize::MAX - 1, 3])), (usize::MAX, None));
+    let huge = huge.various(|_| WaveMap).stepper(0.1).unwrap_err();
+    assert_eq!(huge, Error::EmptyGrid { direction: 0, sites: usize::MAX });
     let step = WaveMap.grid([3, 3]).stepper(0.0).unwrap_err();
     assert_eq!(step, Error::StepSize { value: 0.0 });
 }
