@@ -2,6 +2,7 @@
 //!
 //! A stage says which features it has found and where; [`refusals`] looks the combinations up. A rule for a new feature is a row.
 
+mod declared;
 mod feature;
 mod rows;
 #[cfg(test)]
@@ -11,6 +12,7 @@ use clebsch_symbolic::{Elements, IntoElements, IntoList};
 use proc_macro2::Span;
 
 use crate::diagnostic::{Diagnostic, Diagnostics, Location, error};
+pub(crate) use declared::declared;
 pub(crate) use feature::Feature;
 use rows::ROWS;
 

@@ -10,9 +10,9 @@ use super::scope::{Scope, check_reserved};
 use super::space::{Space, leaf_names};
 use super::typed::ActedSystem;
 use super::value::Value;
-use super::{Configuration, EdgeEnergy, Factor, LeafSpace, Order};
+use super::{Configuration, EdgeEnergy, Factor, LeafSpace};
 use crate::diagnostic::{Diagnostics, refuse, report};
-use crate::parse::{Argument, Closure, Declaration, Pattern, Potential, spell_type, tail};
+use crate::parse::{Argument, Closure, Declaration, Pattern, spell_type, tail};
 
 /// The most directions of space.
 const DIRECTIONS: usize = 3;
@@ -204,37 +204,9 @@ impl<'g> ActedSystem<'_, '_, 'g> {
     }
 }
 
-/// Reports features that a field cannot have yet.
+/// Reports features that a field cannot have yet. Powers report that they are none.
 pub(super) fn check(declaration: &Declaration, diagnostics: &Diagnostics) {
     let Some(closure) = declaration.spaces.first() else { return };
-    let dials = &declaration.dials;
-    let emitted = |asked: bool| asked.then(|| Found::at(declaration.ident.span()));
-    let order = |fits: fn(Order) -> bool| {
-        let order = dials.order.as_ref().filter(|order| fits(order.value))?;
-        Some(Found::at(order.span).named(order.value.number()))
-    };
-    let found = |feature| match feature {
-        // powers have reported it
-        Feature::Power => None,
-        Feature::OpaquePotential => {
-            declaration.potential.as_ref().and_then(Potential::opaque).map(|opaque| Found::at(opaque.place))
-        }
-        Feature::FirstOrder => order(|order| order == Order::First),
-        Feature::Sixteenth => order(|order| order == Order::Sixteenth),
-        Feature::Method => declaration.methods.first().map(|method| Found::at(method.name.span())),
-        Feature::Tangent => emitted(dials.emit.tangent),
-        Feature::Boundary => emitted(dials.emit.boundary),
-        Feature::Momentum => emitted(dials.emit.momentum),
-        Feature::Matrices => dials
-            .code
-            .as_ref()
-            .filter(|code| code.value == crate::parse::CodeForm::Matrices)
-            .map(|code| Found::at(code.span)),
-        key => {
-            let closure = declaration.closures().find(|closure| key.is_key(&closure.key.to_string()));
-            let dial = || dials.given().find(|(name, _)| key.is_key(name)).map(|(_, value)| value.span);
-            closure.map(|closure| closure.key.span()).or_else(dial).map(Found::at)
-        }
-    };
-    diagnostics.extend(features::refusals_of((Feature::Field, Found::at(closure.key.span())), found));
+    let field = (Feature::Field, Found::at(closure.key.span()));
+    diagnostics.extend(features::refusals_of(field, |feature| features::declared(declaration, feature)));
 }

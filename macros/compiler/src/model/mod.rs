@@ -174,15 +174,12 @@ pub fn model<'g>(graph: &'g Graph, declaration: &Declaration, by_number: ByNumbe
     let declared_order = dials.order.as_ref().map_or(Order::Second, |order| order.value);
     // a composed step is one of all sites, made of steps of second order
     let order = if power.is_some() && declared_order.stages().is_some() { Order::Second } else { declared_order };
-    let is_field = !declaration.spaces.is_empty();
+    let is_field = !formulas.edges.is_empty();
     let order = if is_field && declared_order.stages().is_some() { Order::Second } else { order };
     let mut potential = formulas.potential;
     // the sites of a field are kicked by their potential and by their edges at once
-    let field = (is_field && !formulas.edges.is_empty()).then(|| FieldEnergies {
-        edges: formulas.edges,
-        potential: potential.take(),
-        order: declared_order,
-    });
+    let field =
+        is_field.then(|| FieldEnergies { edges: formulas.edges, potential: potential.take(), order: declared_order });
     let power = power.map(|power| {
         let forces = force.iter().flat_map(|force| force.of_group.iter().chain(&force.on_configuration).flatten());
         let read = [kinetic.energy()].into_iter().chain(forces.copied()).into_list();

@@ -11,7 +11,7 @@ use super::spaces::Product;
 use super::value::Value;
 use super::{Configuration, Item, Leaf, Order, Parameter, Part, Power, ScalarType, System};
 use crate::diagnostic::{Diagnostic, Diagnostics, error};
-use crate::parse::{Declaration, Potential, tail};
+use crate::parse::{Declaration, tail};
 
 /// The data of a power that closures need, and the data that they find.
 pub(super) struct Sites<'g> {
@@ -186,28 +186,8 @@ pub(super) fn of_one_site<'g>(terms: &[Term<'g>], sites: Expr<'g>, graph: &'g Gr
 
 /// Reports features that a power cannot have yet.
 pub(super) fn check(declaration: &Declaration, diagnostics: &Diagnostics) {
-    let dials = &declaration.dials;
-    let emitted = |asked: bool| asked.then(|| Found::at(declaration.ident.span()));
-    let order = |fits: fn(Order) -> bool| {
-        let order = dials.order.as_ref().filter(|order| fits(order.value))?;
-        Some(Found::at(order.span).named(order.value.number()))
-    };
-    let found = |feature| match feature {
-        Feature::OpaquePotential => {
-            declaration.potential.as_ref().and_then(Potential::opaque).map(|opaque| Found::at(opaque.place))
-        }
-        Feature::Sixteenth => order(|order| order == Order::Sixteenth),
-        Feature::Method => declaration.methods.first().map(|method| Found::at(method.name.span())),
-        Feature::Tangent => emitted(dials.emit.tangent),
-        Feature::Boundary => emitted(dials.emit.boundary),
-        Feature::Momentum => emitted(dials.emit.momentum),
-        key => {
-            let closure = declaration.closures().find(|closure| key.is_key(&closure.key.to_string()));
-            let dial = || dials.given().find(|(name, _)| key.is_key(name)).map(|(_, value)| value.span);
-            closure.map(|closure| closure.key.span()).or_else(dial).map(Found::at)
-        }
-    };
-    diagnostics.extend(features::refusals_of((Feature::Power, Found::somewhere()), found));
+    let power = (Feature::Power, Found::somewhere());
+    diagnostics.extend(features::refusals_of(power, |feature| features::declared(declaration, feature)));
 }
 
 /// The terms that tie sites to each other; the system becomes that of one site, whose kinetic energy and forces are `of_site`.
