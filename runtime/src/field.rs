@@ -7,6 +7,9 @@
 //! ```
 //! A step is explicit in space: each site moves by itself. It is symmetric in time and of second order. It conserves the
 //! product of the symplectic forms of all sites, and the total momentum of each symmetry. Orders 4, 6 and 8 are compositions of it.
+//!
+//! Source: Marsden, Patrick and Shkoller, *Multisymplectic geometry, variational integrators, and nonlinear PDEs*,
+//! Communications in Mathematical Physics 199 (1998).
 
 mod domain;
 mod grid;
@@ -74,10 +77,12 @@ pub trait Field<const D: usize>: Clebsch {
     /// The order of a step of all sites: 2, 4, 6 or 8.
     const ORDER_OF_FIELD: u32;
 
-    /// The energy U of the edge from `q` to its neighbour `next` in a direction. `spacing` has the spacings of all directions.
+    /// The energy U of the edge from `q` to its neighbour `next` in a direction, in joules: the value of the closure of `space`.
+    /// Directions count from 0; one that is not there is taken for the last. `spacing` has the spacings of all directions.
     fn edge_energy(&self, direction: usize, spacing: &[T<Self>; D], q: &Q<Self>, next: &Q<Self>) -> T<Self>;
 
-    /// The forces of this edge: −J(q, ∂₁U) on its site, and −J(next, ∂₂U) on the neighbour.
+    /// The forces of this edge: −J(q, ∂₁U) on its site, and −J(next, ∂₂U) on the neighbour. They are momenta per time, in the
+    /// components of all factors.
     fn edge_forces(
         &self,
         direction: usize,
@@ -86,7 +91,7 @@ pub trait Field<const D: usize>: Clebsch {
         next: &Q<Self>,
     ) -> (Mu<Self>, Mu<Self>);
 
-    /// The force of the potential on a site, −J(q, ∂V); 0 as provided.
+    /// The force of the potential on a site at the time t, −J(q, ∂V); 0 as provided.
     #[inline]
     fn force_on_site(&self, _t: T<Self>, _q: &Q<Self>) -> Mu<Self> {
         Space::origin()

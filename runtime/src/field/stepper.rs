@@ -324,6 +324,9 @@ impl<S: Clebsch + Clone, G: Lattice<S>, P: Population> FieldStepper<S, G, P> {
         kick((time.now(), half * first), q, mu);
         for step in 1..=steps {
             let after = time.after_step(self.step_size());
+            if !after.now().is_finite() {
+                return Err(Error::NotFinite { name: "the time after the step" }.into());
+            }
             let mut part = Part { number: 0, t: time.now() };
             while let Some(stage) = self.stage(part.number) {
                 drift(part, (q, mu))?;
@@ -391,7 +394,7 @@ impl<S: Clebsch + Clone, G: Lattice<S>, P: Population> FieldStepper<S, G, P> {
         finite(first, (q, mu), sum)
     }
 
-    /// The kinetic energies of all sites, their potentials, and the energies of all edges.
+    /// The kinetic energies of all sites, their potentials, and the energies of all edges, in joules.
     ///
     /// # Errors
     /// [`Error::NumberOfSites`] for the state of another field.

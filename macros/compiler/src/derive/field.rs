@@ -17,8 +17,6 @@ const EXPANSION: u64 = 50_000;
 pub struct FieldFormulas<'g> {
     /// Those of the edges, one for each direction.
     pub edges: Vec<EdgeFormulas<'g>>,
-    /// V of a site, a function of the configuration at place 0.
-    pub potential: Expr<'g>,
     /// −J(q, ∂V) for each factor, a function of the configuration; none without a potential.
     pub force_of_site: Vec<Expr<'g>>,
     /// The force on a site that has a neighbour on both sides in each direction: from its potential and from all edges.
@@ -44,8 +42,6 @@ pub struct EdgeFormulas<'g> {
 /// The formulas of the field of a model; `None` if it is none.
 pub(super) fn of<'g>(model: &Mechanics<'g>, system: &SystemFormulas<'g>) -> Option<FieldFormulas<'g>> {
     let field = model.field.as_ref()?;
-    let graph = model.graph;
-    let potential = field.potential.unwrap_or_else(|| graph.integer(0));
     let force_of_site = field.potential.and_then(|potential| system.impulse(potential)).unwrap_or_default();
     let there = |edge: &EdgeEnergy<'g>, end: usize| -> Vec<Expr<'g>> {
         indexed(model.configurations.len(), |leaf| leaf_of_edge(model, edge, end, leaf))
@@ -59,7 +55,6 @@ pub(super) fn of<'g>(model: &Mechanics<'g>, system: &SystemFormulas<'g>) -> Opti
     });
     Some(FieldFormulas {
         edges,
-        potential,
         force_of_site: force_of_site.into_each(|force| -force),
         force_inside: field
             .edges
@@ -101,6 +96,7 @@ fn coordinates<'g>(model: &Mechanics<'g>) -> Vec<Expr<'g>> {
             }
             _ => {
                 let increment = f - factor.group.identity(graph);
+                // by construction: the coordinates of a group without a Cayley map are not read
                 let z = cayley::of_increment(model, k, increment);
                 z.map_or_else(|| graph.zero(Shape::vector(factor.group.dimension())), |(_, z)| z)
             }
