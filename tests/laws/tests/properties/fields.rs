@@ -107,7 +107,7 @@ proptest! {
             prop_assert_eq!(Lattice::<Spins>::is_fixed(&grid, index), is_fixed);
             has_fixed |= is_fixed;
         }
-        prop_assert!(Lattice::<Spins>::has_fixed(&grid) || !has_fixed);
+        prop_assert_eq!(Lattice::<Spins>::has_fixed(&grid), has_fixed);
         let domain = spins().grid(sizes);
         let all = [domain.clone().free(), domain.clone().fixed(), domain.clone().periodic()].map(|domain| *domain.lattice());
         let expected = [Sides::Open(Side::Free, Side::Free), Sides::Open(Side::Fixed, Side::Fixed), Sides::Periodic];
