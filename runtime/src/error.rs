@@ -95,6 +95,13 @@ errors! {
             /// The spacing that was given.
             value: f64,
         } => "the spacing in direction {direction} is {value}: it must be a finite number above zero";
+        /// Small waves of a field grow at steps of this size.
+        UnstableStep {
+            /// The step size.
+            step_size: f64,
+            /// The step size up to which they do not grow.
+            stable: f64,
+        } => "the step size {step_size} is above {stable}, up to which small waves of the field surely do not grow: take shorter steps";
         /// A field is not symmetric that is declared `#[clebsch(symmetric)]`, or that a cost needs to be symmetric.
         NotSymmetric {
             /// The field.

@@ -12,8 +12,11 @@
 //! Communications in Mathematical Physics 199 (1998).
 
 mod domain;
+mod edges;
 mod grid;
+mod residuals;
 mod sites;
+mod stability;
 mod stepper;
 mod sweep;
 
@@ -27,6 +30,54 @@ pub use stepper::{FieldState, FieldStepper};
 use crate::parts::{Mu, Q, T};
 use crate::space::plus;
 use crate::{Clebsch, Space};
+
+/// A site of a field by itself. `#[derive(Clebsch)]` implements it where there is the key `space`.
+///
+/// ```
+/// use clebsch::{Clebsch, FieldSite};
+/// use nalgebra::Vector1;
+///
+/// /// A string on springs, its displacement x.
+/// #[derive(Clebsch, Clone, Debug)]
+/// #[clebsch(
+///     action    = |a: Translation<1>, x: Vector1| x + a,
+///     cost      = |h, a| self.mass * a.norm_squared() / (2 * h),
+///     potential = |x| x.norm_squared(),
+///     space     = |dx, x, next| (next - x).norm_squared() / (2 * dx.powi(2)),
+/// )]
+/// struct Strand { mass: f64 }
+///
+/// let (strand, x) = (Strand { mass: 3.0 }, Vector1::new(2.0));
+/// assert_eq!(strand.force_on_site(0.0, &x), Vector1::new(-4.0));
+/// assert_eq!(strand.momentum_of_velocity(0.0, &x, &Vector1::new(0.5)), Vector1::new(1.5));
+/// ```
+#[diagnostic::on_unimplemented(
+    message = "`{Self}` is no field",
+    note = "a field has an energy for each direction of space: `space = |dx, q, next| …`"
+)]
+pub trait FieldSite: Clebsch {
+    /// Whether a site has a potential of its own.
+    #[doc(hidden)]
+    const HAS_POTENTIAL: bool;
+
+    /// The order of a step of all sites: 2, 4, 6 or 8.
+    const ORDER_OF_FIELD: u32;
+
+    /// The force of the potential on a site at the time t, −J(q, ∂V); 0 as provided.
+    #[inline]
+    fn force_on_site(&self, _t: T<Self>, _q: &Q<Self>) -> Mu<Self> {
+        Space::origin()
+    }
+
+    /// The change of [`force_on_site`](Self::force_on_site) by a small motion of the site; 0 as provided.
+    #[inline]
+    fn force_on_site_along(&self, _t: T<Self>, _q: &Q<Self>, _motion: &Mu<Self>) -> Mu<Self> {
+        Space::origin()
+    }
+
+    /// The momentum of a velocity: ∂ℓ/∂ξ at (t, q, ξ), in the components of all factors.
+    fn momentum_of_velocity(&self, t: T<Self>, q: &Q<Self>, velocity: &Mu<Self>) -> Mu<Self>;
+}
 
 /// A site of a field with neighbours in D directions of space. `#[derive(Clebsch)]` implements it where there is the key `space`.
 ///
@@ -65,17 +116,10 @@ use crate::{Clebsch, Space};
     message = "`{Self}` is no field with {D} directions of space",
     note = "a field has an energy for each direction, `space = [|dx, q, next| …, |dy, q, next| …]`, and a size for each, `grid([64, 64])`"
 )]
-pub trait Field<const D: usize>: Clebsch {
+pub trait Field<const D: usize>: FieldSite {
     /// Whether the force on a site is found from all of its edges at once, by [`force_inside`](Self::force_inside).
     #[doc(hidden)]
     const GATHERS: bool;
-
-    /// Whether a site has a potential of its own.
-    #[doc(hidden)]
-    const HAS_POTENTIAL: bool;
-
-    /// The order of a step of all sites: 2, 4, 6 or 8.
-    const ORDER_OF_FIELD: u32;
 
     /// The energy U of the edge from `q` to its neighbour `next` in a direction, in joules: the value of the closure of `space`.
     /// Directions count from 0; one that is not there is taken for the last. `spacing` has the spacings of all directions.
@@ -91,11 +135,17 @@ pub trait Field<const D: usize>: Clebsch {
         next: &Q<Self>,
     ) -> (Mu<Self>, Mu<Self>);
 
-    /// The force of the potential on a site at the time t, −J(q, ∂V); 0 as provided.
-    #[inline]
-    fn force_on_site(&self, _t: T<Self>, _q: &Q<Self>) -> Mu<Self> {
-        Space::origin()
-    }
+    /// The change of [`edge_forces`](Self::edge_forces) by small motions of both ends: `motion` η moves the site by η_Q(q), and
+    /// `next_motion` the neighbour. These are the second derivatives of U, with the other sign.
+    fn edge_forces_along(
+        &self,
+        direction: usize,
+        spacing: &[T<Self>; D],
+        q: &Q<Self>,
+        next: &Q<Self>,
+        motion: &Mu<Self>,
+        next_motion: &Mu<Self>,
+    ) -> (Mu<Self>, Mu<Self>);
 
     /// The force on a site between the neighbours `before` and `after` it in each direction: that of its potential, and those of
     /// all edges.

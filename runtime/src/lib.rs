@@ -202,7 +202,7 @@ pub use drive::{Drive, Integrator, NoJoints, SiteError, SiteStorage, Sites};
 pub use error::Error;
 #[cfg(feature = "alloc")]
 pub use field::Various;
-pub use field::{Alike, Domain, Field, FieldState, FieldStepper, Grid, Lattice, Population, Side, Sides};
+pub use field::{Alike, Domain, Field, FieldSite, FieldState, FieldStepper, Grid, Lattice, Population, Side, Sides};
 #[cfg(feature = "lanes")]
 pub use lanes::{F32x8, F32x8Mask, F64x4, F64x4Mask, F64x8, F64x8Mask};
 pub use method::{Declared, Method};

@@ -7,7 +7,7 @@ mod formulas;
 mod reactions;
 mod refusal;
 mod staggered;
-mod step_size;
+pub(crate) mod step_size;
 mod symmetric;
 
 use crate::fields::{debug_fields, getters};

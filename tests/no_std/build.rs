@@ -23,8 +23,8 @@ const INSTANCES: [(&str, &[(&str, &str)]); 11] = [
     ("FirstOrderMolecules", &[("", "<8>")]),
 ];
 
-/// The directions of space of fields that have more than one.
-const DIRECTIONS: [(&str, &str); 1] = [("wave_map", "2")];
+/// The directions of space of fields that have more than one, and the number of their conserved momenta.
+const DIRECTIONS: [(&str, &str); 1] = [("wave_map", "2, 3")];
 
 /// The names in `f32` of the lanes of `f64`.
 const LANES: [&str; 2] = ["F64x4", "F64x8"];

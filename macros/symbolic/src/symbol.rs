@@ -33,6 +33,8 @@ pub enum Role {
     Following(usize),
     /// The coordinates of an algebra element ξ of a factor.
     Algebra(usize),
+    /// The coordinates of a small motion of an end of an edge, by the number of the end and of the factor.
+    Motion(usize, usize),
     /// The momentum μ of a factor.
     Momentum(usize),
     /// The multipliers of the momentum equation of a step.

@@ -1,10 +1,12 @@
 //! A field on a lattice, before it has a step size.
 
-use super::{Alike, Field, FieldStepper, Grid, Population, Sides};
+use super::edges::{Configured, Edge};
+use super::{Alike, Field, FieldSite, FieldStepper, Grid, Population, Sides};
 use crate::fields::getters;
 use crate::parts::{Mu, Q, T};
 use crate::{Clebsch, Error};
 use core::fmt::{self, Debug, Formatter};
+use core::marker::PhantomData;
 
 /// The places of the sites of a field, and the edges between them. It is a [`Grid`].
 ///
@@ -24,7 +26,7 @@ use core::fmt::{self, Debug, Formatter};
 ///
 /// assert_eq!(sites(&Grid::new([12])), 12);
 /// ```
-pub trait Lattice<S: Clebsch>: Clone {
+pub trait Lattice<S: FieldSite>: Clone {
     /// The number of sites.
     fn sites(&self) -> usize;
 
@@ -58,9 +60,17 @@ pub trait Lattice<S: Clebsch>: Clone {
     where
         S: 's;
 
-    /// The order of a step.
+    /// Visits the edges at a site, each with the end that the site is: 0 or 1.
     #[doc(hidden)]
-    fn order() -> u32;
+    fn visit_edges(&self, site: usize, visit: impl FnMut(Edge, usize));
+
+    /// The forces of an edge on its ends.
+    #[doc(hidden)]
+    fn forces(&self, system: &S, edge: Edge, q: [&Q<S>; 2]) -> (Mu<S>, Mu<S>);
+
+    /// The changes of these forces by small motions of the ends.
+    #[doc(hidden)]
+    fn forces_along(&self, system: &S, edge: Edge, q: [&Q<S>; 2], motions: [&Mu<S>; 2]) -> (Mu<S>, Mu<S>);
 }
 
 /// A field on a lattice. Made by [`Field::grid`].
@@ -109,6 +119,17 @@ impl<S: Clebsch + Clone, G, P: Population> Domain<S, G, P> {
         ref lattice: G;
     }
 
+    /// The sites with their configurations.
+    pub(super) fn configured<'a>(&'a self, q: &'a [Q<S>]) -> Configured<'a, S, G, P> {
+        Configured { systems: self.systems.as_ref(), lattice: &self.lattice, q, population: PhantomData }
+    }
+
+    /// The declared site with the parameters of a site; `None` if there is none of this number.
+    #[inline]
+    pub fn system(&self, site: usize) -> Option<&S> {
+        self.systems.as_ref().get(P::number(site))
+    }
+
     /// A stepper of step size `h`.
     ///
     /// # Errors
@@ -116,6 +137,7 @@ impl<S: Clebsch + Clone, G, P: Population> Domain<S, G, P> {
     /// [`Clebsch::stepper`].
     pub fn stepper(self, h: T<S>) -> Result<FieldStepper<S, G, P>, Error>
     where
+        S: FieldSite,
         G: Lattice<S>,
     {
         FieldStepper::new(self.systems, self.lattice, h)

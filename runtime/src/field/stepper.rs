@@ -1,12 +1,14 @@
 //! Steps of all sites of a field, in place.
 
-use super::{Alike, Lattice, Population};
+use super::edges::Configured;
+use super::{Alike, FieldSite, Lattice, Population};
 use crate::fields::getters;
 use crate::parts::{Mu, Q, T, U};
 use crate::scheme::{At, Constants, OfOrderEight, OfOrderFour, OfOrderSix, Scheme, Sizes, moved};
 use crate::stepper::{check_momentum, check_on_orbit, check_step_size};
 use crate::{Clebsch, Conserved, Conserves, Declared, Error, Method, Scalar, SiteError, Space, Time};
 use core::fmt::{self, Debug, Formatter};
+use core::marker::PhantomData;
 use num_traits::Zero;
 
 /// The most sizes of the parts of a step: those of order 8.
@@ -134,11 +136,11 @@ impl From<Error> for SiteError {
     }
 }
 
-impl<S: Clebsch + Clone, G: Lattice<S>, P: Population> FieldStepper<S, G, P> {
+impl<S: FieldSite + Clone, G: Lattice<S>, P: Population> FieldStepper<S, G, P> {
     pub(super) fn new(systems: P::Of<S>, lattice: G, h: T<S>) -> Result<Self, Error> {
         lattice.check()?;
         check_step_size(h)?;
-        let sizes: &[f64] = match G::order() {
+        let sizes: &[f64] = match S::ORDER_OF_FIELD {
             4 => &OfOrderFour::SIZES,
             6 => &OfOrderSix::SIZES,
             8 => &OfOrderEight::SIZES,
@@ -168,6 +170,16 @@ impl<S: Clebsch + Clone, G: Lattice<S>, P: Population> FieldStepper<S, G, P> {
     #[inline]
     pub fn step_size(&self) -> T<S> {
         self.h
+    }
+
+    /// The sites with their configurations.
+    pub(super) fn configured<'a>(&'a self, q: &'a [Q<S>]) -> Configured<'a, S, G, P> {
+        Configured { systems: self.systems.as_ref(), lattice: &self.lattice, q, population: PhantomData }
+    }
+
+    /// A stepper of another step size.
+    pub(super) fn of_step_size(&self, h: T<S>) -> Result<Self, Error> {
+        Self::new(self.systems.clone(), self.lattice.clone(), h)
     }
 
     /// The step of a composed one with its size and constants; `None` after the last.
@@ -211,7 +223,7 @@ impl<S: Clebsch + Clone, G: Lattice<S>, P: Population> FieldStepper<S, G, P> {
     }
 
     /// The parameters of all sites in their order.
-    fn each(&self) -> impl Iterator<Item = &S> {
+    pub(super) fn each(&self) -> impl Iterator<Item = &S> {
         let systems = self.systems.as_ref();
         (0..self.lattice.sites()).map_while(|i| systems.get(P::number(i)))
     }
@@ -285,12 +297,29 @@ impl<S: Clebsch + Clone, G: Lattice<S>, P: Population> FieldStepper<S, G, P> {
         self.tried(state, 1, |at, q, mu| self.kick(at, q, (0, mu)), drift)
     }
 
+    /// One step, in place, with a visit of the configurations before each kick of this weight.
+    pub(super) fn step_visited<Points, Momenta>(
+        &self,
+        state: &mut FieldState<Points, Momenta, S::Time>,
+        mut visit: impl FnMut(T<S>, &[Q<S>]),
+    ) -> Result<(), SiteError>
+    where
+        Points: AsRef<[Q<S>]> + AsMut<[Q<S>]>,
+        Momenta: AsRef<[Mu<S>]> + AsMut<[Mu<S>]>,
+    {
+        let kick = |(t, weight): (T<S>, T<S>), q: &[Q<S>], mu: &mut [Mu<S>]| {
+            visit(weight, q);
+            self.kick((t, weight), q, (0, mu));
+        };
+        self.tried(state, 1, kick, |part, sites| self.drift(part, 0, sites, None))
+    }
+
     /// Steps made of kicks and drifts of all sites, and a note in the state where one fails.
     fn tried<Points, Momenta>(
         &self,
         state: &mut FieldState<Points, Momenta, S::Time>,
         steps: u64,
-        kick: impl Fn((T<S>, T<S>), &[Q<S>], &mut [Mu<S>]),
+        kick: impl FnMut((T<S>, T<S>), &[Q<S>], &mut [Mu<S>]),
         drift: impl Fn(Part<T<S>>, Sites<'_, S>) -> Result<(), SiteError>,
     ) -> Result<(), SiteError>
     where
@@ -309,7 +338,7 @@ impl<S: Clebsch + Clone, G: Lattice<S>, P: Population> FieldStepper<S, G, P> {
         &self,
         state: &mut FieldState<Points, Momenta, S::Time>,
         steps: u64,
-        kick: impl Fn((T<S>, T<S>), &[Q<S>], &mut [Mu<S>]),
+        mut kick: impl FnMut((T<S>, T<S>), &[Q<S>], &mut [Mu<S>]),
         drift: impl Fn(Part<T<S>>, Sites<'_, S>) -> Result<(), SiteError>,
     ) -> Result<(), SiteError>
     where
@@ -435,7 +464,7 @@ impl<S: Clebsch + Clone, G: Lattice<S>, P: Population> FieldStepper<S, G, P> {
         Ok(Conserved::new(names, values))
     }
 
-    fn parts<'s, Points, Momenta>(
+    pub(super) fn parts<'s, Points, Momenta>(
         &self,
         state: &'s FieldState<Points, Momenta, S::Time>,
     ) -> Result<Parts<'s, S>, SiteError>
@@ -496,7 +525,7 @@ fn summed<T: Scalar>(numbers: impl Iterator<Item = T>) -> T {
 const SHARE: usize = 4096;
 
 #[cfg(feature = "rayon")]
-impl<S: Clebsch + Clone, G: Lattice<S>, P: Population> FieldStepper<S, G, P>
+impl<S: FieldSite + Clone, G: Lattice<S>, P: Population> FieldStepper<S, G, P>
 where
     Self: Sync,
     T<S>: Send + Sync,

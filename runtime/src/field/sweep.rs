@@ -1,5 +1,6 @@
 //! The forces on all sites of a grid, row by row. The sites of a row follow each other in the last direction.
 
+use super::edges::Edge;
 use super::{Field, Grid, Lattice};
 use crate::parts::{Mu, Q, T};
 use crate::space::plus;
@@ -226,7 +227,21 @@ impl<S: Field<D>, const D: usize> Lattice<S> for Grid<T<S>, D> {
         total + part
     }
 
-    fn order() -> u32 {
-        S::ORDER_OF_FIELD
+    fn visit_edges(&self, site: usize, visit: impl FnMut(Edge, usize)) {
+        Grid::visit_edges(self, site, visit);
+    }
+
+    fn forces(&self, system: &S, Edge { direction, .. }: Edge, [q, next]: [&Q<S>; 2]) -> (Mu<S>, Mu<S>) {
+        system.edge_forces(direction, self.spacings(), q, next)
+    }
+
+    fn forces_along(
+        &self,
+        system: &S,
+        Edge { direction, .. }: Edge,
+        [q, next]: [&Q<S>; 2],
+        [motion, next_motion]: [&Mu<S>; 2],
+    ) -> (Mu<S>, Mu<S>) {
+        system.edge_forces_along(direction, self.spacings(), q, next, motion, next_motion)
     }
 }

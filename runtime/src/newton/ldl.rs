@@ -65,6 +65,13 @@ impl<T: Real, const M: usize> Ldl<T, M> {
         }
     }
 
+    /// E = Δ^(−1/2)L⁻¹, with E A Eᵀ = 1.
+    pub fn inverse_root(&self) -> [[T; M]; M] {
+        let mut e: [[T; M]; M] = from_fn(|i| from_fn(|j| if i == j { T::one() } else { T::zero() }));
+        self.forward(&mut e);
+        from_fn(|i| from_fn(|j| e[i][j] * self.reciprocals[i].sqrt()))
+    }
+
     /// W ↦ Δ⁻¹W
     #[inline]
     pub fn divided<const K: usize>(&self, w: &[[T; K]; M]) -> [[T; K]; M] {

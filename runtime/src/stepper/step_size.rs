@@ -7,7 +7,7 @@ use num_traits::{One, Zero};
 /// Steps of the stepper's own size that the probing run goes over.
 const PROBE: i64 = 64;
 /// Steps of a probing run, at least and at most.
-const STEPS: [i64; 2] = [4, 1 << 20];
+pub(crate) const STEPS: [i64; 2] = [4, 1 << 20];
 /// Probing runs, at most.
 const RUNS: usize = 12;
 /// Ratio of two step sizes between which the error is a power of h.
@@ -72,26 +72,77 @@ impl<S: Clebsch<Scalar: Real> + Clone, M: Method<S>> Stepper<S, M> {
         error: S::Scalar,
         duration: S::Scalar,
     ) -> Result<S::Scalar, Error> {
-        let duration = duration.abs();
-        if !(duration.is_finite() && duration > S::Scalar::zero()) {
-            return Err(Error::NotFinite { name: "the duration, or its inverse," });
+        let asked = Asked { h: self.h, error, duration, longest: S::Scalar::from_f64(f64::INFINITY), order: M::ORDER };
+        asked.suggestion(|h, time| self.probe(start, h, time))
+    }
+
+    /// How fast the error with steps of h grows, by steps of h and of h/2 side by side; `None` where rounding hides it.
+    fn probe(&self, start: &State<S, M>, h: S::Scalar, time: S::Scalar) -> Result<Option<S::Scalar>, Error> {
+        let signed = if self.h < S::Scalar::zero() { -h } else { h };
+        let (whole, half) = (self.system.stepper_by::<M>(signed)?, self.system.stepper_by::<M>(signed / number(2))?);
+        let (mut a, mut b) = (*start, *start);
+        let (mut steps, mut difference, mut size) = (0, S::Scalar::zero(), start.held.max_abs());
+        while steps < STEPS[1] && number::<S::Scalar>(steps) * h < time {
+            a = whole.step(&a)?;
+            b = half.step(&half.step(&b)?)?;
+            steps += 1;
+            size = larger(size, b.held.max_abs());
+            difference = larger(difference, apart(&a, &b, size));
         }
-        let time = least(self.h.abs() * number(PROBE), duration);
-        let found = if error > S::Scalar::zero() { self.search(start, error / duration, time)? } else { time };
-        let rounding = S::Scalar::EPSILON * (duration / found).sqrt();
-        if error > rounding {
-            return Ok(if self.h < S::Scalar::zero() { -found } else { found });
+        let size = S::Scalar::one() + start.configuration.max_abs();
+        Ok(growth(difference, (steps, h), size, M::ORDER))
+    }
+}
+
+/// How fast the error with steps of h grows, from the difference to steps of h/2 after so many; `None` where rounding hides it.
+pub(crate) fn growth<T: Real>(difference: T, (steps, h): (i64, T), size: T, order: u32) -> Option<T> {
+    if difference <= number::<T>(ROUNDINGS) * T::EPSILON * number::<T>(steps).sqrt() * size {
+        return None;
+    }
+    let part = T::one() - number::<T>(2).powi(-(order as i32));
+    Some(difference / (part * number::<T>(steps) * h))
+}
+
+/// The error that is asked for after a duration, and how it is looked for.
+pub(crate) struct Asked<T> {
+    /// The step size of the first probing run.
+    pub h: T,
+    pub error: T,
+    pub duration: T,
+    /// No step size above it is tried.
+    pub longest: T,
+    /// The order p of the steps.
+    pub order: u32,
+}
+
+impl<T: Real> Asked<T> {
+    /// The step size whose error is that one. `probe(h, t)` tells how fast it grows with steps of h during t.
+    pub fn suggestion<E: From<Error>>(&self, probe: impl Fn(T, T) -> Result<Option<T>, E>) -> Result<T, E> {
+        let (h, duration) = (self.h.abs(), self.duration.abs());
+        if !(duration.is_finite() && duration > T::zero()) {
+            return Err(Error::NotFinite { name: "the duration, or its inverse," }.into());
         }
-        Err(Error::BelowRounding { error: error.to_f64(), rounding: rounding.to_f64() })
+        let time = least(h * number(PROBE), duration);
+        let found = if self.error > T::zero() { self.search((self.error / duration, time), probe)? } else { time };
+        let rounding = T::EPSILON * (duration / found).sqrt();
+        if self.error > rounding {
+            return Ok(if self.h < T::zero() { -found } else { found });
+        }
+        Err(Error::BelowRounding { error: self.error.to_f64(), rounding: rounding.to_f64() }.into())
     }
 
     /// The step size whose error grows at this rate, by probing runs over this time.
-    fn search(&self, start: &State<S, M>, rate: S::Scalar, time: S::Scalar) -> Result<S::Scalar, Error> {
-        let power = number::<S::Scalar>(i64::from(M::ORDER)).recip();
-        let mut longest = time / number(STEPS[0]);
-        let (mut h, mut answer, mut refused) = (least(self.h.abs(), longest), None, Error::StepSize { value: 0.0 });
+    fn search<E: From<Error>>(
+        &self,
+        (rate, time): (T, T),
+        probe: impl Fn(T, T) -> Result<Option<T>, E>,
+    ) -> Result<T, E> {
+        let power = number::<T>(i64::from(self.order)).recip();
+        let mut longest = least(time / number(STEPS[0]), self.longest);
+        let (mut h, mut answer, mut refused) =
+            (least(self.h.abs(), longest), None, Error::StepSize { value: 0.0 }.into());
         for _ in 0..RUNS {
-            match self.probe(start, h, time) {
+            match probe(h, time) {
                 Ok(Some(found)) => {
                     let next = least(h * (rate / found).powf(power), longest);
                     if is_near(next, h) || time > next * number(STEPS[1]) {
@@ -113,28 +164,6 @@ impl<S: Clebsch<Scalar: Real> + Clone, M: Method<S>> Stepper<S, M> {
         }
         answer.ok_or(refused)
     }
-
-    /// How fast the error with steps of h grows, by steps of h and of h/2 side by side; `None` where rounding hides it.
-    fn probe(&self, start: &State<S, M>, h: S::Scalar, time: S::Scalar) -> Result<Option<S::Scalar>, Error> {
-        let signed = if self.h < S::Scalar::zero() { -h } else { h };
-        let (whole, half) = (self.system.stepper_by::<M>(signed)?, self.system.stepper_by::<M>(signed / number(2))?);
-        let (mut a, mut b) = (*start, *start);
-        let (mut steps, mut difference, mut size) = (0, S::Scalar::zero(), start.held.max_abs());
-        while steps < STEPS[1] && number::<S::Scalar>(steps) * h < time {
-            a = whole.step(&a)?;
-            b = half.step(&half.step(&b)?)?;
-            steps += 1;
-            size = larger(size, b.held.max_abs());
-            difference = larger(difference, apart(&a, &b, size));
-        }
-        let size = S::Scalar::one() + start.configuration.max_abs();
-        if difference <= number::<S::Scalar>(ROUNDINGS) * S::Scalar::EPSILON * number::<S::Scalar>(steps).sqrt() * size
-        {
-            return Ok(None);
-        }
-        let rest = S::Scalar::one() - number::<S::Scalar>(2).powi(-(M::ORDER as i32));
-        Ok(Some(difference / (rest * number::<S::Scalar>(steps) * h)))
-    }
 }
 
 /// The larger one of |Δq| and |Δμ| over the size of momenta.
@@ -154,6 +183,6 @@ fn number<T: Real>(value: i64) -> T {
 }
 
 /// The smaller one; `b` where either is NaN.
-fn least<T: Real>(a: T, b: T) -> T {
+pub(crate) fn least<T: Real>(a: T, b: T) -> T {
     if a < b { a } else { b }
 }

@@ -83,7 +83,7 @@ macro_rules! export {
 /// A field on a grid, with all that its stepper can do.
 #[macro_export]
 macro_rules! spreading {
-    ($name:literal, $type:ty, $directions:literal) => {
+    ($name:literal, $type:ty, $directions:literal $(, $momenta:literal)?) => {
         const _: () = {
             use clebsch::{Clebsch, Field, FieldState, FieldStepper, Grid, Sides};
 
@@ -116,6 +116,15 @@ macro_rules! spreading {
                                                  u: &[<S as Clebsch>::Input]| {
                 stepper.step_with(state, u)?;
             });
+            $crate::export!("stable_step", $name, |stepper: &Stepper, state: &mut State<'_>, h: &mut T| {
+                *h = stepper.stable_step(state)?;
+                stepper.check_stable(state)?;
+            });
+            $($crate::export!("residuals", $name, |stepper: &Stepper,
+                                                   state: &mut State<'_>,
+                                                   residuals: &mut [[T; $momenta]]| {
+                stepper.step_with_residuals(state, residuals)?;
+            });)?
         };
     };
 }

@@ -141,6 +141,14 @@ fn parameters() -> Vec<Scene> {
             refused(WaveMap.grid([3, 3]).spacing([0.5, -0.5]).stepper(0.1)),
             &["the spacing in direction 1 is -0.5", "above zero"],
         ),
+        Scene {
+            error: {
+                let stepper = WaveMap.grid([2, 2]).stepper(1.25).expect("a stepper");
+                let state = stepper.state([Vector3::x(); 4], [Vector3::zeros(); 4]).expect("a state");
+                stepper.check_stable(&state).expect_err("above 1").error
+            },
+            told: &["the step size 1.25", "above 1, up to which", "take shorter steps"],
+        },
         scene(refused(top().stepper(0.0)), &["the step size is 0", "a finite number other than zero"]),
         scene(
             refused(broken.stepper(0.1)),

@@ -7,5 +7,7 @@ mod elements;
 mod grids;
 mod reference;
 mod refused;
+mod residuals;
+mod stability;
 mod threads;
 mod waves;

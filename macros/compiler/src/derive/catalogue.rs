@@ -198,12 +198,16 @@ catalogue! {
     EdgeEnergy(direction: usize) = listed("energy of an edge", Hot);
     /// −J(q, ∂₁U) and −J(q⁺, ∂₂U).
     EdgeForces(direction: usize) = listed("forces of an edge", Hot).by(ClebschOptimalControl);
+    /// Their changes by small motions of both ends.
+    EdgeForcesAlong(direction: usize) = unlisted("change of the forces of an edge", Hot);
     /// The group element of an edge.
     EdgeElement = listed("element of an edge", Hot);
     /// Its Cayley coordinates.
     EdgeCoordinates = unlisted("Cayley coordinates of an edge", Hot);
     /// −J(q, ∂V) of a site of a field.
     SiteForce = listed("force on a site", Hot).by(ClebschOptimalControl);
+    /// Its change by a small motion of the site.
+    SiteForceAlong = unlisted("change of the force on a site", Hot);
     /// The force on a site from its potential and from the edges to all neighbours.
     ForceInside = unlisted("force on a site", Hot).by(ClebschOptimalControl);
     /// ξ′ of a site without joints.

@@ -3,12 +3,12 @@
 //! U(q, q⁺) of an edge pushes its site by −J(q, ∂₁U) and its neighbour by −J(q⁺, ∂₂U). J is linear in the covector, so
 //! the gradients of all edges of a site may be added first, and J taken once.
 
-use clebsch_symbolic::{Elements, Expr, Group, IntoElements, IntoList, Role, Shape, indexed, work};
+use clebsch_symbolic::{Elements, Expr, Group, IntoElements, IntoList, Property, Role, Shape, indexed, work};
 
 use super::formula::shorter;
 use super::power::{SiteTerm, of_terms};
 use super::{SystemFormulas, cayley, trivialisation};
-use crate::model::{EdgeEnergy, Factor, FieldEnergies, Mechanics, Term};
+use crate::model::{EdgeEnergy, Factor, FieldEnergies, Mechanics, Side, System, Term};
 
 /// The work to expand a force for code that may be shorter, at most.
 const EXPANSION: u64 = 50_000;
@@ -19,6 +19,8 @@ pub struct FieldFormulas<'g> {
     pub edges: Vec<EdgeFormulas<'g>>,
     /// −J(q, ∂V) for each factor, a function of the configuration; none without a potential.
     pub force_of_site: Vec<Expr<'g>>,
+    /// Its change by a small motion of the site.
+    pub force_of_site_along: Vec<Expr<'g>>,
     /// The force on a site that has a neighbour on both sides in each direction: from its potential and from all edges.
     /// The neighbour in direction d stands at the place 1 + 2d, and the site whose neighbour it is at 2 + 2d. `None` where an
     /// edge is of a group element.
@@ -33,6 +35,8 @@ pub struct EdgeFormulas<'g> {
     pub on_site: Vec<Expr<'g>>,
     /// −J(q⁺, ∂₂U) for each factor, with q⁺ of the neighbour.
     pub on_neighbour: Vec<Expr<'g>>,
+    /// The changes of both by small motions of the ends.
+    pub along: [Vec<Expr<'g>>; 2],
     /// The group element that moves the site to the neighbour, for each factor. All three are functions of it then.
     pub element: Vec<Expr<'g>>,
     /// Its Cayley coordinates for each factor, a function of it; empty where none is read.
@@ -51,11 +55,17 @@ pub(super) fn of<'g>(model: &Mechanics<'g>, system: &SystemFormulas<'g>) -> Opti
             return of_element(model, edge);
         }
         let [on_site, on_neighbour] = [0, 1].map(|end| push(system, &there(edge, end), gradient(model, edge, end)));
-        EdgeFormulas { energy: edge.value, on_site, on_neighbour, element: Vec::new(), coordinates: Vec::new() }
+        let moves = [0, 1].into_iter().flat_map(|end| moves(system, &there(edge, end), end)).into_list();
+        let along = [&on_site, &on_neighbour].map(|force| force.each(|part| part.differential(&moves)));
+        let (element, coordinates) = (Vec::new(), Vec::new());
+        EdgeFormulas { energy: edge.value, on_site, on_neighbour, along, element, coordinates }
     });
+    let force_of_site = force_of_site.into_each(|force| -force);
+    let moves = moves(system, &model.configurations.each(|leaf| leaf.symbol), 0);
     Some(FieldFormulas {
         edges,
-        force_of_site: force_of_site.into_each(|force| -force),
+        force_of_site_along: force_of_site.each(|force| force.differential(&moves)),
+        force_of_site,
         force_inside: field
             .edges
             .iter()
@@ -72,7 +82,44 @@ fn of_element<'g>(model: &Mechanics<'g>, edge: &EdgeEnergy<'g>) -> EdgeFormulas<
     let on_neighbour = trivialisation::components(model, &after).into_each(|force| -force);
     let reads = |k: usize| edge.value.depends_on(cayley::symbol(model, k));
     let coordinates = if (0..model.factors.len()).any(reads) { coordinates(model) } else { Vec::new() };
-    EdgeFormulas { energy: edge.value, on_site, on_neighbour, element: edge.element.clone(), coordinates }
+    let moves = (0..model.factors.len()).flat_map(|k| moves_of_element(model, k)).into_list();
+    let along = [&on_site, &on_neighbour].map(|force| force.each(|part| part.differential(&moves)));
+    EdgeFormulas { energy: edge.value, on_site, on_neighbour, along, element: edge.element.clone(), coordinates }
+}
+
+/// The coordinates of a small motion of an end of an edge, for a factor.
+fn motion<'g>(model: &System<'g>, end: usize, k: usize) -> Expr<'g> {
+    let name = if end == 0 { "η" } else { "η⁺" };
+    let shape = Shape::vector(model.factors[k].group.dimension());
+    model.graph.symbol(name, shape, Role::Motion(end, k), Property::General)
+}
+
+/// The changes η_Q(q) of the leaves of a configuration by a small motion of an end.
+fn moves<'g>(system: &SystemFormulas<'g>, q: &[Expr<'g>], end: usize) -> Vec<(Expr<'g>, Expr<'g>)> {
+    let (model, leaves) = (&system.model, system.model.configurations.iter().map(|leaf| leaf.symbol));
+    let places = leaves.zip(q.iter().copied()).into_list();
+    let moved = system.motion_by(&indexed(model.factors.len(), |k| motion(model, end, k)));
+    q.iter().copied().zip(moved.into_each(|moved| moved.substitute(&places))).into_list()
+}
+
+/// The changes of the element of an edge and of its Cayley coordinates by small motions of both ends. For a right action
+/// F = q⁻¹q⁺ changes by Fη⁺ − ηF, for a left one F = q⁺q⁻¹ by η⁺F − Fη.
+fn moves_of_element<'g>(model: &Mechanics<'g>, k: usize) -> Vec<(Expr<'g>, Expr<'g>)> {
+    let Factor { symbol: f, group, side, .. } = &model.factors[k];
+    let is_left = *side == Side::Left;
+    let [own, next] = [0, 1].map(|end| motion(model, end, k));
+    if group.is_translation() {
+        let change = next - own;
+        return vec![(*f, change), (cayley::symbol(model, k), change / 2)];
+    }
+    let by = |motion: Expr<'g>, from_left: bool| {
+        if from_left { group.wedge(motion) * *f } else { *f * group.wedge(motion) }
+    };
+    let change = (*f, by(next, is_left) - by(own, !is_left));
+    let of_end = |motion: Expr<'g>, from_left: bool| cayley::motion(model, k, motion, from_left);
+    let coordinates =
+        of_end(next, is_left).zip(of_end(own, !is_left)).map(|((z, after), (_, before))| (z, after - before));
+    [change].into_iter().chain(coordinates).into_list()
 }
 
 /// (F − I)(F + I)⁻¹ of each factor, in coordinates.

@@ -214,9 +214,9 @@ impl<'g> MechanicsFormulas<'g> {
     }
 
     /// The energies and the forces of a field.
-    fn rows_of_field(&self, Names { q, f, .. }: &Names) -> Vec<Formula<'g>> {
+    fn rows_of_field(&self, Names { q, f, xi, .. }: &Names) -> Vec<Formula<'g>> {
         let Some((field, declared)) = self.field.as_ref().zip(self.model.field.as_ref()) else { return Vec::new() };
-        let (mut energies, mut forces) = (Vec::new(), Vec::new());
+        let (mut energies, mut forces, mut changes) = (Vec::new(), Vec::new(), Vec::new());
         for (number, (edge, EdgeEnergy { names: [own, next], .. })) in
             field.edges.iter().zip(&declared.edges).enumerate()
         {
@@ -226,13 +226,18 @@ impl<'g> MechanicsFormulas<'g> {
             energies.push(Formula::shorter(Id::EdgeEnergy(number), format!("U{index}({read})"), [edge.energy]));
             let both = [edge.on_site.as_slice(), &edge.on_neighbour].concat();
             forces.push(Formula::shorter(Id::EdgeForces(number), format!("f{index}, f{index}⁺"), both));
+            let along = edge.along.concat();
+            changes.push(Formula::new(Id::EdgeForcesAlong(number), format!("δf{index}, δf{index}⁺"), along));
         }
-        energies.extend(forces);
+        energies.extend(forces.into_iter().chain(changes));
         if let Some(edge) = field.edges.iter().find(|edge| !edge.element.is_empty()) {
             energies.push(Formula::new(Id::EdgeElement, f, edge.element.clone()));
             energies.push(Formula::new(Id::EdgeCoordinates, "z", edge.coordinates.clone()));
         }
         energies.push(Formula::shorter(Id::SiteForce, format!("f({q})"), field.force_of_site.clone()));
+        energies.push(Formula::new(Id::SiteForceAlong, "δf", field.force_of_site_along.clone()));
+        let momentum = self.symbols.slope(self.energy.general.unwrap_or(self.energy.kinetic + self.energy.gyroscopic));
+        energies.push(Formula::new(Id::MomentumOfVelocity, format!("Σ{xi} + A"), [momentum]));
         energies.extend(field.force_inside.clone().map(|force| Formula::new(Id::ForceInside, "f", force)));
         energies
     }

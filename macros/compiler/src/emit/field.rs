@@ -1,17 +1,17 @@
-//! The implementation of `Field`: the energies of the edges between sites, and the forces on sites.
+//! The implementations of `FieldSite` and `Field`: the energies of the edges between sites, and the forces on sites.
 
 use clebsch_symbolic::IntoList;
 use proc_macro2::TokenStream;
 use quote::{format_ident, quote};
 
-use super::function::Body;
-use super::functions::FIELD;
+use super::function::{Body, no_words};
+use super::functions::{FIELD, FIELD_SITE};
 use super::scope::size;
 use super::{Emitter, flag};
 use crate::derive::Id;
 
 impl Emitter<'_, '_> {
-    /// The implementation of `Field`, where there are edges.
+    /// The implementations of `FieldSite` and of `Field`, where there are edges.
     pub(super) fn field(&self) -> TokenStream {
         let Some(field) = &self.formulas.field else { return TokenStream::new() };
         let count = field.edges.len();
@@ -50,16 +50,21 @@ impl Emitter<'_, '_> {
                 quote!(#ends match direction { #(#numbers => { #arms })* _ => { #last } })
             }
         };
+        let scope_of_forces = &scope;
+        let both = |id: fn(usize) -> Id| {
+            move |direction| {
+                let kernel = self.program.kernel(id(direction));
+                let [own, next] = [0, 1].map(|output| scope_of_forces.output(kernel, output));
+                quote!((#own, #next))
+            }
+        };
         let functions = self.functions(FIELD, (0, 0), &words, |function, kernel| {
             Some(match function.name {
                 "edge_energy" => Body::from(of_edges(Id::EdgeEnergy, &|direction| {
                     scope.scalar(self.program.kernel(Id::EdgeEnergy(direction)), 0)
                 })),
-                "edge_forces" => Body::from(of_edges(Id::EdgeForces, &|direction| {
-                    let kernel = self.program.kernel(Id::EdgeForces(direction));
-                    let [own, next] = [0, 1].map(|output| scope.output(kernel, output));
-                    quote!((#own, #next))
-                })),
+                "edge_forces" => Body::from(of_edges(Id::EdgeForces, &both(Id::EdgeForces))),
+                "edge_forces_along" => Body::from(of_edges(Id::EdgeForcesAlong, &both(Id::EdgeForcesAlong))),
                 "force_inside" => {
                     let places = (0..count).map(|direction| {
                         let (after, before) =
@@ -72,14 +77,12 @@ impl Emitter<'_, '_> {
                 _ => function.computes(&scope, kernel?),
             })
         });
-        let order = self.model.declared_order().number();
-        let flags =
-            [flag("GATHERS", self.program.gathers_edges()), flag("HAS_POTENTIAL", !field.force_of_site.is_empty())];
-        let items = quote! {
-            #(#flags)*
-            const ORDER_OF_FIELD: ::core::primitive::u32 = #order;
-            #functions
-        };
-        self.target.derived(Some(quote!(runtime::Field<#directions>)), items)
+        let (order, gathers) = (self.model.declared_order().number(), flag("GATHERS", self.program.gathers_edges()));
+        let has_potential = flag("HAS_POTENTIAL", !field.force_of_site.is_empty());
+        let of_site = self.written(FIELD_SITE, &scope, &no_words);
+        let order = quote!(const ORDER_OF_FIELD: ::core::primitive::u32 = #order;);
+        let site = self.target.derived(Some(quote!(runtime::FieldSite)), quote!(#has_potential #order #of_site));
+        let field = self.target.derived(Some(quote!(runtime::Field<#directions>)), quote!(#gathers #functions));
+        quote!(#site #field)
     }
 }

@@ -174,14 +174,24 @@ functions! {
         }
     }
 
+    /// `FieldSite`: the force on a site by itself, and its motion.
+    FIELD_SITE(true) {
+        /// The force of the potential on a site.
+        fn force_on_site(&self, t: T, q: &Q) -> Mu { Id::SiteForce }
+        /// The change of this force by a small motion of the site.
+        fn force_on_site_along(&self, t: T, q: &Q, motion: &Mu) -> Mu { Id::SiteForceAlong }
+        /// The momentum of a velocity.
+        fn momentum_of_velocity(&self, t: T, q: &Q, x: &Mu) -> Mu { Id::MomentumOfVelocity }
+    }
+
     /// `Field`: the energies of edges, and the forces on sites.
     FIELD(true) {
         /// The energy of an edge in a direction.
         fn edge_energy(&self, direction: Index, spacing: &Spacings, q: &Q, next: &Q) -> T { Id::EdgeEnergy(0) }
         /// The forces of an edge in a direction on its site and on the neighbour.
         fn edge_forces(&self, direction: Index, spacing: &Spacings, q: &Q, next: &Q) -> (Mu, Mu) { Id::EdgeForces(0) }
-        /// The force of the potential on a site.
-        fn force_on_site(&self, t: T, q: &Q) -> Mu { Id::SiteForce }
+        /// The change of these forces by a small motion of the site and one of the neighbour.
+        fn edge_forces_along(&self, direction: Index, spacing: &Spacings, q: &Q, next: &Q, motion: &Mu, next_motion: &Mu) -> (Mu, Mu) { Id::EdgeForcesAlong(0) }
         /// The force on a site that has neighbours on both sides in each direction, of its potential and of all edges.
         fn force_inside(&self, t: T, spacing: &Spacings, q: &Q, before: &Neighbours, after: &Neighbours) -> Mu { Id::ForceInside => }
     }

@@ -111,6 +111,8 @@ impl Scope<'_, '_> {
             Role::Algebra(k) | Role::Logarithm(k) | Role::Cayley(k) => {
                 Place::Vector("x", &self.coordinates, self.model.offset(k))
             }
+            Role::Motion(0, k) => Place::Vector("motion", &self.coordinates, self.model.offset(k)),
+            Role::Motion(_, k) => Place::Vector("next_motion", &self.coordinates, self.model.offset(k)),
             Role::Direction(block) => Place::Vector("delta", &self.coordinates, self.symbols.blocks[block].offset),
             _ => return None,
         })

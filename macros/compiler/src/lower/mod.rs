@@ -209,6 +209,7 @@ impl<'g> Maker<'_, 'g> {
         for (direction, edge) in field.edges.iter().enumerate() {
             self.rows([Id::EdgeEnergy(direction)]);
             self.shorter(Id::EdgeForces(direction), &[&edge.on_site, &edge.on_neighbour]);
+            self.shorter(Id::EdgeForcesAlong(direction), &edge.along.each_ref());
         }
         if let Some(edge) = field.edges.iter().find(|edge| !edge.element.is_empty()) {
             self.add(Id::EdgeElement, |scalars, _| plain(scalars, &edge.element));
@@ -216,9 +217,9 @@ impl<'g> Maker<'_, 'g> {
         if let Some(edge) = field.edges.iter().find(|edge| !edge.coordinates.is_empty()) {
             self.add(Id::EdgeCoordinates, |scalars, _| stack(scalars, &edge.coordinates, Hoisting::Nothing));
         }
-        let site = (Id::SiteForce, &field.force_of_site);
+        let site = [(Id::SiteForce, &field.force_of_site), (Id::SiteForceAlong, &field.force_of_site_along)];
         let inside = field.force_inside.as_ref().map(|force| (Id::ForceInside, force));
-        for (id, force) in [site].into_iter().chain(inside).filter(|(_, force)| !force.is_empty()) {
+        for (id, force) in site.into_iter().chain(inside).filter(|(_, force)| !force.is_empty()) {
             self.shorter(id, &[force]);
         }
     }

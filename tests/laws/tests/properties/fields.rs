@@ -1,7 +1,7 @@
 //! Fields: grids, the forces of edges, and steps of all sites.
 
 use crate::arbitrary::{cases, vector};
-use clebsch::{Alike, Clebsch, Error, Field, Grid, Lattice, Population, Side, Sides, SiteError, Various};
+use clebsch::{Alike, Clebsch, Error, Field, FieldSite, Grid, Lattice, Population, Side, Sides, SiteError, Various};
 use nalgebra::{Rotation3, Vector3};
 use proptest::prelude::*;
 
@@ -84,7 +84,7 @@ proptest! {
         }
         prop_assert_eq!((grid.place(grid.sites()), grid.index(sizes)), (None, None));
         let plane = Grid::new([sizes[0], sizes[1]]);
-        prop_assert_eq!((Lattice::<Spins>::sites(&plane), <Grid<f64, 2> as Lattice<Spins>>::order()), (plane.sites(), 2));
+        prop_assert_eq!(Lattice::<Spins>::sites(&plane), plane.sites());
         prop_assert_eq!(Lattice::<Spins>::check(&plane), Ok(()));
         let empty = Lattice::<Spins>::check(&Grid::new([sizes[0], 0]));
         prop_assert_eq!(empty, Err(Error::EmptyGrid { direction: 1, sites: 0 }));
@@ -143,6 +143,93 @@ proptest! {
         }
         let inside = system.force_inside(t, &spacing, &q[0], &[&q[2], &q[4]], &[&q[1], &q[3]]);
         near((inside - sum).amax(), 0.0, 1e-12);
+    }
+
+    #[test]
+    fn changes_of_forces_are_slopes(
+        all in states(2), t in 0.0_f64..1.0, spacing in [0.4_f64..2.0, 0.4..2.0], axes in [vector::<3>(1.0), vector::<3>(1.0)],
+    ) {
+        let (system, q, size) = (spins(), all.0, 1e-5);
+        let close = |found: Vector3<f64>, [after, before]: [Vector3<f64>; 2]| {
+            near((found - (after - before) / (2.0 * size)).amax(), 0.0, 1e-7);
+        };
+        for d in 0..2 {
+            let forces = |a: f64| system.edge_forces(d, &spacing, &turned(&q[0], &(axes[0] * a)), &turned(&q[1], &(axes[1] * a)));
+            let [after, before] = [size, -size].map(forces);
+            let (own, next) = system.edge_forces_along(d, &spacing, &q[0], &q[1], &axes[0], &axes[1]);
+            close(own, [after.0, before.0]);
+            close(next, [after.1, before.1]);
+        }
+        // each edge of a lattice with its ends
+        let ring = Grid::new([1, 2]).spacing(spacing).sides([Sides::Open(Side::Free, Side::Free), Sides::Periodic]);
+        let mut seen = Vec::new();
+        Lattice::<Spins>::visit_edges(&ring, 0, |edge, end| {
+            let ends = edge.ends.map(|site| &q[site]);
+            let motions = edge.ends.map(|site| &axes[site]);
+            assert_eq!(ring.forces(&system, edge, ends), system.edge_forces(1, &spacing, ends[0], ends[1]));
+            let along = system.edge_forces_along(1, &spacing, ends[0], ends[1], motions[0], motions[1]);
+            assert_eq!(ring.forces_along(&system, edge, ends, motions), along);
+            seen.push((edge.direction, edge.ends, end));
+        });
+        prop_assert_eq!(seen, [(1, [1, 0], 1), (1, [0, 1], 0)]);
+        let force = |a: f64| system.force_on_site(t, &turned(&q[0], &(axes[0] * a)));
+        close(system.force_on_site_along(t, &q[0], &axes[0]), [size, -size].map(force));
+        // Σ = 1
+        prop_assert_eq!(system.momentum_of_velocity(t, &q[0], &axes[0]), axes[0]);
+    }
+
+    #[test]
+    fn stable_steps_are_below_all_frequencies(all in states(6), sides in [side(), side()], spacing in [0.4_f64..2.0, 0.4..2.0]) {
+        let domain = spins().grid([2, 3]).spacing(spacing).sides(sides);
+        let (q, still) = (all.0, vec![Vector3::zeros(); 6]);
+        prop_assert_eq!(domain.system(3).map(|site| site.stiffness), Some(0.8));
+        let stable = domain.stable_step(&q).expect("a step");
+        let stepper = domain.stepper(0.1).expect("a stepper");
+        let state = stepper.state(q.clone(), still.clone()).expect("a state");
+        prop_assert_eq!(stepper.stable_step(&state), Ok(stable));
+        prop_assert_eq!(stepper.check_stable(&state).is_ok(), 0.1 <= stable);
+        let suggested = stepper.suggest_step_size(&state, 1e-2, 1.0).expect("a step");
+        prop_assert!(suggested <= stable);
+        // (2/h)² is no less than any second difference of the energy over the squared length of the motion
+        let energy = |motion: &[Vector3<f64>], a: f64| {
+            let is_free = |site: usize| !stepper.lattice().is_fixed(site);
+            let moved = |site: usize| if is_free(site) { turned(&q[site], &(motion[site] * a)) } else { q[site] };
+            let state = stepper.state((0..6).map(moved).collect::<Vec<_>>(), still.clone()).expect("a state");
+            stepper.energy(&state).expect("an energy")
+        };
+        let mut motion: Vec<Vector3<f64>> = all.1.iter().map(|mu| mu + Vector3::new(0.3, 0.2, -0.1)).collect();
+        motion.iter_mut().enumerate().filter(|(site, _)| stepper.lattice().is_fixed(*site)).for_each(|(_, x)| x.fill(0.0));
+        // the quotient of Rayleigh, which climbs to the largest frequency
+        for _ in 0..10 {
+            let length: f64 = motion.iter().map(|x| x.norm_squared()).sum::<f64>().sqrt();
+            if length == 0.0 {
+                break;
+            }
+            motion.iter_mut().for_each(|x| *x /= length);
+            let squared = (energy(&motion, 1e-4) - 2.0 * energy(&motion, 0.0) + energy(&motion, -1e-4)) / 1e-8;
+            prop_assert!(squared <= (2.0 / stable).powi(2) + 1e-5, "{squared} is above {}", (2.0 / stable).powi(2));
+            let change = |a: f64| {
+                let moved: Vec<_> = (0..6).map(|site| turned(&q[site], &(motion[site] * a))).collect();
+                let mut force = vec![Vector3::zeros(); 6];
+                stepper.lattice().kick((|_| stepper.system(0).expect("a site"), true), (0.0, 1.0), &moved, (0, &mut force));
+                force
+            };
+            motion = change(-1e-4).iter().zip(change(1e-4)).map(|(before, after)| (before - after) / 2e-4).collect();
+        }
+    }
+
+    #[test]
+    fn residuals_are_rounding_errors(all in states(6), sides in [side(), side()], weights in prop::collection::vec(0.5_f64..2.0, 6)) {
+        let spins = |stiffness: f64| FreeSpins { stiffness, exchange: 0.4 };
+        let domain = spins(1.0).grid([2, 3]).sides(sides).various(|[i, j]| spins(weights[3 * i + j]));
+        let stepper = domain.stepper(0.05).expect("a stepper");
+        let mut state = stepper.state(all.0, all.1).expect("a state");
+        let mut residuals = [[1.0; 3]; 6];
+        if stepper.step_with_residuals(&mut state, &mut residuals).is_ok() {
+            for residual in residuals.iter().flatten() {
+                near(*residual, 0.0, 1e-14);
+            }
+        }
     }
 
     #[test]
