@@ -6,7 +6,7 @@ mod compositions;
 mod exact;
 #[path = "combinations/forms.rs"]
 mod forms;
-#[path = "../../tests/lanes/systems.rs"]
+#[path = "../../laws/tests/lanes/systems.rs"]
 mod lanes;
 #[path = "../../tests/summation/systems.rs"]
 mod summation;

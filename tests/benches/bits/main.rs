@@ -11,7 +11,7 @@ mod combinations;
 mod compare;
 mod endpoints;
 mod fixtures;
-#[path = "../../tests/lanes/lift.rs"]
+#[path = "../../laws/tests/lanes/lift.rs"]
 mod lift;
 mod plans;
 mod record;

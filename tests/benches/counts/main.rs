@@ -5,7 +5,7 @@
 mod combinations;
 #[path = "../bits/fixtures.rs"]
 mod fixtures;
-#[path = "../../tests/lanes/lift.rs"]
+#[path = "../../laws/tests/lanes/lift.rs"]
 mod lift;
 #[path = "../bits/run.rs"]
 mod run;

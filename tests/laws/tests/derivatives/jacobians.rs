@@ -12,7 +12,7 @@ use crate::program::{Values, program};
 /// ρ and Dρ of every fixture: the formulas, the kernels that they were lowered to (generated code hides them), and differences.
 #[test]
 fn jacobians_of_all_implicit_equations() {
-    let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("fixtures/accept");
+    let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../fixtures/accept");
     let mut files: Vec<_> =
         std::fs::read_dir(folder).expect("fixtures").map(|entry| entry.expect("a file").path()).collect();
     files.sort();

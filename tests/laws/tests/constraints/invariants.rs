@@ -6,7 +6,7 @@ use clebsch_tests::fixtures::{chaplygin_sleigh::ChaplyginSleigh, rolling_ball::R
 use nalgebra::{Matrix3, Vector2, Vector3, Vector5};
 
 /// The steps of long runs.
-const STEPS: usize = 100_000;
+const STEPS: usize = if cfg!(feature = "heavy") { 100_000 } else { 5_000 };
 
 fn sleigh() -> ChaplyginSleigh {
     ChaplyginSleigh { mass: 1.5, inertia: 0.4, offset: 0.6 }

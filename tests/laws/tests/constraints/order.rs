@@ -16,7 +16,7 @@ pub fn integrated<const N: usize>(
     start: SVector<f64, N>,
     time: f64,
 ) -> SVector<f64, N> {
-    const STEPS: usize = 20_000;
+    const STEPS: usize = 4_000;
     let h = time / STEPS as f64;
     (0..STEPS).fold(start, |y, _| {
         let a = slope(&y);

@@ -139,7 +139,7 @@ fn violations(rig: &TractorTrailer, state: &State<TractorTrailer>) -> [f64; 3] {
     [(at(0) - at(1)).norm(), slips, (speed(0) - speed(1)).norm()]
 }
 
-/// 100 000 steps. With the cost of Moser and Veselov the band of the energy does not grow.
+/// 2000 steps, with the feature `heavy` 100 000. With the cost of Moser and Veselov the band of the energy does not grow.
 #[test]
 fn wheels_and_hitch_stay_for_many_steps() -> Result<(), Error> {
     let (rig, y) = (rig(), Vector6::from(START));
@@ -149,7 +149,7 @@ fn wheels_and_hitch_stay_for_many_steps() -> Result<(), Error> {
     let energy = stepper.energy(&state);
     let mut worst = [0.0_f64; 3];
     let mut off = 0.0_f64;
-    for _ in 0..1000 {
+    for _ in 0..if cfg!(feature = "heavy") { 1000 } else { 20 } {
         state = stepper.advance(&state, 100)?;
         worst = std::array::from_fn(|i| worst[i].max(violations(&rig, &state)[i]));
         off = off.max((stepper.energy(&state) - energy).abs());

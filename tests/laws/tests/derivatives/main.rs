@@ -6,7 +6,7 @@
 
 mod by_hand;
 mod jacobians;
-#[path = "../../laws/tests/random/kernels.rs"]
+#[path = "../random/kernels.rs"]
 mod kernels;
 mod program;
 
@@ -28,7 +28,7 @@ const SAMPLES: usize = 20;
 
 macro_rules! fixture {
     ($name:literal) => {
-        include_str!(concat!("../../fixtures/accept/", $name, ".rs"))
+        include_str!(concat!("../../../fixtures/accept/", $name, ".rs"))
     };
 }
 
