@@ -79,7 +79,7 @@ fn main() -> ExitCode {
 }
 
 fn run<const N: usize>(flags: &Flags) -> Result<Claims, Failure> {
-    flags.run.refuse_first_order()?;
+    flags.run.refuse_first_order(&SCENE)?;
     if flags.time {
         say(times(flags)?);
     }

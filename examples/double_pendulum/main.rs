@@ -68,7 +68,7 @@ fn main() -> ExitCode {
 }
 
 fn run(flags: &Flags) -> Result<Claims, Failure> {
-    flags.run.refuse_first_order()?;
+    flags.run.refuse_first_order(&SCENE)?;
     let pendulum = Pendulum::new(flags.gravity);
     let turn = |axis: Vector3<f64>| *Rotation3::new(axis).matrix();
     let start = Turning {

@@ -90,7 +90,7 @@ fn main() -> ExitCode {
 }
 
 fn run(flags: &Flags) -> Result<Claims, Failure> {
-    flags.run.refuse_first_order()?;
+    flags.run.refuse_first_order(&SCENE)?;
     let body = published();
     let columns = "R11 R12 R13 R21 R22 R23 R31 R32 R33 x1 x2 x3 w1 w2 w3";
     let mut csv = Csv::create(&flags.run, &columns.split(' ').collect::<Vec<_>>())?;

@@ -100,7 +100,7 @@ fn main() -> ExitCode {
 }
 
 fn run(flags: &Flags) -> Result<Claims, Failure> {
-    flags.run.refuse_first_order()?;
+    flags.run.refuse_first_order(&SCENE)?;
     let ball = Ball {
         mass: MASS,
         inertia: flags.roundness() * MASS * RADIUS * RADIUS,

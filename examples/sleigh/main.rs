@@ -87,7 +87,7 @@ fn main() -> ExitCode {
 }
 
 fn run(flags: &Flags) -> Result<Claims, Failure> {
-    flags.run.refuse_first_order()?;
+    flags.run.refuse_first_order(&SCENE)?;
     let sleigh = Sleigh { mass: 1.5, inertia: 0.4, offset: flags.offset };
     let body = Body { inertia: Matrix3::new(1.0, 0.1, 0.3, 0.1, 1.4, -0.2, 0.3, -0.2, 0.9) };
     let inverse = body.inertia.try_inverse().unwrap_or_default();

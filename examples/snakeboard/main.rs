@@ -121,7 +121,7 @@ fn main() -> ExitCode {
 }
 
 fn run(flags: &Flags) -> Result<Claims, Failure> {
-    flags.run.refuse_first_order()?;
+    flags.run.refuse_first_order(&SCENE)?;
     if flags.wheels.abs() >= TAU / 4.0 {
         return Err(Failure::Flags(format!(
             "--wheels {}: at a quarter of a turn the wheels stand across",

@@ -58,15 +58,26 @@ impl Run {
         self.time(self.steps)
     }
 
-    /// For scenes with a constraint.
+    /// For scenes of a system without steps of order 1.
     ///
     /// # Errors
     /// [`Failure::Flags`] for `--order 1`.
-    pub fn refuse_first_order(&self) -> Result<(), Failure> {
+    pub fn refuse_first_order(&self, scene: &Scene) -> Result<(), Failure> {
         if self.order == Order::First {
-            return Err(Failure::Flags("--order 1: steps with a constraint have order 2".to_owned()));
+            return Err(Failure::Flags(format!("--order 1: {}", scene.order_note)));
         }
         Ok(())
+    }
+
+    /// The same time in steps of a part 1/`part`.
+    #[must_use]
+    pub fn refined(&self, part: u64) -> Self {
+        Self { step_size: self.step_size / part as f64, steps: self.steps * part, ..self.clone() }
+    }
+
+    /// Whether `step` is written to the CSV file.
+    pub fn writes(&self, step: u64) -> bool {
+        self.csv.is_some() && step.is_multiple_of(self.every)
     }
 
     /// Whether `step` is one of about `count` evenly spaced ones, the first and the last among them.

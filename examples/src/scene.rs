@@ -30,6 +30,11 @@ pub enum Failure {
 }
 
 impl Failure {
+    /// For `map_err` on errors of a step of many sites.
+    pub fn step(step: u64) -> impl Fn(clebsch::SiteError) -> Self {
+        move |failure| Self::Step { step, error: failure.error }
+    }
+
     /// For `map_err` on errors of writing to `path`.
     pub fn file(path: &Path) -> impl Fn(io::Error) -> Self + '_ {
         |error| Self::File { path: path.to_owned(), error }
@@ -52,6 +57,12 @@ impl std::error::Error for Failure {}
 impl From<clebsch::Error> for Failure {
     fn from(error: clebsch::Error) -> Self {
         Self::Start(error)
+    }
+}
+
+impl From<clebsch::SiteError> for Failure {
+    fn from(failure: clebsch::SiteError) -> Self {
+        Self::Start(failure.error)
     }
 }
 

@@ -128,9 +128,9 @@ fn defaults_hold_all_their_claims() {
     });
 }
 
-/// Scenes of plans, which short runs do not suit, and those with a constraint, whose steps have order 2 alone.
+/// Scenes of plans, which short runs do not suit, and those of constraints and fields, which have no steps of order 1.
 /// They are a name, flags, and the columns of the CSV file.
-const PLANS: [(&str, &[&str], &str); 8] = [
+const PLANS: [(&str, &[&str], &str); 9] = [
     (
         "slew",
         &["--least", "effort"],
@@ -141,6 +141,7 @@ const PLANS: [(&str, &[&str], &str); 8] = [
     ("rattleback", &[], "step,time,R11,R12,R13,R21,R22,R23,R31,R32,R33,x1,x2,x3,w1,w2,w3"),
     ("snakeboard", &[], "step,time,x,y,heading,rotor,wheel,speed"),
     ("chain", &[], "step,time,x,y,z,speed,height,tension"),
+    ("wave_map", &[], "step,time,energy,L1,L2,L3,q1,q2,q3"),
     ("double_pendulum", &[], "step,time,x1,y1,z1,x2,y2,z2,a1,a2,a3,b1,b2,b3"),
     ("quadrotor", &[], "step,time,R11,R12,R13,R21,R22,R23,R31,R32,R33,x1,x2,x3,v1,v2,v3,pi1,pi2,pi3,u1,u2,u3,u4"),
 ];
@@ -261,6 +262,8 @@ fn long_runs_hold_all_their_claims() {
         ("chain", &["--links", "5", "--hand", "0.3,0.1,0.2", "--width", "0.1", "--steps", "1600"]),
         ("chain", &["--links", "40", "--hand", "0,0,0", "--lean", "0", "--steps", "200"]),
         ("chain", &["--links", "10", "--gravity", "0", "--time", "--steps", "900"]),
+        ("wave_map", &["--sites", "30", "--turn", "-40", "--step-size", "0.1", "--steps", "20", "--time"]),
+        ("wave_map", &["--turn", "0", "--spin", "0", "--length", "20", "--steps", "3"]),
         ("ensemble", &["--bodies", "13", "--inertia", "1,1.5,2", "--tilt", "20", "--spin", "1", "--seed", "3"]),
         ("inertia_estimation", &["--noise", "2000", "--step-size", "0.05", "--steps", "12000", "--seed", "2"]),
         ("inertia_estimation", &["--spin", "0,0,0", "--step-size", "0.1", "--steps", "6000", "--guess", "1,1,1"]),
@@ -407,6 +410,9 @@ fn mistakes_are_explained() {
         ("chain", &["--links", "7"], "possible values: 5, 10, 20, 40"),
         ("chain", &["--width", "0"], "`0` is not above zero"),
         ("chain", &["--step-size", "0.2"], "was not reached"),
+        ("wave_map", &["--order", "1"], "steps of fields have order 2 or more"),
+        ("wave_map", &["--step-size", "0.1"], "the longest stable step"),
+        ("wave_map", &["--sites", "3"], "`3` is not from 4 to 4096"),
         ("sphere_geodesics", &["--step-size", "2"], "step 1 was not reached"),
         ("sphere_geodesics", &["--sphere", "5"], "possible values: 3, 7, 20, 100"),
         ("sphere_geodesics", &["--position", "1,0,0,0"], "a point of S7 has 8 coordinates, 4 were given"),

@@ -16,8 +16,11 @@ pub(super) const FINENESS: u32 = 10;
 /// A part of the figure, in units of 1/10 pixel.
 pub type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
 
+/// The error of a drawing operation.
+pub type Broken = DrawingAreaErrorKind<io::Error>;
+
 /// The outcome of a drawing operation.
-pub type Drawn = Result<(), DrawingAreaErrorKind<io::Error>>;
+pub type Drawn = Result<(), Broken>;
 
 /// Draws a figure of `width` × `height` pixels, writes it to `--figure` or its default place, and says where it is.
 ///

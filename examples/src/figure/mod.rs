@@ -1,6 +1,7 @@
-//! Figures as SVG: time series, powers of ten, paths on a sphere and in the plane.
+//! Figures as SVG: time series, powers of ten, paths on a sphere and in the plane, tables of colours.
 
 mod canvas;
+mod cells;
 mod decades;
 mod globe;
 mod interval;
@@ -9,7 +10,8 @@ mod place;
 mod plane;
 mod theme;
 
-pub use canvas::{Area, Drawn, draw, draw_to};
+pub use canvas::{Area, Broken, Drawn, draw, draw_to};
+pub use cells::{Cells, Frame, direction, diverging};
 pub use decades::{Curve, Decades};
 pub use globe::{Globe, Pointer, Track, View};
 pub use interval::Interval;
