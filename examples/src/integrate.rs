@@ -3,7 +3,7 @@
 use crate::flags::Run;
 use crate::progress::Progress;
 use crate::scene::Failure;
-use clebsch::{Clebsch, FieldState, FieldStepper, Lattice, Method, Population, State, Stepper};
+use clebsch::{Clebsch, FieldSite, FieldState, FieldStepper, Lattice, Method, Population, State, Stepper};
 
 /// Hands the states 0, 1, …, `run.steps` to `observe`, with their number and time; nothing is stored.
 ///
@@ -40,7 +40,7 @@ pub fn integrate_field<S, G, P>(
     mut observe: impl FnMut(u64, f64, &FieldOf<S>) -> Result<(), Failure>,
 ) -> Result<(), Failure>
 where
-    S: Clebsch<Scalar = f64> + Clone,
+    S: FieldSite + Clebsch<Scalar = f64> + Clone,
     G: Lattice<S>,
     P: Population,
 {

@@ -19,6 +19,9 @@ mod plane_geodesic;
 #[path = "../inertia_estimation/rotation.rs"]
 mod rotation;
 #[allow(dead_code, reason = "taken in for the tests inside it")]
+#[path = "../kink/solitons.rs"]
+mod solitons;
+#[allow(dead_code, reason = "taken in for the tests inside it")]
 #[path = "../fluid_ellipsoid/spheroid.rs"]
 mod spheroid;
 #[allow(dead_code, reason = "taken in for the tests inside it")]

@@ -130,7 +130,7 @@ fn defaults_hold_all_their_claims() {
 
 /// Scenes of plans, which short runs do not suit, and those of constraints and fields, which have no steps of order 1.
 /// They are a name, flags, and the columns of the CSV file.
-const PLANS: [(&str, &[&str], &str); 9] = [
+const PLANS: [(&str, &[&str], &str); 11] = [
     (
         "slew",
         &["--least", "effort"],
@@ -142,6 +142,8 @@ const PLANS: [(&str, &[&str], &str); 9] = [
     ("snakeboard", &[], "step,time,x,y,heading,rotor,wheel,speed"),
     ("chain", &[], "step,time,x,y,z,speed,height,tension"),
     ("wave_map", &[], "step,time,energy,L1,L2,L3,q1,q2,q3"),
+    ("kink", &[], "step,time,steps,exact,energy"),
+    ("magnons", &[], "step,time,energy,L1,L2,L3,centre"),
     ("double_pendulum", &[], "step,time,x1,y1,z1,x2,y2,z2,a1,a2,a3,b1,b2,b3"),
     ("quadrotor", &[], "step,time,R11,R12,R13,R21,R22,R23,R31,R32,R33,x1,x2,x3,v1,v2,v3,pi1,pi2,pi3,u1,u2,u3,u4"),
 ];
@@ -264,6 +266,11 @@ fn long_runs_hold_all_their_claims() {
         ("chain", &["--links", "10", "--gravity", "0", "--time", "--steps", "900"]),
         ("wave_map", &["--sites", "30", "--turn", "-40", "--step-size", "0.1", "--steps", "20", "--time"]),
         ("wave_map", &["--turn", "0", "--spin", "0", "--length", "20", "--steps", "3"]),
+        (
+            "kink",
+            &["--speed", "0.7", "--frequency", "0.8", "--length", "60", "--spacing", "0.05", "--step-size", "0.02"],
+        ),
+        ("magnons", &["--tilt", "50", "--spin", "6", "--exchange", "2", "--step-size", "0.02", "--wavelength", "9"]),
         ("ensemble", &["--bodies", "13", "--inertia", "1,1.5,2", "--tilt", "20", "--spin", "1", "--seed", "3"]),
         ("inertia_estimation", &["--noise", "2000", "--step-size", "0.05", "--steps", "12000", "--seed", "2"]),
         ("inertia_estimation", &["--spin", "0,0,0", "--step-size", "0.1", "--steps", "6000", "--guess", "1,1,1"]),
@@ -413,6 +420,12 @@ fn mistakes_are_explained() {
         ("wave_map", &["--order", "1"], "steps of fields have order 2 or more"),
         ("wave_map", &["--step-size", "0.1"], "the longest stable step"),
         ("wave_map", &["--sites", "3"], "`3` is not from 4 to 4096"),
+        ("kink", &["--speed", "1"], "`1` is not below 1"),
+        ("kink", &["--length", "20"], "the tails of the solitons reach the ends"),
+        ("kink", &["--step-size", "0.1", "--steps", "240"], "the longest stable step"),
+        ("magnons", &["--tilt", "90"], "`90` is not below 90"),
+        ("magnons", &["--step-size", "0.5"], "which is too far for waves"),
+        ("magnons", &["--spin", "0"], "`0` is not above zero"),
         ("sphere_geodesics", &["--step-size", "2"], "step 1 was not reached"),
         ("sphere_geodesics", &["--sphere", "5"], "possible values: 3, 7, 20, 100"),
         ("sphere_geodesics", &["--position", "1,0,0,0"], "a point of S7 has 8 coordinates, 4 were given"),
