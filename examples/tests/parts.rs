@@ -1,5 +1,8 @@
 //! Parts of scenes that have tests of their own: cargo runs no tests inside of examples, so they are taken in here.
 
+#[allow(dead_code, reason = "what another one needs")]
+#[path = "../rod/beam.rs"]
+mod beam;
 #[allow(dead_code, reason = "taken in for the tests inside it")]
 #[path = "../ensemble/euler.rs"]
 mod euler;
@@ -12,6 +15,9 @@ mod manakov;
 #[allow(dead_code, reason = "what the next one needs")]
 #[path = "../unicycle/place.rs"]
 mod place;
+#[allow(dead_code, reason = "taken in for the tests inside it")]
+#[path = "../rod/plane.rs"]
+mod plane;
 #[allow(dead_code, reason = "taken in for the tests inside it")]
 #[path = "../unicycle/geodesic.rs"]
 mod plane_geodesic;

@@ -49,7 +49,7 @@ const SCENES: [(&str, &str); 19] = [
 ];
 
 /// Scenes whose runs by default take seconds without optimisation.
-const LONG: [&str; 14] = [
+const LONG: [&str; 19] = [
     "sphere_molecules",
     "rigid_body_5d",
     "rigid_body_n",
@@ -64,6 +64,11 @@ const LONG: [&str; 14] = [
     "chain",
     "double_pendulum",
     "quadrotor",
+    "wave_map",
+    "kink",
+    "magnons",
+    "rod",
+    "lattice",
 ];
 
 /// Scenes whose short runs take seconds too: most end with a plan or a fit.
@@ -130,7 +135,7 @@ fn defaults_hold_all_their_claims() {
 
 /// Scenes of plans, which short runs do not suit, and those of constraints and fields, which have no steps of order 1.
 /// They are a name, flags, and the columns of the CSV file.
-const PLANS: [(&str, &[&str], &str); 11] = [
+const PLANS: [(&str, &[&str], &str); 13] = [
     (
         "slew",
         &["--least", "effort"],
@@ -144,6 +149,8 @@ const PLANS: [(&str, &[&str], &str); 11] = [
     ("wave_map", &[], "step,time,energy,L1,L2,L3,q1,q2,q3"),
     ("kink", &[], "step,time,steps,exact,energy"),
     ("magnons", &[], "step,time,energy,L1,L2,L3,centre"),
+    ("rod", &[], "step,time,x1,y1,z1,x2,y2,z2,energy,p1,p2,p3,L1,L2,L3"),
+    ("lattice", &[], "step,time,energy,L3"),
     ("double_pendulum", &[], "step,time,x1,y1,z1,x2,y2,z2,a1,a2,a3,b1,b2,b3"),
     ("quadrotor", &[], "step,time,R11,R12,R13,R21,R22,R23,R31,R32,R33,x1,x2,x3,v1,v2,v3,pi1,pi2,pi3,u1,u2,u3,u4"),
 ];
@@ -228,6 +235,11 @@ fn other_flags_hold_all_their_claims() {
         ("sleigh", &["--offset", "0.2", "--turning", "-2", "--omega", "0.3,-0.4", "--steps", "300"]),
         ("sleigh", &["--speed", "1", "--turning", "1e-3", "--omega", "1,1.6", "--steps", "100"]),
         ("snakeboard", &["--rotor", "0", "--steps", "130"]),
+        ("wave_map", &["--sites", "16", "--steps", "5"]),
+        ("kink", &["--spacing", "0.2", "--step-size", "0.1", "--steps", "120"]),
+        ("magnons", &["--sites", "60", "--steps", "100"]),
+        ("rod", &["--edges", "4", "--steps", "100"]),
+        ("lattice", &["--side", "24", "--steps", "1"]),
         ("rattleback", &["--steps", "200"]),
         ("double_pendulum", &["--steps", "50"]),
         ("chain", &["--links", "5", "--steps", "20"]),
@@ -257,6 +269,16 @@ fn long_runs_hold_all_their_claims() {
         ("unicycle", &["--goal", "1,0,0", "--costate", "3,0,0", "--time-price", "100"]),
         ("unicycle", &["--turn-price", "0.04", "--costate", "0,1,0", "--top-turn", "1", "--miss-price", "0.1"]),
         ("slew", &["--least", "effort", "--torque", "250", "--heavier", "0.01", "--tilted", "1"]),
+        ("wave_map", &["--sites", "30", "--turn", "-40", "--step-size", "0.1", "--steps", "20", "--time"]),
+        ("wave_map", &["--turn", "0", "--spin", "0", "--length", "20", "--steps", "3"]),
+        ("magnons", &["--tilt", "50", "--spin", "6", "--exchange", "2", "--step-size", "0.02", "--wavelength", "9"]),
+        (
+            "kink",
+            &["--speed", "0.7", "--frequency", "0.8", "--length", "60", "--spacing", "0.05", "--step-size", "0.02"],
+        ),
+        ("rod", &["--statics"]),
+        ("rod", &["--edges", "10", "--moment", "0,40,-80", "--push", "8,0,3", "--steps", "3000"]),
+        ("lattice", &["--side", "100", "--steps", "4"]),
         ("rattleback", &["--spin", "1", "--tilt", "2", "--steps", "8000"]),
         ("snakeboard", &["--wheels", "0.8", "--cycle", "2", "--steps", "1200"]),
         ("double_pendulum", &["--bars", "0.3,0.4,0.5", "--ground", "0.6", "--crank", "0", "--steps", "400"]),
@@ -264,13 +286,6 @@ fn long_runs_hold_all_their_claims() {
         ("chain", &["--links", "5", "--hand", "0.3,0.1,0.2", "--width", "0.1", "--steps", "1600"]),
         ("chain", &["--links", "40", "--hand", "0,0,0", "--lean", "0", "--steps", "200"]),
         ("chain", &["--links", "10", "--gravity", "0", "--time", "--steps", "900"]),
-        ("wave_map", &["--sites", "30", "--turn", "-40", "--step-size", "0.1", "--steps", "20", "--time"]),
-        ("wave_map", &["--turn", "0", "--spin", "0", "--length", "20", "--steps", "3"]),
-        (
-            "kink",
-            &["--speed", "0.7", "--frequency", "0.8", "--length", "60", "--spacing", "0.05", "--step-size", "0.02"],
-        ),
-        ("magnons", &["--tilt", "50", "--spin", "6", "--exchange", "2", "--step-size", "0.02", "--wavelength", "9"]),
         ("ensemble", &["--bodies", "13", "--inertia", "1,1.5,2", "--tilt", "20", "--spin", "1", "--seed", "3"]),
         ("inertia_estimation", &["--noise", "2000", "--step-size", "0.05", "--steps", "12000", "--seed", "2"]),
         ("inertia_estimation", &["--spin", "0,0,0", "--step-size", "0.1", "--steps", "6000", "--guess", "1,1,1"]),
@@ -426,6 +441,11 @@ fn mistakes_are_explained() {
         ("magnons", &["--tilt", "90"], "`90` is not below 90"),
         ("magnons", &["--step-size", "0.5"], "which is too far for waves"),
         ("magnons", &["--spin", "0"], "`0` is not above zero"),
+        ("rod", &["--edges", "7"], "`7` is not an even number up to 10000"),
+        ("rod", &["--step-size", "0.01"], "the longest stable step"),
+        ("rod", &["--push", "1,2"], "3 numbers separated by commas are needed, 2 were given"),
+        ("lattice", &["--side", "23"], "`23` is not from 24 to 1024"),
+        ("lattice", &["--step-size", "0.6"], "the longest stable step"),
         ("sphere_geodesics", &["--step-size", "2"], "step 1 was not reached"),
         ("sphere_geodesics", &["--sphere", "5"], "possible values: 3, 7, 20, 100"),
         ("sphere_geodesics", &["--position", "1,0,0,0"], "a point of S7 has 8 coordinates, 4 were given"),

@@ -24,7 +24,7 @@ const INSTANCES: [(&str, &[(&str, &str)]); 11] = [
 ];
 
 /// The directions of space of fields that have more than one, and the number of their conserved momenta.
-const DIRECTIONS: [(&str, &str); 2] = [("wave_map", "2, 3"), ("wave_map.WaveMap", "2, 3")];
+const DIRECTIONS: [(&str, &str); 3] = [("wave_map", "2, 3"), ("wave_map.WaveMap", "2, 3"), ("lattice.Block", "3, 3")];
 
 /// The names in `f32` of the lanes of `f64`.
 const LANES: [&str; 2] = ["F64x4", "F64x8"];
