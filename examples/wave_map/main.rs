@@ -92,6 +92,7 @@ fn run(flags: &Flags) -> Result<Claims, Failure> {
     let mut claims = Claims::new();
     say("frequencies on 16 by 12 sites, 0.5 m and 0.6 m apart, in steps of 0.2 s, 1/s\n");
     say(dispersion::compare(&mut claims)?);
+    Watch::claim_local(&flags.run, &stepper, start.clone(), &mut claims)?;
     let stepper = sheet::steps([flags.sites; 2], spacing, step_size / 2.0)?;
     let halved = Watch::of(&flags.run.refined(2), &stepper, start, |_, _, _, _, _| Ok(()))?;
     watch.claim(&halved, &mut claims);

@@ -101,6 +101,27 @@ impl Watch {
         }
     }
 
+    /// Claims the local law: in a step each site gains the flow over its edges.
+    ///
+    /// # Errors
+    /// Those of steps.
+    pub fn claim_local(run: &Run, stepper: &Steps, start: Start, claims: &mut Claims) -> Result<(), Failure> {
+        let spacing = stepper.lattice().spacings();
+        let mut residuals = vec![[0.0; 3]; start.0.len()];
+        let mut state = stepper.state(start.0, start.1)?;
+        let (mut residual, mut momentum) = (0.0, 0.0_f64);
+        for step in 1..=run.steps {
+            stepper.step_with_residuals(&mut state, &mut residuals).map_err(Failure::step(step))?;
+            residual = largest(residuals.iter().flatten().map(|residual| residual.abs()).chain([residual]));
+            momentum = state.momentum().iter().map(|mu| mu.amax()).fold(momentum, f64::max);
+        }
+        // four edges push a site with forces up to 1/dx²
+        let scale = momentum + 4.0 * run.step_size / spacing[0].powi(2);
+        let reason = "rounding in one step";
+        claims.at_most("local law of the momenta at every site", residual, round_off::worst_case(1, scale), reason);
+        Ok(())
+    }
+
     /// Claims about the run, and about one with half the step.
     pub fn claim(&self, halved: &Self, claims: &mut Claims) {
         let steps = self.run.steps;
