@@ -231,7 +231,7 @@ fn braced_beads_step_by_rattle_with_a_dense_matrix() -> Result<(), Error> {
     let mut state = stepper.project(places, [Vector2::new(0.1, 0.05); 7])?;
     let (mut x, mut p) = (*state.configuration(), stacked(&state.momentum()));
     assert!((rows(&x) * inverse_masses(&of) * &p).amax() < 1e-13);
-    for step in 0..300 {
+    for step in 0..crate::long(300) {
         let (next, (joints, loops)) = stepper.step_with_reactions(&state)?;
         state = next;
         let pull = rattle(&of, 0.01, &mut x, &mut p);
@@ -299,7 +299,7 @@ macro_rules! step_alike {
             all.sort_by(|a, b| a.partial_cmp(b).unwrap_or(std::cmp::Ordering::Equal));
             DVector::from_vec(all)
         };
-        for step in 0..300 {
+        for step in 0..crate::long(300) {
             let (next, (joints, loops)) = one.step_with_reactions(&one_state)?;
             let (other_next, pulls) = other.step_with_reactions(&other_state)?;
             (one_state, other_state, generic_state) = (next, other_next, generic.step(&generic_state)?);
@@ -416,7 +416,7 @@ fn a_platform_on_three_legs_stays_closed_and_is_time_symmetric() -> Result<(), E
         assert!(far < 1e-9, "{far:e}");
         Ok(band)
     };
-    let ratio = band(0.002, 200)? / band(0.001, 400)?;
+    let ratio = band(0.002, crate::long(200))? / band(0.001, crate::long(400))?;
     assert!((ratio - 4.0).abs() < 0.2, "{ratio}");
     Ok(())
 }
@@ -429,7 +429,7 @@ fn a_ring_with_a_strut_is_a_tree_with_loops() -> Result<(), Error> {
         Vector3::new(sin, 0.0, cos - 1.0)
     });
     let start = stepper.project(regular, [Vector3::new(0.1, 0.2, 0.0); 6])?;
-    let late = stepper.advance(&start, 1_000)?;
+    let late = stepper.advance(&start, crate::long(1000))?;
     let x = late.configuration();
     let open = (0..6).map(|i| (x[i] - x[(i + 1) % 6]).norm() - 1.0).chain([(x[3] - x[1]).norm_squared() - 2.0]);
     assert!(open.fold(0.0, |most: f64, open| most.max(open.abs())) < 1e-14);

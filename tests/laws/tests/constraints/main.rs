@@ -20,3 +20,8 @@ mod refused;
 mod repaired;
 mod trees;
 mod variants;
+
+/// The steps of a long run: a quarter of them without the feature `heavy`.
+const fn long(steps: usize) -> usize {
+    if cfg!(feature = "heavy") { steps } else { steps / 4 }
+}

@@ -207,7 +207,7 @@ fn twenty_bodies_by_number_are_those_of_a_const_generic_to_the_bit() -> Result<(
     let (weight, mass_matrix) = weights();
     let chain = Links { mass_matrix, weight, near, far };
     let by_number = TwentyLinks { mass_matrix, weight, near, far };
-    step_alike!(by_number, chain, places, [Vector6::new(0.01, 0.02, -0.01, 0.1, 0.0, 0.1); 20], 200, 0.0);
+    step_alike!(by_number, chain, places, [Vector6::new(0.01, 0.02, -0.01, 0.1, 0.0, 0.1); 20], crate::long(200), 0.0);
     Ok(())
 }
 
@@ -221,7 +221,7 @@ macro_rules! as_unrolled {
             SVector::<f64, { $dimension * $count }>::from_fn(|i, _| parts[i / $dimension][i % $dimension])
         };
         let mut other_state = other.state(*one_state.configuration(), stacked(one_state.momentum()))?;
-        for step in 0..300 {
+        for step in 0..crate::long(300) {
             let (next, pushes) = one.step_with_reactions_under(&one_state, &$u)?;
             let (other_next, other_pushes) = other.step_with_reactions_under(&other_state, &$u)?;
             (one_state, other_state) = (next, other_next);

@@ -133,7 +133,7 @@ fn band(bob: &Bob, h: f64) -> Result<f64, Error> {
     let mut state = stepper.state_moving(Vector3::new(0.5, 1.2, 0.0), Vector3::new(1.2, -0.5, 0.8))?;
     let energy = stepper.energy(&state);
     let mut band = 0.0_f64;
-    for _ in 0..5000 {
+    for _ in 0..crate::long(5000) {
         state = stepper.advance(&state, 20)?;
         let (x, v) = (state.configuration(), state.momentum() / bob.mass);
         let (longer, along) = ((x.norm() - bob.length).abs(), x.dot(&v).abs());
@@ -143,7 +143,7 @@ fn band(bob: &Bob, h: f64) -> Result<f64, Error> {
     Ok(band)
 }
 
-/// 100 000 steps; half the step, a quarter of the band of the energy, as of a symplectic step of second order.
+/// 25 000 steps, with the feature `heavy` 100 000. Half the step has a quarter of the band of the energy, as of a symplectic step of second order.
 #[test]
 fn places_and_velocities_stay_on_the_constraint() -> Result<(), Error> {
     let bob = Bob { mass: 0.7, gravity: 9.81, length: 1.3 };
@@ -265,7 +265,7 @@ fn joints_stay_closed_and_steps_are_time_symmetric() -> Result<(), Error> {
     assert!(far < 1e-12, "{far:e}");
     let mut state = start;
     let mut widest = 0.0_f64;
-    for _ in 0..100 {
+    for _ in 0..crate::long(100) {
         state = forth.advance(&state, 100)?;
         widest = widest.max(open(&bodies, state.configuration()));
     }

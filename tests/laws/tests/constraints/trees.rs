@@ -180,7 +180,7 @@ fn beads_of_a_tree_step_by_rattle() -> Result<(), Error> {
     // rounding errors grow as changes of the start do, and are compared with one of 10⁻¹⁴
     let (mut near, mut pushed) = (x, p.map(|p| p * (1.0 + 1e-14)));
     let mut growth = 0.0_f64;
-    for step in 0..300 {
+    for step in 0..crate::long(300) {
         state = stepper.step(&state)?;
         rattle(&mobile, 0.01, &mut x, &mut p);
         rattle(&mobile, 0.01, &mut near, &mut pushed);
@@ -248,7 +248,7 @@ fn bodies_of_a_tree_stay_together_and_are_time_symmetric() -> Result<(), Error> 
         assert!(far < 1e-9, "{far:e}");
         Ok(band)
     };
-    let ratio = band(0.002, 200)? / band(0.001, 400)?;
+    let ratio = band(0.002, crate::long(200))? / band(0.001, crate::long(400))?;
     assert!((ratio - 4.0).abs() < 0.2, "{ratio}");
     Ok(())
 }

@@ -8,7 +8,7 @@
 //! Some problems have a constraint. Its equations are affine in the velocity, or of the configuration. The oracle has the
 //! multipliers as unknowns, and the continuous motion has them from differences.
 //!
-//! Each test takes some dozens of seeds, and twice as many with the feature `heavy`.
+//! Each test takes some ten seeds, and four times as many with the feature `heavy`.
 //! `CLEBSCH_RANDOM=5000 cargo test -p clebsch-laws --test random` takes as many as it says, `CLEBSCH_RANDOM=1234..1235`
 //! these, and `-- --nocapture` shows the results of each.
 
@@ -37,9 +37,9 @@ use mutation::{Choices, mutated};
 use powers::Power;
 use verdict::verdict;
 
-/// The count with the feature `heavy`, and half of it without.
+/// The count with the feature `heavy`, and a quarter of it without.
 const fn cases(count: u64) -> u64 {
-    if cfg!(feature = "heavy") { count } else { count / 2 }
+    if cfg!(feature = "heavy") { count } else { count / 4 }
 }
 
 /// The seeds of a test that takes `count` of them with the feature `heavy`, unless it is told otherwise.
