@@ -1,7 +1,6 @@
-//! Writes every system that is linked, in both scalar types: the accepted fixtures as they stand, and of the scenes their declarations.
+//! Writes every system that is linked, in the scalar type of the crate: the accepted fixtures as they stand, and of the scenes their declarations.
 //!
-//! A file that is declared in `f64` is copied with `f32` in its place, and the other way round. So both are there
-//! whatever was written.
+//! A file that is declared in the other type is copied with this one in its place. So both crates have every system.
 
 use proc_macro2::{Delimiter, Group, TokenStream, TokenTree};
 use std::fmt::Write;
@@ -45,18 +44,17 @@ const DIMENSIONS: [(&str, &str); 8] = [
 const STUDIES: [&str; 3] = ["extremes", "figures", "work_precision"];
 
 fn main() {
-    let root = Path::new("../..");
-    let mut text = String::new();
-    for scalar in ["f64", "f32"] {
-        writeln!(text, "#[rustfmt::skip]\nmod {scalar} {{").expect("text");
-        for path in files(&root.join("tests/fixtures/accept")) {
-            text += &in_scalar(&fixture(&path), scalar);
-        }
-        for path in files(&root.join("examples")) {
-            text += &in_scalar(&scene(root, &path), scalar);
-        }
-        text += "}\n";
+    let root = Path::new("../../..");
+    let name = env::var("CARGO_PKG_NAME").expect("cargo sets it");
+    let scalar = name.strip_prefix("clebsch-no-std-").expect("crates are named after their scalar type");
+    let mut text = format!("#[rustfmt::skip]\nmod {scalar} {{\n");
+    for path in files(&root.join("tests/fixtures/accept")) {
+        text += &in_scalar(&fixture(&path), scalar);
     }
+    for path in files(&root.join("examples")) {
+        text += &in_scalar(&scene(root, &path), scalar);
+    }
+    text += "}\n";
     let out = PathBuf::from(env::var_os("OUT_DIR").expect("cargo sets it"));
     fs::write(out.join("systems.rs"), text).expect("the folder of the build can be written");
 }

@@ -1,7 +1,7 @@
 //! Faults that the check looks for in a program of their own: a fault that it does not find here it would not find
 //! anywhere.
 
-/// One vector: with it the library does not build, and without the systems that is said sooner.
+/// One vector: with it the library does not build. The systems are crates that are built already.
 #[cfg(feature = "heap")]
 #[unsafe(export_name = "planted.heap")]
 extern "C" fn heap(length: usize) -> usize {
