@@ -1,7 +1,7 @@
 //! The declarations, and a line of pendulums with its angles.
 
 use crate::solitons::Soliton;
-use clebsch::{Clebsch, Domain, Field, FieldStepper, Grid};
+use clebsch::{Clebsch, Domain, Field, FieldStepper, Grid, MovingField};
 use clebsch_examples::integrate::FieldOf;
 use clebsch_examples::scene::Failure;
 use nalgebra::{Matrix2, Rotation2, Vector1};
@@ -33,7 +33,7 @@ pub struct Angle;
 
 /// One of both.
 pub trait Pendulums:
-    Field<1> + Clebsch<Scalar = f64, Configuration = Matrix2<f64>, Momentum = Vector1<f64>, Time = ()> + Clone
+    Field<1> + MovingField + Clebsch<Scalar = f64, Configuration = Matrix2<f64>, Momentum = Vector1<f64>, Time = ()> + Clone
 {
 }
 

@@ -95,6 +95,70 @@ errors! {
             /// The spacing that was given.
             value: f64,
         } => "the spacing in direction {direction} is {value}: it must be a finite number above zero";
+        /// A face of a mesh has a corner that is no vertex.
+        FaceCorner {
+            /// The face, from 0 on.
+            face: usize,
+            /// The vertex that it names.
+            vertex: usize,
+            /// The number of vertices.
+            vertices: usize,
+        } => "face {face} has the corner {vertex}, and there are {vertices} vertices: count them from 0 on";
+        /// A face of a mesh has too few corners, or a corner twice. Or it is no triangle, and has to be one.
+        FaceSize {
+            /// The face, from 0 on.
+            face: usize,
+            /// Its different corners.
+            corners: usize,
+        } => "face {face} has {corners} different corners: give at least three, each once, and exactly three for cotangent weights";
+        /// Two faces of a mesh run through an edge in the same direction, or three faces have the same edge.
+        FlippedFace {
+            /// The second of these faces.
+            face: usize,
+            /// The vertex that the edge starts from.
+            from: usize,
+            /// The vertex that it ends at.
+            to: usize,
+        } => "face {face} runs from vertex {from} to {to}, as another face does or as a third one: list the corners of one of them the other way round, or leave out a double one";
+        /// An edge of a mesh has no length, or one that is not finite.
+        EdgeLength {
+            /// A vertex.
+            from: usize,
+            /// Another one.
+            to: usize,
+            /// Their distance.
+            value: f64,
+        } => "the vertices {from} and {to} are {value} apart: give vertices of an edge different finite places";
+        /// The weight of an edge is not finite.
+        EdgeWeight {
+            /// A vertex.
+            from: usize,
+            /// Another one.
+            to: usize,
+            /// The weight.
+            value: f64,
+        } => "the edge of the vertices {from} and {to} has the weight {value}: give a finite one (a triangle without area has no cotangents)";
+        /// There is no edge between two vertices of a mesh.
+        NoEdge {
+            /// A vertex.
+            from: usize,
+            /// Another one.
+            to: usize,
+        } => "no face has an edge between the vertices {from} and {to}";
+        /// The factor of over-relaxation is not between 0 and 2.
+        OverRelaxation {
+            /// The factor.
+            factor: f64,
+        } => "the factor of over-relaxation is {factor}: give one above 0 and below 2, or none";
+        /// A field has not come to rest after the most sweeps.
+        NotRelaxed {
+            /// The sweeps.
+            sweeps: u64,
+            /// The largest correction of the last sweep, in the coordinates of the group.
+            correction: f64,
+            /// The correction that was allowed.
+            tolerance: f64,
+        } => "after {sweeps} sweeps corrections are still {correction:.3e}, above {tolerance:.3e}: go on from this configuration, allow more sweeps, or a larger tolerance";
         /// Small waves of a field grow at steps of this size.
         UnstableStep {
             /// The step size.

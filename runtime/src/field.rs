@@ -14,6 +14,9 @@
 mod domain;
 mod edges;
 mod grid;
+#[cfg(feature = "alloc")]
+mod mesh;
+mod relaxation;
 mod residuals;
 mod sites;
 mod stability;
@@ -22,6 +25,9 @@ mod sweep;
 
 pub use domain::{Domain, Lattice};
 pub use grid::{Grid, Side, Sides};
+#[cfg(feature = "alloc")]
+pub use mesh::Mesh;
+pub use relaxation::{Relaxation, Relaxed};
 #[cfg(feature = "alloc")]
 pub use sites::Various;
 pub use sites::{Alike, Population};
@@ -75,9 +81,49 @@ pub trait FieldSite: Clebsch {
         Space::origin()
     }
 
+    /// q after a small motion by η, q + η_Q(q) to first order in η.
+    fn moved_by(&self, q: &Q<Self>, motion: &Mu<Self>) -> Q<Self>;
+
     /// The momentum of a velocity: ∂ℓ/∂ξ at (t, q, ξ), in the components of all factors.
     fn momentum_of_velocity(&self, t: T<Self>, q: &Q<Self>, velocity: &Mu<Self>) -> Mu<Self>;
 }
+
+/// A field with a cost, which moves: [`Domain::stepper`] steps it. `#[derive(Clebsch)]` implements it.
+///
+/// ```
+/// use clebsch::{Clebsch, Domain, Error, Grid, MovingField, FieldStepper, Lattice};
+///
+/// /// The stepper of half of a step.
+/// fn halved<S: MovingField<Scalar = f64> + Clone, G: Lattice<S>>(field: Domain<S, G>, h: f64) -> Result<FieldStepper<S, G>, Error> {
+///     field.stepper(h / 2.0)
+/// }
+/// ```
+#[diagnostic::on_unimplemented(
+    message = "`{Self}` has no cost, so that it is not stepped",
+    note = "relax it, `domain.relax().solve(&mut configuration)`, or write `cost = |h, F| …`"
+)]
+pub trait MovingField: FieldSite {}
+
+/// A field without a cost, which rests: [`Domain::relax`] finds where. `#[derive(Clebsch)]` implements it.
+///
+/// ```
+/// use clebsch::{Clebsch, Domain, Lattice, Relaxed, SiteError, StaticField};
+/// use nalgebra::SVector;
+///
+/// /// Relaxed to few digits.
+/// fn roughly<S, G, const M: usize>(field: &Domain<S, G>, q: &mut [S::Configuration]) -> Result<Relaxed<f64>, SiteError>
+/// where
+///     S: StaticField<Scalar = f64, Momentum = SVector<f64, M>> + Clone,
+///     G: Lattice<S>,
+/// {
+///     field.relax().tolerance(1e-3).solve(q)
+/// }
+/// ```
+#[diagnostic::on_unimplemented(
+    message = "`{Self}` has a cost, so that it is stepped and not relaxed",
+    note = "step it, `domain.stepper(h)`, or leave out its cost"
+)]
+pub trait StaticField: FieldSite {}
 
 /// A site of a field with neighbours in D directions of space. `#[derive(Clebsch)]` implements it where there is the key `space`.
 ///
@@ -190,5 +236,49 @@ pub trait Field<const D: usize>: FieldSite {
         Self: Clone,
     {
         Domain::new(self.clone(), Grid::new(sizes))
+    }
+
+    /// A mesh of these vertices and oriented faces, free at its border. The spacing of an edge is its length.
+    ///
+    /// `vertices` are places in a space of any dimension. Faces are the numbers of their corners in cyclic order.
+    ///
+    /// ```
+    /// use clebsch::{Clebsch, Field};
+    /// use nalgebra::{Vector1, Vector3};
+    ///
+    /// /// A membrane of density 1 and tension 1, its displacement x.
+    /// #[derive(Clebsch, Clone, Debug)]
+    /// #[clebsch(
+    ///     action = |a: Translation<1>, x: Vector1| x + a,
+    ///     cost   = |h, a| self.area * a.norm_squared() / (2 * h),
+    ///     space  = |length, x, next| (next - x).norm_squared() / 2,
+    /// )]
+    /// struct Membrane { area: f64 }
+    ///
+    /// // a tent of four triangles
+    /// let vertices = [Vector3::z(), Vector3::x(), Vector3::y(), -Vector3::x(), -Vector3::y()];
+    /// let faces = [[0, 1, 2], [0, 2, 3], [0, 3, 4], [0, 4, 1]];
+    /// let domain = Membrane { area: 1.0 }.mesh(&vertices, &faces)?.cotangent_weights()?.fixed();
+    /// let areas: Vec<f64> = (0..5).map(|site| domain.lattice().area(site)).collect();
+    /// let stepper = domain.various(|site| Membrane { area: areas[site] }).stepper(0.01)?;
+    /// let mut state = stepper.state(vec![Vector1::zeros(); 5], vec![Vector1::new(1.0); 5])?;
+    /// stepper.advance(&mut state, 100)?;
+    /// assert_eq!(state.configuration()[1].x, 0.0); // the border does not move
+    /// # Ok::<(), clebsch::SiteError>(())
+    /// ```
+    ///
+    /// # Errors
+    /// As [`Mesh::new`].
+    #[cfg(feature = "alloc")]
+    fn mesh<const K: usize>(
+        &self,
+        vertices: &[nalgebra::SVector<T<Self>, K>],
+        faces: &[impl AsRef<[usize]>],
+    ) -> Result<Domain<Self, Mesh<T<Self>>>, crate::Error>
+    where
+        Self: Field<1> + Clone,
+        T<Self>: crate::Real,
+    {
+        Ok(Domain::new(self.clone(), Mesh::new(vertices, faces)?))
     }
 }

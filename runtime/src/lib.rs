@@ -200,9 +200,12 @@ pub use double_double::DoubleDouble;
 pub use drive::{Bodies, Ensemble, Failure};
 pub use drive::{Drive, Integrator, NoJoints, SiteError, SiteStorage, Sites};
 pub use error::Error;
+pub use field::{
+    Alike, Domain, Field, FieldSite, FieldState, FieldStepper, Grid, Lattice, MovingField, Population, Relaxation,
+    Relaxed, Side, Sides, StaticField,
+};
 #[cfg(feature = "alloc")]
-pub use field::Various;
-pub use field::{Alike, Domain, Field, FieldSite, FieldState, FieldStepper, Grid, Lattice, Population, Side, Sides};
+pub use field::{Mesh, Various};
 #[cfg(feature = "lanes")]
 pub use lanes::{F32x8, F32x8Mask, F64x4, F64x4Mask, F64x8, F64x8Mask};
 pub use method::{Declared, Method};

@@ -22,8 +22,9 @@ const INSTANCES: [(&str, &[(&str, &str)]); 11] = [
     ("FirstOrderMolecules", &[("", "<8>")]),
 ];
 
-/// The directions of space of fields that have more than one, and the number of their conserved momenta.
-const DIRECTIONS: [(&str, &str); 3] = [("wave_map", "2, 3"), ("wave_map.WaveMap", "2, 3"), ("lattice.Block", "3, 3")];
+/// The directions of space of fields that have more than one, and the number of the conserved momenta of those that move.
+const DIRECTIONS: [(&str, &str); 4] =
+    [("harmonic_map", "2"), ("lattice.Block", "3, 3"), ("wave_map", "2, 3"), ("wave_map.WaveMap", "2, 3")];
 
 /// The names in `f32` of the lanes of `f64`.
 const LANES: [&str; 2] = ["F64x4", "F64x8"];
@@ -126,7 +127,7 @@ fn roots<'a>(name: &str, systems: impl IntoIterator<Item = &'a System>) -> Strin
             let mut export = |kind: &str, more: &str| of_method(kind, "", more);
             if system.is_field {
                 let directions = DIRECTIONS.iter().find(|(system, _)| *system == name).map_or("1", |(_, count)| count);
-                export("spreading", &format!(", {directions}"));
+                export(if system.is_static { "resting" } else { "spreading" }, &format!(", {directions}"));
             } else if !system.is_control_alone {
                 export("stepping", "");
             }
@@ -154,6 +155,7 @@ struct System {
     is_control_alone: bool,
     is_controlled: bool,
     is_field: bool,
+    is_static: bool,
     has_tangent: bool,
     has_boundary: bool,
 }
@@ -205,6 +207,7 @@ fn system<'a>(name: String, tokens: impl IntoIterator<Item = &'a Vec<TokenTree>>
         is_control_alone,
         is_controlled: is_control_alone || says("effort"),
         is_field: says("space"),
+        is_static: says("space") && !says("cost") && !says("lagrangian"),
         has_tangent: emits("tangent"),
         has_boundary: emits("boundary"),
     }

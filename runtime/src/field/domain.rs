@@ -1,14 +1,16 @@
 //! A field on a lattice, before it has a step size.
 
+#[cfg(feature = "alloc")]
+use super::Mesh;
 use super::edges::{Configured, Edge};
-use super::{Alike, Field, FieldSite, FieldStepper, Grid, Population, Sides};
+use super::{Alike, Field, FieldSite, FieldStepper, Grid, MovingField, Population, Sides};
 use crate::fields::getters;
 use crate::parts::{Mu, Q, T};
 use crate::{Clebsch, Error};
 use core::fmt::{self, Debug, Formatter};
 use core::marker::PhantomData;
 
-/// The places of the sites of a field, and the edges between them. It is a [`Grid`].
+/// The places of the sites of a field, and the edges between them: a [`Grid`], or a mesh.
 ///
 /// ```
 /// # use clebsch::{Clebsch, Grid, Lattice};
@@ -63,6 +65,10 @@ pub trait Lattice<S: FieldSite>: Clone {
     /// Visits the edges at a site, each with the end that the site is: 0 or 1.
     #[doc(hidden)]
     fn visit_edges(&self, site: usize, visit: impl FnMut(Edge, usize));
+
+    /// The energy of an edge.
+    #[doc(hidden)]
+    fn energy_of_edge(&self, system: &S, edge: Edge, q: [&Q<S>; 2]) -> T<S>;
 
     /// The forces of an edge on its ends.
     #[doc(hidden)]
@@ -137,7 +143,7 @@ impl<S: Clebsch + Clone, G, P: Population> Domain<S, G, P> {
     /// [`Clebsch::stepper`].
     pub fn stepper(self, h: T<S>) -> Result<FieldStepper<S, G, P>, Error>
     where
-        S: FieldSite,
+        S: MovingField,
         G: Lattice<S>,
     {
         FieldStepper::new(self.systems, self.lattice, h)
@@ -205,5 +211,48 @@ impl<S: Field<D> + Clone, const D: usize> Domain<S, Grid<T<S>, D>> {
         let sites = if self.lattice.check_sizes().is_ok() { self.lattice.sites() } else { 0 };
         let systems = (0..sites).map(|index| site(self.lattice.split(index))).collect();
         Domain { systems, lattice: self.lattice }
+    }
+}
+
+#[cfg(feature = "alloc")]
+impl<S: Field<1> + Clone, P: Population> Domain<S, Mesh<T<S>>, P> {
+    /// The same with fixed sites at the border: they do not move.
+    #[must_use]
+    pub fn fixed(mut self) -> Self {
+        let is_border: alloc::vec::Vec<bool> =
+            (0..self.lattice.sites()).map(|site| self.lattice.is_border(site)).collect();
+        self.lattice = self.lattice.fixed_where(|site| is_border.get(site).copied().unwrap_or(false));
+        self
+    }
+
+    /// The same with fixed sites where `is_fixed` says so, and no others.
+    #[must_use]
+    pub fn fixed_where(mut self, is_fixed: impl FnMut(usize) -> bool) -> Self {
+        self.lattice = self.lattice.fixed_where(is_fixed);
+        self
+    }
+
+    /// The same with a weight for each edge by its ends, as [`Mesh::weights`].
+    #[must_use]
+    pub fn weights(mut self, weight: impl FnMut([usize; 2]) -> T<S>) -> Self {
+        self.lattice = self.lattice.weights(weight);
+        self
+    }
+
+    /// The same with the weights of linear finite elements, as [`Mesh::cotangent_weights`].
+    ///
+    /// # Errors
+    /// [`Error::FaceSize`] for a face that is no triangle.
+    pub fn cotangent_weights(mut self) -> Result<Self, Error> {
+        self.lattice = self.lattice.cotangent_weights()?;
+        Ok(self)
+    }
+}
+
+#[cfg(feature = "alloc")]
+impl<S: Field<1> + Clone> Domain<S, Mesh<T<S>>> {
+    /// The same with parameters for each site by its number. The energy of an edge has those of the site at its start.
+    pub fn various(self, site: impl FnMut(usize) -> S) -> Domain<S, Mesh<T<S>>, super::Various> {
+        Domain { systems: (0..self.lattice.sites()).map(site).collect(), lattice: self.lattice }
     }
 }

@@ -12,6 +12,8 @@ pub struct Edge {
     pub direction: usize,
     /// The site that it starts from, and the neighbour that it ends at.
     pub ends: [usize; 2],
+    /// Its number in a mesh; 0 in a grid.
+    pub number: usize,
 }
 
 /// The sites of a field: their parameters, their places and their configurations.
@@ -42,10 +44,10 @@ impl<T: Scalar, const D: usize> Grid<T, D> {
         for direction in 0..D {
             let [before, after] = self.around(site, &place, direction);
             if let Some(before) = before {
-                visit(Edge { direction, ends: [before, site] }, 1);
+                visit(Edge { direction, ends: [before, site], number: 0 }, 1);
             }
             if let Some(after) = after {
-                visit(Edge { direction, ends: [site, after] }, 0);
+                visit(Edge { direction, ends: [site, after], number: 0 }, 0);
             }
         }
     }

@@ -1,12 +1,11 @@
 //! The longest step at which small waves of a field do not grow.
 
-use super::edges::Configured;
+use super::edges::{Configured, Edge};
 use super::{Domain, FieldSite, FieldState, FieldStepper, Lattice, Population};
 use crate::linear::{matrix, rows};
 use crate::newton::{Ldl, Spectrum};
 use crate::parts::{Mu, Q, T};
 use crate::space::larger;
-use crate::stepper::check_on_orbit;
 use crate::stepper::step_size::{Asked, STEPS, growth};
 use crate::{Clebsch, Error, Real, Scalar, SiteError, Space};
 use nalgebra::{SMatrix, SVector};
@@ -227,16 +226,13 @@ where
     G: Lattice<S>,
 {
     fn stable_step(&self, t: T<S>) -> Result<T<S>, SiteError> {
-        let (found, sites) = (self.q.len(), self.lattice.sites());
-        if found != sites {
-            return Err(Error::NumberOfSites { found, sites }.into());
-        }
+        self.check_sites()?;
+        let sites = self.lattice.sites();
         let (mut all, mut norms) = (T::<S>::zero(), Norms { last: None });
         let mut first: Option<Roots<T<S>, M>> = None;
         for site in (0..sites).filter(|site| !self.lattice.is_fixed(*site)) {
             let Some((system, q)) = self.site(site) else { continue };
             let at = |error| SiteError { site: Some(site), error };
-            check_on_orbit(q, system.orbit_defect(q)).map_err(at)?;
             let roots = Roots::of(system, t, q).map_err(at)?;
             let first = first.get_or_insert(roots);
             let bound = self.bound_at(site, t, (first, &roots), &mut norms);
@@ -256,45 +252,71 @@ where
         (first, own): (&Roots<T<S>, M>, &Roots<T<S>, M>),
         norms: &mut Norms<T<S>, M>,
     ) -> T<S> {
-        let Some((system, q)) = self.site(site) else { return T::<S>::zero() };
         // Σ_a⁻¹ = EᵀE, and both roots cancel where all inertias are the same
         let scale =
             if own.inertia == first.inertia { own.inverse } else { first.root * own.inverse.transpose() * own.inverse };
         let inverse = first.inverse.transpose();
-        let mut stiffness = SMatrix::<T<S>, M, M>::zeros();
-        if S::HAS_POTENTIAL {
-            for j in 0..M {
-                add_to(&mut stiffness, j, &system.force_on_site_along(t, q, &unit(j)));
-            }
-        }
-        let (mut neighbours, none) = (T::<S>::zero(), SVector::<T<S>, M>::zeros());
+        let mut neighbours = T::<S>::zero();
         self.lattice.visit_edges(site, |edge, end| {
-            let mut to_neighbour = SMatrix::<T<S>, M, M>::zeros();
-            for j in 0..M {
-                let direction = unit(j);
-                for (moved, block) in [(end, &mut stiffness), (1 - end, &mut to_neighbour)] {
-                    let motions = if moved == 0 { [&direction, &none] } else { [&none, &direction] };
-                    let Some((system, q)) = self.ends(edge) else { continue };
-                    let (before, after) = self.lattice.forces_along(system, edge, q, motions);
-                    add_to(block, j, if end == 0 { &before } else { &after });
-                }
-            }
             let is_moved = edge.ends.get(1 - end).is_some_and(|neighbour| !self.lattice.is_fixed(*neighbour));
             if is_moved {
-                neighbours += norms.of(scale * to_neighbour * inverse);
+                let mut block = SMatrix::zeros();
+                self.add_block(&mut block, edge, [end, 1 - end]);
+                neighbours += norms.of(scale * block * inverse);
             }
         });
+        norms.of(scale * self.stiffness_at(site, t) * inverse) + neighbours
+    }
+
+    /// H_aa of a site: P H P with the projection P to motions that move the site, where some do not.
+    pub(super) fn stiffness_at(&self, site: usize, t: T<S>) -> SMatrix<T<S>, M, M> {
+        let mut stiffness = SMatrix::zeros();
+        let Some((system, q)) = self.site(site) else { return stiffness };
+        if S::HAS_POTENTIAL {
+            for j in 0..M {
+                subtract_from(&mut stiffness, j, &system.force_on_site_along(t, q, &unit(j)));
+            }
+        }
+        self.lattice.visit_edges(site, |edge, end| self.add_block(&mut stiffness, edge, [end, end]));
         // the second derivative along exp(s η) is the symmetric part
         let symmetric = (stiffness + stiffness.transpose()) * T::<S>::from_ratio(1, 2);
-        norms.of(scale * symmetric * inverse) + neighbours
+        let projection = projection(system, q);
+        projection * symmetric * projection
+    }
+
+    /// Adds the second derivatives of the energy of an edge by motions of two of its ends, the second one by column.
+    fn add_block(&self, block: &mut SMatrix<T<S>, M, M>, edge: Edge, [end, moved]: [usize; 2]) {
+        let Some((system, q)) = self.ends(edge) else { return };
+        let none = SVector::<T<S>, M>::zeros();
+        for j in 0..M {
+            let direction = unit(j);
+            let motions = if moved == 0 { [&direction, &none] } else { [&none, &direction] };
+            let (before, after) = self.lattice.forces_along(system, edge, q, motions);
+            subtract_from(block, j, if end == 0 { &before } else { &after });
+        }
     }
 }
 
-/// Adds to a column.
-fn add_to<T: Scalar, const M: usize>(matrix: &mut SMatrix<T, M, M>, j: usize, column: &SVector<T, M>) {
+/// The orthogonal projection of momenta to those of motions of q.
+pub(super) fn projection<S: FieldSite<Momentum = SVector<<S as Clebsch>::Scalar, M>>, const M: usize>(
+    system: &S,
+    q: &Q<S>,
+) -> SMatrix<T<S>, M, M> {
+    let mut projection = SMatrix::zeros();
+    for j in 0..M {
+        let column = system.project_momentum(q, &unit(j));
+        for i in 0..M {
+            projection[(i, j)] = column[i];
+        }
+    }
+    projection
+}
+
+/// Subtracts from a column.
+fn subtract_from<T: Scalar, const M: usize>(matrix: &mut SMatrix<T, M, M>, j: usize, column: &SVector<T, M>) {
     for i in 0..M {
         if let (Some(entry), Some(x)) = (matrix.get_mut((i, j)), column.get(i)) {
-            *entry += *x;
+            *entry -= *x;
         }
     }
 }

@@ -231,6 +231,10 @@ impl<S: Field<D>, const D: usize> Lattice<S> for Grid<T<S>, D> {
         Grid::visit_edges(self, site, visit);
     }
 
+    fn energy_of_edge(&self, system: &S, Edge { direction, .. }: Edge, [q, next]: [&Q<S>; 2]) -> T<S> {
+        system.edge_energy(direction, self.spacings(), q, next)
+    }
+
     fn forces(&self, system: &S, Edge { direction, .. }: Edge, [q, next]: [&Q<S>; 2]) -> (Mu<S>, Mu<S>) {
         system.edge_forces(direction, self.spacings(), q, next)
     }

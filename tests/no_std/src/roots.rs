@@ -129,6 +129,29 @@ macro_rules! spreading {
     };
 }
 
+/// A field at rest on a grid.
+#[macro_export]
+macro_rules! resting {
+    ($name:literal, $type:ty, $directions:literal) => {
+        const _: () = {
+            use clebsch::{Clebsch, Field, Relaxed, Sides};
+
+            type S = $type;
+            type T = <S as Clebsch>::Scalar;
+            type Q = <S as Clebsch>::Configuration;
+
+            $crate::export!("relax", $name, |system: &S,
+                                             sizes: &[usize; $directions],
+                                             spacing: &[T; $directions],
+                                             sides: &[Sides; $directions],
+                                             q: &mut [Q],
+                                             found: &mut Option<Relaxed<T>>| {
+                *found = Some(system.grid(*sizes).spacing(*spacing).sides(*sides).relax().solve(q)?);
+            });
+        };
+    };
+}
+
 /// A stepper with all that it can do, by the declared dials or by a method.
 #[macro_export]
 macro_rules! stepping {

@@ -1,7 +1,7 @@
 //! Scenes that fail.
 
 use crate::Scene;
-use clebsch::{Clebsch, Controlled, Error, F64x4, Field, Guess, Scalar, SiteStorage, Target};
+use clebsch::{Alike, Clebsch, Controlled, Error, F64x4, Field, Guess, Mesh, Relaxation, Scalar, SiteStorage, Target};
 use clebsch_tests::fixtures::chaplygin_sleigh::ChaplyginSleigh;
 use clebsch_tests::fixtures::collocated_top::CollocatedTop;
 use clebsch_tests::fixtures::damped_body::DampedBody;
@@ -17,6 +17,22 @@ use clebsch_tests::fixtures::spin_chain::SpinChain;
 use clebsch_tests::fixtures::steered_body::SteeredBody;
 use clebsch_tests::fixtures::wave_map::WaveMap;
 use nalgebra::{Matrix3, Quaternion, Vector1, Vector2, Vector3, Vector5};
+
+/// A film over a frame, its height x.
+#[derive(Clebsch, Clone, Debug)]
+#[clebsch(
+    action = |a: Translation<1>, x: Vector1| x + a,
+    space  = |length, x, next| (next - x).norm_squared() / 2,
+)]
+pub struct Film;
+
+/// The last one is where the first one is.
+const CORNERS: [Vector2<f64>; 4] =
+    [Vector2::new(0.0, 0.0), Vector2::new(1.0, 0.0), Vector2::new(1.0, 1.0), Vector2::new(0.0, 0.0)];
+
+fn mesh(faces: &[Vec<usize>]) -> Result<Mesh<f64>, Error> {
+    Mesh::new(&CORNERS, faces)
+}
 
 /// A potential whose gradient has the wrong sign.
 #[derive(Clebsch, Clone, Debug)]
@@ -110,11 +126,47 @@ fn refused<T>(result: Result<T, Error>) -> Error {
 
 /// At least one for each variant.
 pub fn scenes() -> Vec<Scene> {
-    [parameters(), states(), steps(), extremals(), through_a_singularity(), plans()].into_iter().flatten().collect()
+    [parameters(), lattices(), states(), steps(), extremals(), through_a_singularity(), plans()]
+        .into_iter()
+        .flatten()
+        .collect()
 }
 
 fn scene(error: Error, told: &'static [&'static str]) -> Scene {
     Scene { error, told }
+}
+
+fn lattices() -> Vec<Scene> {
+    let film = Film.mesh(&CORNERS, &[[0, 1, 2]]).expect("a mesh");
+    let relaxed = |relaxation: Relaxation<'_, Film, Mesh<f64>, Alike>, height: f64| {
+        let mut heights = [0.0, height, 0.0, 0.0].map(Vector1::new);
+        refused(relaxation.solve(&mut heights).map_err(|error| error.error))
+    };
+    vec![
+        scene(refused(mesh(&[vec![0, 1, 4]])), &["face 0 has the corner 4", "4 vertices", "from 0 on"]),
+        scene(refused(mesh(&[vec![0, 1]])), &["face 0 has 2 different corners", "at least three"]),
+        scene(
+            refused(mesh(&[vec![0, 1, 2], vec![1, 2, 3]])),
+            &["face 1 runs from vertex 1 to 2", "as another face does", "the other way round"],
+        ),
+        scene(refused(mesh(&[vec![0, 1, 3]])), &["the vertices 3 and 0 are 0 apart", "different finite places"]),
+        scene(
+            refused(mesh(&[vec![0, 1, 2]]).and_then(|mesh| mesh.weight([0, 3]))),
+            &["no face has an edge between the vertices 0 and 3"],
+        ),
+        scene(
+            relaxed(film.clone().weights(|_| f64::NAN).relax(), 0.0),
+            &["the edge of the vertices 0 and 1 has the weight NaN", "give a finite one"],
+        ),
+        scene(
+            relaxed(film.relax().over_relaxation(2.5), 0.0),
+            &["the factor of over-relaxation is 2.5", "above 0 and below 2"],
+        ),
+        scene(
+            relaxed(film.relax().sweeps(1), 1.0),
+            &["after 1 sweeps", "above 1.000e-10", "go on from this configuration"],
+        ),
+    ]
 }
 
 fn parameters() -> Vec<Scene> {

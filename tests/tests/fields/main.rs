@@ -5,8 +5,10 @@
 
 mod elements;
 mod grids;
+mod meshes;
 mod reference;
 mod refused;
+mod relaxation;
 mod residuals;
 mod stability;
 mod threads;

@@ -1,6 +1,6 @@
 //! The longest stable step: against the eigenvalues of second differences of the energy, and by runs on both sides of it.
 
-use clebsch::{Clebsch, Error, Field, SiteError};
+use clebsch::{Clebsch, Error, Field, MovingField, SiteError};
 use clebsch_tests::fixtures::cosserat_rod::CosseratRod;
 use clebsch_tests::fixtures::sine_gordon::SineGordon;
 use clebsch_tests::fixtures::wave_map::WaveMap;
@@ -48,7 +48,7 @@ struct StrandOfOrderEight;
 /// The largest |x| after so many steps of a share of the stable step. It starts with the shortest wave, ±1.
 fn grown<S>(strand: S, share: f64, steps: u64) -> Result<f64, SiteError>
 where
-    S: Field<1> + Clebsch<Scalar = f64, Configuration = Vector1<f64>, Momentum = Vector1<f64>> + Clone,
+    S: Field<1> + MovingField + Clebsch<Scalar = f64, Configuration = Vector1<f64>, Momentum = Vector1<f64>> + Clone,
 {
     let ring = strand.grid([8]).spacing([0.5]).periodic();
     let wave: Vec<_> = (0..8).map(|i| Vector1::new(if i % 2 == 0 { 1.0 } else { -1.0 })).collect();

@@ -2,7 +2,7 @@
 
 use std::f64::consts::TAU;
 
-use clebsch::{Clebsch, Field, SiteError};
+use clebsch::{Clebsch, Field, MovingField, SiteError};
 use clebsch_tests::fixtures::sine_gordon::SineGordon;
 use nalgebra::{Vector1, Vector2};
 
@@ -91,7 +91,10 @@ struct SecondOrder;
 /// The speed of a kink that starts with the speed ½, over 20 s.
 fn speed<S>(system: &S, dx: f64) -> Result<f64, SiteError>
 where
-    S: Field<1> + Clone + Clebsch<Scalar = f64, Configuration = Vector2<f64>, Momentum = Vector1<f64>, Time = ()>,
+    S: Field<1>
+        + MovingField
+        + Clone
+        + Clebsch<Scalar = f64, Configuration = Vector2<f64>, Momentum = Vector1<f64>, Time = ()>,
 {
     let (sites, duration) = ((40.0 / dx) as usize, 20.0);
     let start = |i: usize| kink(dx * i as f64 - 12.0, 0.0, 0.5);

@@ -40,6 +40,11 @@ pub struct Iteration {
 pub fn derivation(formulas: &MechanicsFormulas<'_>, lowered: &Lowered) -> String {
     let model = &formulas.model;
     let item = model.power.as_ref().map_or(&model.item, |power| &power.item);
+    if formulas.rests() {
+        let (edges, frames, table) = (edges(formulas, lowered), frames(model), formulas.table());
+        let rest = "It has no cost: nothing moves it in time. It rests where no site feels a force, at a minimum of its energy.";
+        return format!("{}\n\n{edges}{rest}\n{frames}\nFormulas\n\n{table}\nCost\n\n{}", item.ident, lowered.costs);
+    }
     let system = [
         sites(formulas, lowered),
         edges(formulas, lowered),

@@ -15,6 +15,8 @@ const EXPANSION: u64 = 50_000;
 
 /// The formulas of a field.
 pub struct FieldFormulas<'g> {
+    /// Whether it rests, without a kinetic energy.
+    pub is_static: bool,
     /// Those of the edges, one for each direction.
     pub edges: Vec<EdgeFormulas<'g>>,
     /// −J(q, ∂V) for each factor, a function of the configuration; none without a potential.
@@ -63,6 +65,7 @@ pub(super) fn of<'g>(model: &Mechanics<'g>, system: &SystemFormulas<'g>) -> Opti
     let force_of_site = force_of_site.into_each(|force| -force);
     let moves = moves(system, &model.configurations.each(|leaf| leaf.symbol), 0);
     Some(FieldFormulas {
+        is_static: field.is_static,
         edges,
         force_of_site_along: force_of_site.each(|force| force.differential(&moves)),
         force_of_site,

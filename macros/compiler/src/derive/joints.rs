@@ -5,7 +5,7 @@
 
 use clebsch_symbolic::{Expr, IntoList, Shape, identity};
 
-use super::constraint::{check_inertia, coordinates_of_motion, free_motion, inverse};
+use super::constraint::{check_inertia, free_motion, inverse};
 use super::energy::Energy;
 use super::power::{SiteTerm, home, of_terms, symbol_at};
 use super::{Home, SystemFormulas};
@@ -23,8 +23,6 @@ pub struct JointFormulas<'g> {
     pub momentum: Expr<'g>,
     /// ξ′ of a site without joints and without the potential of all sites, a function of t, q, μ and the input u.
     pub acceleration: Expr<'g>,
-    /// Chart coordinates of a small motion ξ of a site.
-    pub moved: Expr<'g>,
 }
 
 /// The formulas of one joint.
@@ -77,7 +75,6 @@ pub(super) fn of<'g>(
         mobility: inverse * momenta,
         momentum: system.symbols.slope(energy.kinetic) + gyroscopic,
         acceleration: velocity.differential(&free),
-        moved: coordinates_of_motion(system, model.graph.below(&system.symbols.algebra)),
     }))
 }
 

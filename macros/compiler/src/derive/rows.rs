@@ -6,6 +6,7 @@ mod steps;
 
 use clebsch_symbolic::{Elements, Expr, IntoList, Property, Role, indexed};
 
+use super::constraint::coordinates_of_motion;
 use super::moves::inverse_by;
 use super::{Formula, FormulaTable, Id, JointRows, MechanicsFormulas, SteeredFormulas, SystemFormulas};
 use crate::model::{EdgeEnergy, LeafSpace, Motion};
@@ -126,6 +127,11 @@ impl<'g> MechanicsFormulas<'g> {
         self.table.get_or_init(|| FormulaTable::new(self.rows()))
     }
 
+    /// Whether it is a field without a cost.
+    pub(super) fn rests(&self) -> bool {
+        self.field.as_ref().is_some_and(|field| field.is_static)
+    }
+
     fn rows(&self) -> Vec<Formula<'g>> {
         let names = self.names();
         let mut rows = Vec::from(self.rows_of_action(&names));
@@ -148,6 +154,24 @@ impl<'g> MechanicsFormulas<'g> {
         rows.extend(self.rows_of_move(&names));
         rows.extend(self.rows_of_scheme(&names));
         rows.extend(self.rows_of_motions(&names));
+        // a field at rest has no momenta, and makes no steps
+        let is_of_rest = |row: &Formula<'g>| {
+            use Id::{Action, EdgeElement, EdgeEnergy, EdgeForces, Generator, MomentumMap, PotentialEnergy, SiteForce};
+            matches!(
+                row.id,
+                Action
+                    | Generator
+                    | MomentumMap
+                    | PotentialEnergy
+                    | EdgeEnergy(_)
+                    | EdgeForces(_)
+                    | EdgeElement
+                    | SiteForce
+            )
+        };
+        if self.rests() {
+            rows.iter_mut().for_each(|row| row.is_listed &= is_of_rest(row));
+        }
         rows
     }
 
@@ -208,9 +232,14 @@ impl<'g> MechanicsFormulas<'g> {
         let velocity = Formula::new(Id::Mobility, xi.clone(), [inertia.inverse() * momentum]);
         rows.push(velocity.computed_as(vec![joints.mobility]));
         rows.push(Formula::new(Id::Acceleration, format!("{xi}′"), [joints.acceleration]));
-        rows.push(Formula::new(Id::SmallMotion, "x", [joints.moved]));
+        rows.push(Formula::new(Id::SmallMotion, "x", [self.small_motion()]));
         rows.push(Formula::new(Id::MomentumOfVelocity, format!("Σ{xi} + A"), [joints.momentum]));
         rows
+    }
+
+    /// Chart coordinates of a small motion ξ of a site, in the charts of its steps.
+    fn small_motion(&self) -> Expr<'g> {
+        coordinates_of_motion(&self.system, self.model.graph.below(&self.symbols.algebra))
     }
 
     /// The energies and the forces of a field.
@@ -238,6 +267,7 @@ impl<'g> MechanicsFormulas<'g> {
         energies.push(Formula::new(Id::SiteForceAlong, "δf", field.force_of_site_along.clone()));
         let momentum = self.symbols.slope(self.energy.general.unwrap_or(self.energy.kinetic + self.energy.gyroscopic));
         energies.push(Formula::new(Id::MomentumOfVelocity, format!("Σ{xi} + A"), [momentum]));
+        energies.push(Formula::new(Id::SmallMotion, "x", [self.small_motion()]));
         energies.extend(field.force_inside.clone().map(|force| Formula::new(Id::ForceInside, "f", force)));
         energies
     }

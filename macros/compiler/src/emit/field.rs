@@ -4,7 +4,7 @@ use clebsch_symbolic::IntoList;
 use proc_macro2::TokenStream;
 use quote::{format_ident, quote};
 
-use super::function::{Body, no_words};
+use super::function::Body;
 use super::functions::{FIELD, FIELD_SITE};
 use super::scope::size;
 use super::{Emitter, flag};
@@ -79,10 +79,14 @@ impl Emitter<'_, '_> {
         });
         let (order, gathers) = (self.model.declared_order().number(), flag("GATHERS", self.program.gathers_edges()));
         let has_potential = flag("HAS_POTENTIAL", !field.force_of_site.is_empty());
-        let of_site = self.written(FIELD_SITE, &scope, &no_words);
+        let (system, parts) = (self.target.of_type(), self.trait_of_parts("Parts", &[]));
+        let words = |word: &str| (word == "PartsOf").then(|| quote!(<#system as #parts>));
+        let of_site = self.written(FIELD_SITE, &scope, &words);
         let order = quote!(const ORDER_OF_FIELD: ::core::primitive::u32 = #order;);
         let site = self.target.derived(Some(quote!(runtime::FieldSite)), quote!(#has_potential #order #of_site));
-        let field = self.target.derived(Some(quote!(runtime::Field<#directions>)), quote!(#gathers #functions));
-        quote!(#site #field)
+        let edges = self.target.derived(Some(quote!(runtime::Field<#directions>)), quote!(#gathers #functions));
+        let marker = if field.is_static { quote!(runtime::StaticField) } else { quote!(runtime::MovingField) };
+        let marker = self.target.derived(Some(marker), TokenStream::new());
+        quote!(#site #edges #marker)
     }
 }

@@ -182,6 +182,11 @@ functions! {
         fn force_on_site_along(&self, t: T, q: &Q, motion: &Mu) -> Mu { Id::SiteForceAlong }
         /// The momentum of a velocity.
         fn momentum_of_velocity(&self, t: T, q: &Q, x: &Mu) -> Mu { Id::MomentumOfVelocity }
+        /// The configuration after a small motion.
+        fn moved_by(&self, q: &Q, x: &Mu) -> Q { Id::SmallMotion } = {
+            let x = { Locals Value0 };
+            runtime::Clebsch::act(self, &PartsOf::element(&PartsOf::increment(self, &x)), q)
+        }
     }
 
     /// `Field`: the energies of edges, and the forces on sites.

@@ -208,5 +208,8 @@ impl<'g> ActedSystem<'_, '_, 'g> {
 pub(super) fn check(declaration: &Declaration, diagnostics: &Diagnostics) {
     let Some(closure) = declaration.spaces.first() else { return };
     let field = (Feature::Field, Found::at(closure.key.span()));
-    diagnostics.extend(features::refusals_of(field, |feature| features::declared(declaration, feature)));
+    let resting = declaration.is_static.then_some((Feature::StaticField, field.1.clone()));
+    for feature in [field].into_iter().chain(resting) {
+        diagnostics.extend(features::refusals_of(feature, |feature| features::declared(declaration, feature)));
+    }
 }

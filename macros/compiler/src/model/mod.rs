@@ -178,8 +178,12 @@ pub fn model<'g>(graph: &'g Graph, declaration: &Declaration, by_number: ByNumbe
     let order = if is_field && declared_order.stages().is_some() { Order::Second } else { order };
     let mut potential = formulas.potential;
     // the sites of a field are kicked by their potential and by their edges at once
-    let field =
-        is_field.then(|| FieldEnergies { edges: formulas.edges, potential: potential.take(), order: declared_order });
+    let field = is_field.then(|| FieldEnergies {
+        edges: formulas.edges,
+        potential: potential.take(),
+        order: declared_order,
+        is_static: declaration.is_static,
+    });
     let power = power.map(|power| {
         let forces = force.iter().flat_map(|force| force.of_group.iter().chain(&force.on_configuration).flatten());
         let read = [kinetic.energy()].into_iter().chain(forces.copied()).into_list();

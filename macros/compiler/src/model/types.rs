@@ -454,6 +454,8 @@ pub struct FieldEnergies<'g> {
     pub potential: Option<Expr<'g>>,
     /// The order of a step of all sites; the model of a site has order 2 where that is composed.
     pub order: Order,
+    /// Whether the field rests: the kinetic energy of its model measures motions and nothing else.
+    pub is_static: bool,
 }
 
 /// The energy of an edge from a site to its neighbour in one direction.

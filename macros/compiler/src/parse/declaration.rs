@@ -2,14 +2,17 @@
 
 use std::fmt;
 
+use clebsch_symbolic::IntoList;
 use proc_macro2::Ident;
-use syn::{DeriveInput, Generics};
+use syn::ext::IdentExt;
+use syn::{DeriveInput, Expr, Generics, parse_quote_spanned};
 
 use super::dials::Dials;
 use super::keys::Keys;
 use super::spelling::{joined, spell, spell_type, tokens};
 use super::{
-    Argument, Choice, Closure, DeclaredGroup, DeclaredMethod, Definition, Field, Opaque, combinations, control, methods,
+    Argument, Choice, Closure, DeclaredGroup, DeclaredMethod, Definition, Field, Opaque, Pattern, combinations,
+    control, methods,
 };
 use crate::diagnostic::{Diagnostic, error};
 
@@ -45,6 +48,8 @@ pub struct Declaration {
     pub dials: Dials,
     /// Further ways to step the system, each with dials of its own.
     pub methods: Vec<DeclaredMethod>,
+    /// Whether it is a field without a kinetic energy, which rests. ½|ξ|² then measures its motions.
+    pub is_static: bool,
 }
 
 /// The key `potential`.
@@ -126,7 +131,10 @@ pub(super) fn assemble(input: &DeriveInput, mut keys: Keys, fields: Vec<Field>) 
     let moved_by_inputs = keys.was_given("controls") || keys.was_given("dynamics");
     if !keys.was_given("action") && !keys.was_given("dynamics") && !nothing_readable {
         diagnostics.push(missing_action(&input.ident, keys.is_empty()));
-    } else if !nothing_readable && !moved_by_inputs && !keys.was_given("cost") && !keys.was_given("lagrangian") {
+    } else if !nothing_readable
+        && !moved_by_inputs
+        && !["cost", "lagrangian", "space"].iter().any(|key| keys.was_given(key))
+    {
         diagnostics.push(missing_kinetic(&input.ident, &fields));
     }
     control::check_endpoint(&keys, control.as_ref());
@@ -137,7 +145,9 @@ pub(super) fn assemble(input: &DeriveInput, mut keys: Keys, fields: Vec<Field>) 
     let Keys { potential, groups, dials, methods, .. } = keys;
     let methods = methods::checked(&input.ident, methods, diagnostics);
     let action = action?;
-    let kinetic = kinetic.unwrap_or_else(|| Kinetic::Lagrangian(action.clone()));
+    let is_static = kinetic.is_none() && !spaces.is_empty();
+    let kinetic =
+        kinetic.unwrap_or_else(|| Kinetic::Lagrangian(if is_static { metric(&action) } else { action.clone() }));
     Some(Declaration {
         ident: input.ident.clone(),
         generics: input.generics.clone(),
@@ -155,7 +165,37 @@ pub(super) fn assemble(input: &DeriveInput, mut keys: Keys, fields: Vec<Field>) 
         symmetries,
         dials,
         methods,
+        is_static,
     })
+}
+
+/// ½|ξ|², which measures motions where there is no kinetic energy: `|(x0, x1)| (x0.norm_squared() + x1.norm_squared()) / 2`.
+fn metric(action: &Closure) -> Closure {
+    let span = action.key.span();
+    let count = action.arguments.first().map_or(1, |argument| match &argument.pattern {
+        Pattern::Name(_) => 1,
+        Pattern::Tuple(parts, _) => parts.len(),
+    });
+    let taken: Vec<&Ident> = action.arguments.iter().flat_map(|argument| argument.pattern.names()).into_list();
+    let mut stem = String::from("xi");
+    while taken.iter().any(|name| name.unraw().to_string().starts_with(&stem)) {
+        stem.push('_');
+    }
+    let names: Vec<Ident> = (0..count).map(|k| Ident::new(&format!("{stem}{k}"), span)).into_list();
+    let squares = names.iter().map(|name| -> Expr { parse_quote_spanned!(span=> #name.norm_squared()) });
+    let squares = squares.reduce(|sum, square| parse_quote_spanned!(span=> #sum + #square));
+    let sum = squares.unwrap_or_else(|| parse_quote_spanned!(span=> 0));
+    let pattern = match names.as_slice() {
+        [only] => Pattern::Name(only.clone()),
+        _ => Pattern::Tuple(names.iter().cloned().map(Pattern::Name).into_list(), action.head),
+    };
+    let arguments = vec![Argument { pattern, ty: None }];
+    Closure {
+        key: Ident::new("lagrangian", span),
+        arguments,
+        head: action.head,
+        body: parse_quote_spanned!(span=> (#sum) / 2),
+    }
 }
 
 fn missing_action(ident: &Ident, nothing_given: bool) -> Diagnostic {
@@ -192,7 +232,9 @@ impl fmt::Display for Declaration {
             writeln!(f, "  {:<10} = {}", closure.key.to_string(), closure.spell())
         };
         entry(f, &self.action)?;
-        entry(f, self.kinetic.closure())?;
+        if !self.is_static {
+            entry(f, self.kinetic.closure())?;
+        }
         match &self.potential {
             Some(Potential::Closure(closure)) => entry(f, closure)?,
             Some(Potential::Opaque(opaque)) => writeln!(f, "  potential  = {}", opaque.spell())?,

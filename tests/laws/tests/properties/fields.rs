@@ -1,7 +1,9 @@
 //! Fields: grids, the forces of edges, and steps of all sites.
 
 use crate::arbitrary::{cases, vector};
-use clebsch::{Alike, Clebsch, Error, Field, FieldSite, Grid, Lattice, Population, Side, Sides, SiteError, Various};
+use clebsch::{
+    Alike, Clebsch, Error, Field, FieldSite, Grid, Lattice, Mesh, Population, Side, Sides, SiteError, Various,
+};
 use nalgebra::{Rotation3, Vector3};
 use proptest::prelude::*;
 
@@ -71,8 +73,128 @@ fn turned(q: &Vector3<f64>, axis: &Vector3<f64>) -> Vector3<f64> {
     Rotation3::new(*axis) * q
 }
 
+/// Springs between unit vectors at the edges of a mesh, in a field.
+#[derive(Clebsch, Clone, Debug)]
+#[clebsch(
+    action    = |F: SO<3>, q: Unit<Vector3>| F * q,
+    potential = |q| -self.field.dot(&q),
+    space     = |length, q, next| (next - q).norm_squared() / (2 * length),
+)]
+pub struct Needles {
+    pub field: Vector3<f64>,
+}
+
+/// The vertices and triangles of a sheet of n × m squares, with places and diagonals of choice.
+fn sheet(n: usize, m: usize, shifts: &[Vector3<f64>], turned: &[bool]) -> (Vec<Vector3<f64>>, Vec<[usize; 3]>) {
+    let site = |i: usize, j: usize| i * (m + 1) + j;
+    let place =
+        |s: usize| Vector3::new((s / (m + 1)) as f64, (s % (m + 1)) as f64, 0.0) + 0.2 * shifts[s % shifts.len()];
+    let square = |k: usize| {
+        let (i, j) = (k / m, k % m);
+        let [a, b, c, d] = [site(i, j), site(i + 1, j), site(i + 1, j + 1), site(i, j + 1)];
+        if turned[k % turned.len()] { [[a, b, c], [a, c, d]] } else { [[a, b, d], [b, c, d]] }
+    };
+    ((0..(n + 1) * (m + 1)).map(place).collect(), (0..n * m).flat_map(square).collect())
+}
+
 proptest! {
     #![proptest_config(cases(32))]
+
+    #[test]
+    fn meshes_have_edges_and_borders(
+        n in 1_usize..5, m in 1_usize..5, shifts in prop::collection::vec(vector::<3>(1.0), 7), turned in prop::collection::vec(any::<bool>(), 5), at in any::<prop::sample::Index>(),
+    ) {
+        let (vertices, faces) = sheet(n, m, &shifts, &turned);
+        let mesh = Mesh::new(&vertices, &faces).expect("a mesh");
+        let edges: Vec<[usize; 2]> = mesh.edges().collect();
+        // Euler: a disk
+        prop_assert_eq!(mesh.sites() + faces.len(), edges.len() + 1);
+        prop_assert_eq!(mesh.faces().collect::<Vec<_>>(), faces.iter().map(|face| &face[..]).collect::<Vec<_>>());
+        for site in 0..mesh.sites() {
+            let (i, j) = (site / (m + 1), site % (m + 1));
+            prop_assert_eq!(mesh.is_border(site), i == 0 || j == 0 || i == n || j == m);
+        }
+        let area = |[a, b, c]: [usize; 3]| (vertices[b] - vertices[a]).cross(&(vertices[c] - vertices[a])).norm() / 2.0;
+        let total: f64 = (0..mesh.sites()).map(|site| mesh.area(site)).sum();
+        near(total, faces.iter().map(|face| area(*face)).sum(), 1e-12);
+        // ½ (cot α + cot β)
+        let cotangents = mesh.clone().cotangent_weights().expect("triangles");
+        let weighted = mesh.weights(|[a, b]| (a + 2 * b) as f64);
+        for [a, b] in edges {
+            let opposite = faces.iter().filter(|face| face.contains(&a) && face.contains(&b)).map(|face| face.iter().sum::<usize>() - a - b);
+            let angle = |c: usize| (vertices[a] - vertices[c]).angle(&(vertices[b] - vertices[c]));
+            let expected: f64 = opposite.map(|c| 0.5 / angle(c).tan()).sum();
+            near(cotangents.weight([b, a]).expect("an edge"), expected, 1e-9 * (1.0 + expected.abs()));
+            prop_assert_eq!(weighted.weight([a, b]), Ok((a + 2 * b) as f64));
+        }
+        // one face the other way round
+        let mut flipped = faces.clone();
+        flipped[at.index(faces.len())].reverse();
+        let is_refused = matches!(Mesh::new(&vertices, &flipped), Err(Error::FlippedFace { .. }));
+        prop_assert!(faces.len() == 1 || is_refused);
+    }
+
+    #[test]
+    fn relaxed_fields_rest(
+        n in 1_usize..4, m in 1_usize..4, shifts in prop::collection::vec(vector::<3>(1.0), 7), turned in prop::collection::vec(any::<bool>(), 5),
+        all in states(16), field in vector::<3>(1.0), factor in 0.5_f64..1.8, weight in 0.5_f64..2.0,
+    ) {
+        let (vertices, faces) = sheet(n, m, &shifts, &turned);
+        let (sites, needles) = (vertices.len(), Needles { field });
+        let domain = needles.mesh(&vertices, &faces).expect("a mesh").weights(|_| weight).fixed_where(|site| site == 0);
+        prop_assert!(domain.lattice().is_fixed(0) && !domain.lattice().is_fixed(1));
+        prop_assert!((0..sites).all(|site| domain.clone().fixed().lattice().is_fixed(site) == domain.lattice().is_border(site)));
+        prop_assert!(domain.clone().cotangent_weights().is_ok());
+        let start: Vec<_> = (0..sites).map(|site| all.0[site % 16]).collect();
+        let energy = |q: &[Vector3<f64>]| {
+            let edge = |[a, b]: [usize; 2]| weight * (q[a] - q[b]).norm_squared() / (2.0 * (vertices[a] - vertices[b]).norm());
+            domain.lattice().edges().map(edge).sum::<f64>() - q.iter().map(|q| field.dot(q)).sum::<f64>()
+        };
+        let [a, b] = domain.lattice().edges().next().expect("an edge");
+        let first = |q: &[Vector3<f64>]| {
+            let mut found = None;
+            Lattice::<Needles>::visit_edges(domain.lattice(), a, |edge, _| {
+                if edge.ends == [a, b] {
+                    found = Some(domain.lattice().energy_of_edge(&needles, edge, [&q[a], &q[b]]));
+                }
+            });
+            found.expect("the edge")
+        };
+        near(first(&start), weight * (start[a] - start[b]).norm_squared() / (2.0 * (vertices[a] - vertices[b]).norm()), 1e-12);
+        for relaxation in [domain.relax(), domain.relax().over_relaxation(factor)] {
+            let mut q = start.clone();
+            let found = match relaxation.tolerance(1e-11).sweeps(20_000).solve(&mut q) {
+                Ok(found) => found,
+                // a saddle nearby may be left slowly
+                Err(SiteError { error: Error::NotRelaxed { .. }, .. }) => continue,
+                Err(error) => return Err(TestCaseError::fail(error.to_string())),
+            };
+            prop_assert_eq!(q[0], start[0]);
+            prop_assert!(found.sweeps() <= 20_000 && found.correction() <= 1e-11);
+            near(found.energy(), energy(&q), 1e-12 * (1.0 + energy(&q).abs()));
+            prop_assert!(found.energy() <= energy(&start) + 1e-12);
+            for site in 1..sites {
+                // by differences
+                for axis in [Vector3::x(), Vector3::y(), Vector3::z()] {
+                    let moved = |a: f64| {
+                        let mut q = q.clone();
+                        q[site] = self::turned(&q[site], &(axis * a));
+                        energy(&q)
+                    };
+                    near((moved(1e-4) - moved(-1e-4)) / 2e-4, 0.0, 1e-7);
+                }
+            }
+            near(found.residual(), 0.0, 1e-8);
+        }
+    }
+
+    #[test]
+    fn small_motions_move_sites(all in states(1), motion in vector::<3>(1.0)) {
+        let (q, size) = (all.0[0], 1e-4);
+        let moved = spins().moved_by(&q, &(motion * size));
+        near((moved - turned(&q, &(motion * size))).amax(), 0.0, 1e-7 * (1.0 + motion.norm_squared()));
+        near(moved.norm(), 1.0, 1e-14);
+    }
 
     #[test]
     fn grids_number_their_sites(sizes in [1_usize..5, 1..5, 1..5], spacing in [0.1_f64..2.0, 0.1..2.0, 0.1..2.0]) {

@@ -81,6 +81,7 @@ features! {
     Momentum "`emit = [momentum]`",
     VelocityConstraint "a constraint with a velocity",
     Joints "joints between the sites of a power",
+    StaticField "a field without a cost",
     // groups and spaces
     Power "a power",
     Forces "forces",

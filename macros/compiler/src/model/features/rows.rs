@@ -15,7 +15,7 @@ const WITHOUT_MATRICES: &[Feature] =
 
 /// The refused features, the others, the message, the reason, and the replacement.
 #[rustfmt::skip]
-pub(super) const ROWS: [Row; 70] = [
+pub(super) const ROWS: [Row; 71] = [
     // inputs move the configuration
     row(&[Dynamics], &[Controls],
         "there are `controls` and `dynamics`, but one thing moves a configuration", "",
@@ -177,6 +177,10 @@ pub(super) const ROWS: [Row; 70] = [
         "a step of a field has order 2, 4, 6 or 8, not {name}",
         "its sites are kicked before and after they move, half and half",
         ORDER_2),
+    row(&[Force, ForceOn, Order, Discretization, Isotropy, Signature, Tolerance, Iterations], &[StaticField],
+        "{beside} has no {refused}",
+        "nothing moves it in time: `relax` finds where it rests",
+        "leave it out, or write a `cost`"),
     row(&[OpaquePotential, Symmetry, Summation, Method], &[Field],
         "{refused} is not for a field yet", LATER,
         "leave it out"),
