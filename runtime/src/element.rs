@@ -54,7 +54,7 @@ pub fn below_right_angle<T: Scalar, const M: usize>(x: SVector<T, M>, sine_squar
 /// are half as long a chain of operations as a root and a division. Longer numbers, and derivatives, take the quotient. The relative error is below 1.5 ε.
 #[inline]
 pub fn per_one_plus_cosine<T: Scalar>(sine_squared: T) -> T {
-    let quotient = || (T::one() + (T::one() - sine_squared).sqrt()).recip();
+    let quotient = || quotient_per_one_plus_cosine(sine_squared);
     let is_plain = T::DERIVATIVES == 0 && T::EPSILON.to_f64() >= f64::EPSILON;
     let is_small = if is_plain { sine_squared.below(T::from_ratio(1, 1 << 7)) } else { T::Mask::nowhere() };
     if !is_small.any() {
@@ -67,6 +67,12 @@ pub fn per_one_plus_cosine<T: Scalar>(sine_squared: T) -> T {
     let high = two(T::from_ratio(7, 256), T::from_ratio(21, 1024)) + T::from_ratio(33, 2048) * square;
     let series = (low + square * middle) + (square * square) * high;
     if is_small.all() { series } else { T::select(is_small, series, quotient()) }
+}
+
+/// The same by a root and a division alone: fewer operations, and a longer chain of them.
+#[inline]
+pub fn quotient_per_one_plus_cosine<T: Scalar>(sine_squared: T) -> T {
+    (T::one() + (T::one() - sine_squared).sqrt()).recip()
 }
 
 /// The error of the first lane whose momentum is finite, as the others have none of their own.

@@ -5,6 +5,7 @@ use super::{Alike, FieldSite, Lattice, Population};
 use crate::fields::getters;
 use crate::parts::{Mu, Q, T, U};
 use crate::scheme::{At, Constants, OfOrderEight, OfOrderFour, OfOrderSix, Scheme, Sizes, moved};
+use crate::space::plus;
 use crate::stepper::{check_momentum, check_on_orbit, check_step_size};
 use crate::{Clebsch, Conserved, Conserves, Declared, Error, Method, Scalar, SiteError, Space, Time};
 use core::fmt::{self, Debug, Formatter};
@@ -377,7 +378,7 @@ impl<S: FieldSite + Clone, G: Lattice<S>, P: Population> FieldStepper<S, G, P> {
             *made = made.saturating_add(1);
         }
         // the momenta after the last kick
-        finite(0, (q, mu), summed(mu.iter().map(Space::sum)))
+        check_finite_sites(0, (q, mu), mu)
     }
 
     /// Adds the forces at a time, times `weight`, to the momenta of the sites from one on.
@@ -398,14 +399,18 @@ impl<S: FieldSite + Clone, G: Lattice<S>, P: Population> FieldStepper<S, G, P> {
     ) -> Result<(), SiteError> {
         let Some(stage) = self.stage(number) else { return Ok(()) };
         let (has_fixed, none) = (self.lattice.has_fixed(), U::<S>::origin());
-        let mut sum = T::<S>::zero();
         match self.all(first, stage).next() {
             // the loop that most fields have, without a question about each site
             Some((system, constants)) if P::ARE_ALIKE && !has_fixed && inputs.is_none() => {
-                for (i, (q, mu)) in (first..).zip(q.iter_mut().zip(&mut *mu)) {
-                    let moved = drift_of_site(At::new(system, constants, t), (q, mu), &none);
-                    sum += moved.map_err(|error| (i, error))?;
+                // few at a time, which are still near when they are checked
+                for (number, (q, mu)) in q.chunks_mut(FEW).zip(mu.chunks_mut(FEW)).enumerate() {
+                    let first = first + number * FEW;
+                    for (i, (q, mu)) in (first..).zip(q.iter_mut().zip(&mut *mu)) {
+                        drift_of_site(At::new(system, constants, t), (q, mu), &none).map_err(|error| (i, error))?;
+                    }
+                    check_finite_sites(first, (q, mu), q)?;
                 }
+                Ok(())
             }
             _ => {
                 let sites = q.iter_mut().zip(&mut *mu).zip(self.all(first, stage));
@@ -415,12 +420,11 @@ impl<S: FieldSite + Clone, G: Lattice<S>, P: Population> FieldStepper<S, G, P> {
                         continue;
                     }
                     let u = inputs.and_then(|inputs| inputs.get(i)).unwrap_or(&none);
-                    let moved = drift_of_site(At::new(system, constants, t), (q, mu), u);
-                    sum += moved.map_err(|error| (i, error))?;
+                    drift_of_site(At::new(system, constants, t), (q, mu), u).map_err(|error| (i, error))?;
                 }
+                check_finite_sites(first, (q, mu), q)
             }
         }
-        finite(first, (q, mu), sum)
     }
 
     /// The kinetic energies of all sites, their potentials, and the energies of all edges, in joules.
@@ -478,29 +482,58 @@ impl<S: FieldSite + Clone, G: Lattice<S>, P: Population> FieldStepper<S, G, P> {
     }
 }
 
-/// Moves a site by itself, with the input u of its forces. Returns the sum of its numbers, which is finite where all of them are.
+/// Moves a site by itself, with the input u of its forces.
 #[inline(always)]
 fn drift_of_site<S: Clebsch>(
     at: At<'_, S, Declared, Constants<S>>,
     (q, mu): (&mut Q<S>, &mut Mu<S>),
     u: &U<S>,
-) -> Result<T<S>, Error> {
-    (*q, *mu) = moved::<S>(at, (q, mu), u)?;
+) -> Result<(), Error> {
+    let (next, momentum) = moved::<S>(at, (q, mu), u)?;
     if S::MAY_LEAVE_ORBIT {
-        check_on_orbit(q, at.system.orbit_defect(q))?;
+        check_on_orbit(&next, at.system.orbit_defect(&next))?;
     }
-    Ok(q.sum() + mu.sum())
+    (*q, *mu) = (next, momentum);
+    Ok(())
 }
 
-/// All numbers of the sites from one on are finite where their sum is. Else the error names the first site with others, if it is not
-/// the sum that is too large.
+/// The sites that are moved before they are checked.
+const FEW: usize = 64;
+
+/// All numbers of the sites from one on are finite where those of `checked` are: their configurations after they have moved, or
+/// their momenta. A momentum that is not finite leaves no configuration finite.
 #[inline]
-fn finite<T: Scalar, Q: Space<T>, Mu: Space<T>>(first: usize, (q, mu): (&[Q], &[Mu]), sum: T) -> Result<(), SiteError> {
-    if sum.is_finite() {
+fn check_finite_sites<T: Scalar, Q: Space<T>, Mu: Space<T>>(
+    first: usize,
+    (q, mu): (&[Q], &[Mu]),
+    checked: &[impl Space<T>],
+) -> Result<(), SiteError> {
+    if are_finite(checked) {
         return Ok(());
     }
     let wrong = q.iter().zip(mu).position(|(q, mu)| !(q.all_finite() && mu.all_finite()));
     wrong.map_or(Ok(()), |site| at(first + site, Err(Error::NotFinite { name: "the state after a step" })))
+}
+
+/// The values whose sums are made side by side, where they are short: no addition waits for the one before.
+const ABREAST: usize = 4;
+/// The most bytes of a short value.
+const SHORT: usize = 32;
+
+/// Whether the sums of some values are finite, component by component. Where a number is not, its sum is not.
+#[inline]
+fn are_finite<T: Scalar, V: Space<T>>(values: &[V]) -> bool {
+    if size_of::<V>() > SHORT {
+        return values.iter().fold(V::origin(), |sum, value| plus(&sum, value)).all_finite();
+    }
+    let mut sums = [V::origin(); ABREAST];
+    let rows = values.chunks_exact(ABREAST);
+    let others = rows.remainder();
+    for row in rows {
+        sums.iter_mut().zip(row).for_each(|(sum, value)| *sum = plus(sum, value));
+    }
+    sums.iter_mut().zip(others).for_each(|(sum, value)| *sum = plus(sum, value));
+    sums.iter().all(Space::all_finite)
 }
 
 /// The most numbers that are added one after the other.

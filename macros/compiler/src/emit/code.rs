@@ -66,7 +66,9 @@ impl Scope<'_, '_> {
             Code::Root(x, exponent) => tokens.extend(self.root(x, *exponent)),
             Code::PerOnePlusCosine(x) => {
                 let x = self.code(x, false);
-                tokens.extend(quote!(runtime::per_one_plus_cosine(#x)));
+                let name = if self.is_of_field { "quotient_per_one_plus_cosine" } else { "per_one_plus_cosine" };
+                let name = format_ident!("{name}");
+                tokens.extend(quote!(runtime::#name(#x)));
             }
             Code::Call(callee, arguments) => tokens.extend(self.call(callee, arguments)),
             Code::Output(local, callee, output) => tokens.extend(self.output_of_call(*local, callee, *output)),

@@ -119,6 +119,8 @@ struct SystemEmitter<'a, 'g> {
     rows: &'a FormulaTable<'g>,
     kernels: &'a KernelTable,
     keeps_matrices: bool,
+    /// Whether it is the site of a field. Sites do not wait for each other: the number of operations counts, not their chain.
+    is_of_field: bool,
     power: Option<&'a Power<'g>>,
     /// The number of its sites.
     length: Option<TokenStream>,
@@ -146,7 +148,11 @@ impl<'a, 'g> Emitter<'a, 'g> {
         let (formulas, model) = (&program.formulas, &program.formulas.model);
         let parts = (model.power.as_ref(), model.opaque.as_ref());
         let system = SystemEmitter::new(formulas, (formulas.table(), &program.table), parts, &program.methods);
-        let system = SystemEmitter { keeps_matrices: program.form.keeps_matrices(), ..system };
+        let system = SystemEmitter {
+            keeps_matrices: program.form.keeps_matrices(),
+            is_of_field: model.field.is_some(),
+            ..system
+        };
         Emitter { system, program, formulas, model }
     }
 
@@ -236,7 +242,18 @@ impl<'a, 'g> SystemEmitter<'a, 'g> {
             target: Target::new(&item.ident, &item.generics, &item.scalar, &names),
             names,
         };
-        SystemEmitter { block, model, symbols, rows, kernels, keeps_matrices: false, power, length, opaque }
+        SystemEmitter {
+            block,
+            model,
+            symbols,
+            rows,
+            kernels,
+            keeps_matrices: false,
+            is_of_field: false,
+            power,
+            length,
+            opaque,
+        }
     }
 
     /// The documentation types of the groups, named where the user has written them, so that an editor shows their pages there.

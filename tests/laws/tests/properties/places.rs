@@ -160,10 +160,11 @@ proptest! {
     #[test]
     fn cosines_belong_to_their_sines(angle in 0.0_f64..1.55, x in vector::<3>(1.0), beyond in 1.0_f64..9.0) {
         let t = angle.sin().powi(2);
-        let found = private::per_one_plus_cosine(t);
         // the cosine of √(1 − t) knows t to ε
         let condition = 1.0 + 1.0 / (1.0 - t).sqrt();
-        prop_assert!((found * (1.0 + angle.cos()) - 1.0).abs() <= 4.0 * f64::EPSILON * condition);
+        for found in [private::per_one_plus_cosine(t), private::quotient_per_one_plus_cosine(t)] {
+            prop_assert!((found * (1.0 + angle.cos()) - 1.0).abs() <= 4.0 * f64::EPSILON * condition);
+        }
         prop_assert_eq!(private::below_right_angle(x, t), Ok(x));
         let refused = private::below_right_angle(x, beyond * beyond * 1.001);
         let is_refused = matches!(refused, Err(Error::Unsolvable { solvable_fraction, .. }) if (solvable_fraction * beyond * 1.001_f64.sqrt() - 1.0).abs() < NEAR);

@@ -140,7 +140,7 @@ pub const PROPERTIES: &[(&str, &[Property])] = &[
         ("rests_come_back_with_their_sums",              &["orthogonal_with_rest", "of_length_one_with_rest"]),
         ("promises_of_fields_are_checked",               &["check_symmetric", "check_diagonal", "check_unit", "check_finite", "check_limit"]),
         ("elements_are_the_identity_and_their_increments", &["from_increment", "quaternion", "quaternion_from_increment", "matrix", "vector"]),
-        ("cosines_belong_to_their_sines",                &["per_one_plus_cosine", "below_right_angle"]),
+        ("cosines_belong_to_their_sines",                &["per_one_plus_cosine", "quotient_per_one_plus_cosine", "below_right_angle"]),
         ("slopes_are_those_of_values",                   &["check_slope"]),
         ("gibbs_vectors_are_tangents_of_half_angles",    &["gibbs_vector_of_matrix", "gibbs_vector_of_quaternion"]),
         ("displacements_are_shortest",                   &["displacement"]),
