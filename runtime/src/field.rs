@@ -11,6 +11,7 @@
 //! Source: Marsden, Patrick and Shkoller, *Multisymplectic geometry, variational integrators, and nonlinear PDEs*,
 //! Communications in Mathematical Physics 199 (1998).
 
+mod degree;
 mod domain;
 mod edges;
 mod grid;

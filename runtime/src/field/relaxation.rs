@@ -20,6 +20,8 @@ const TOLERANCE: f64 = 1e-10;
 const TRIAL: u64 = 6;
 /// Halvings of a correction that raises the energy, at most.
 const HALVINGS: usize = 8;
+/// The rounding errors of the energy of a site, in units of ε of all of its terms.
+const ROUNDINGS: i64 = 32;
 /// The least eigenvalue of a stiffness relative to the largest, where one is not positive.
 const LEAST: f64 = 1e-6;
 
@@ -289,10 +291,11 @@ where
         sites + self.lattice.energy(|site| self.systems.get(P::number(site)).unwrap_or(first), self.q)
     }
 
-    /// The energy of a site and of its edges, if it stood at `q`.
-    fn energy_at(&self, site: usize, q: &Q<S>) -> T<S> {
-        let Some((system, _)) = self.site(site) else { return T::<S>::zero() };
+    /// The energy of a site and of its edges, if it stood at `q`. Behind it is the sum of the sizes of all terms, which tells its rounding.
+    fn energy_at(&self, site: usize, q: &Q<S>) -> (T<S>, T<S>) {
+        let Some((system, _)) = self.site(site) else { return (T::<S>::zero(), T::<S>::zero()) };
         let mut energy = system.potential(T::<S>::zero(), q);
+        let mut size = energy.abs();
         self.lattice.visit_edges(site, |edge, end| {
             let Some((system, mut ends)) = self.ends(edge) else { return };
             // an edge from the site to itself is visited for each end
@@ -305,9 +308,11 @@ where
                     *place = q;
                 }
             }
-            energy += self.lattice.energy_of_edge(system, edge, ends);
+            let own = self.lattice.energy_of_edge(system, edge, ends);
+            energy += own;
+            size += own.abs();
         });
-        energy
+        (energy, size)
     }
 }
 
@@ -331,12 +336,13 @@ where
         if !(size.is_finite() && step.all_finite()) {
             return Err(SiteError { site: Some(site), error: Error::NotFinite { name: "the force on a site" } });
         }
-        let before = self.energy_at(site, q);
-        let slack = T::<S>::EPSILON * T::<S>::from_ratio(8, 1) * (before.abs() + size * step.max_abs());
+        let (before, terms) = self.energy_at(site, q);
+        let rounding = T::<S>::EPSILON * T::<S>::from_ratio(ROUNDINGS, 1);
         let mut motion = step * factor;
         for _ in 0..HALVINGS {
             let moved = system.moved_by(q, &motion);
-            if self.energy_at(site, &moved) <= before + slack {
+            let (after, others) = self.energy_at(site, &moved);
+            if after <= before + rounding * (terms + others) {
                 return Ok(Some((moved, motion)));
             }
             motion *= T::<S>::from_ratio(1, 2);

@@ -12,7 +12,7 @@ use super::typed::ActedSystem;
 use super::value::Value;
 use super::{Configuration, EdgeEnergy, Factor, LeafSpace};
 use crate::diagnostic::{Diagnostics, refuse, report};
-use crate::parse::{Argument, Closure, Declaration, Pattern, spell_type, tail};
+use crate::parse::{Argument, Closure, Declaration, Pattern, Potential, spell_type, tail};
 
 /// The most directions of space.
 const DIRECTIONS: usize = 3;
@@ -209,6 +209,14 @@ pub(super) fn check(declaration: &Declaration, diagnostics: &Diagnostics) {
     let Some(closure) = declaration.spaces.first() else { return };
     let field = (Feature::Field, Found::at(closure.key.span()));
     let resting = declaration.is_static.then_some((Feature::StaticField, field.1.clone()));
+    let potential = declaration.potential.as_ref().and_then(Potential::closure).filter(|_| declaration.is_static);
+    if let Some(closure) = potential
+        && let [first, second, ..] = &closure.arguments[..]
+    {
+        report!(diagnostics, closure.head, "a field without a cost has no time, and `{}` reads it", first.pattern.spell();
+            help "write `|{}| …`", second.pattern.spell();
+            note "nothing moves it in time: `relax` finds where it rests");
+    }
     for feature in [field].into_iter().chain(resting) {
         diagnostics.extend(features::refusals_of(feature, |feature| features::declared(declaration, feature)));
     }

@@ -189,6 +189,29 @@ proptest! {
     }
 
     #[test]
+    fn degrees_are_integers(all in states(20), turns in 1_i32..4) {
+        // a periodic grid, and a mesh of the same squares
+        let (grid, q) = (Grid::<f64, 2>::new([4, 5]).periodic(), all.0);
+        let found = grid.degree(&q).expect("a degree");
+        near(found, found.round(), 1e-12);
+        let site = |i: usize, j: usize| i % 4 * 5 + j % 5;
+        let square = |k: usize| [site(k / 5, k % 5), site(k / 5 + 1, k % 5), site(k / 5 + 1, k % 5 + 1), site(k / 5, k % 5 + 1)];
+        let faces: Vec<[usize; 4]> = (0..20).map(square).collect();
+        let places: Vec<_> = (0..20).map(|k| Vector3::new((k / 5) as f64, (k % 5) as f64, 0.1 * k as f64)).collect();
+        near(Mesh::new(&places, &faces).expect("a torus").degree(&q).expect("a degree"), found, 1e-12);
+        prop_assert_eq!(grid.degree(&q[1..]), Err(Error::NumberOfSites { found: 19, sites: 20 }));
+        // from pole to pole and so many times around
+        let sphere = Grid::<f64, 2>::new([24, 24 * turns as usize + 1]);
+        let place = |k: usize| {
+            let (i, j) = (k / (24 * turns as usize + 1), k % (24 * turns as usize + 1));
+            let (polar, around) = (std::f64::consts::PI * i as f64 / 23.0, std::f64::consts::TAU * j as f64 / 24.0);
+            Vector3::new(polar.sin() * around.cos(), polar.sin() * around.sin(), polar.cos())
+        };
+        let whole: Vec<_> = (0..sphere.sites()).map(place).collect();
+        near(sphere.degree(&whole).expect("a degree"), f64::from(turns), 1e-11);
+    }
+
+    #[test]
     fn small_motions_move_sites(all in states(1), motion in vector::<3>(1.0)) {
         let (q, size) = (all.0[0], 1e-4);
         let moved = spins().moved_by(&q, &(motion * size));
@@ -321,8 +344,9 @@ proptest! {
         };
         let mut motion: Vec<Vector3<f64>> = all.1.iter().map(|mu| mu + Vector3::new(0.3, 0.2, -0.1)).collect();
         motion.iter_mut().enumerate().filter(|(site, _)| stepper.lattice().is_fixed(*site)).for_each(|(_, x)| x.fill(0.0));
-        // the quotient of Rayleigh, which climbs to the largest frequency
+        // the quotient of Rayleigh, which climbs to the largest frequency; velocities of momenta across q are across it
         for _ in 0..10 {
+            motion.iter_mut().zip(&q).for_each(|(x, q)| *x -= q * q.dot(x));
             let length: f64 = motion.iter().map(|x| x.norm_squared()).sum::<f64>().sqrt();
             if length == 0.0 {
                 break;

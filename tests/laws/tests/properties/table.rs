@@ -61,6 +61,7 @@ pub const PROPERTIES: &[(&str, &[Property])] = &[
         ("stable_steps_are_below_all_frequencies", &["Domain::system", "Domain::stable_step", "FieldStepper::stable_step", "FieldStepper::check_stable", "FieldStepper::suggest_step_size"]),
         ("meshes_have_edges_and_borders",         &["Mesh::new", "Mesh::sites", "Mesh::edges", "Mesh::faces", "Mesh::is_border", "Mesh::area", "Mesh::weights", "Mesh::weight", "Mesh::cotangent_weights"]),
         ("relaxed_fields_rest",                   &["Field::mesh", "Mesh::is_fixed", "Mesh::fixed_where", "Domain::weights", "Domain::fixed_where", "Domain::cotangent_weights", "Domain::relax", "Relaxation::tolerance", "Relaxation::sweeps", "Relaxation::over_relaxation", "Relaxation::solve", "Relaxed::sweeps", "Relaxed::correction", "Relaxed::residual", "Relaxed::energy", "Lattice::energy_of_edge"]),
+        ("degrees_are_integers",                  &["Grid::degree", "Mesh::degree"]),
         ("small_motions_move_sites",              &["FieldSite::moved_by"]),
         ("residuals_are_rounding_errors",         &["FieldStepper::step_with_residuals"]),
         ("kicks_are_slopes_of_the_energy",        &["Lattice::kick", "Lattice::energy", "FieldStepper::energy", "Domain::spacing", "Domain::stepper"]),
