@@ -57,6 +57,9 @@
 //! | integrate in another number type | [`Scalar`], and [`Space`] for collections of scalars; [`Real`] for a scalar that has an order |
 //! | step many bodies at once | [many bodies](crate#many-bodies), on lanes and on all cores |
 //! | step N equal sites that are tied to each other | a const generic N: an array of sites is a system, [`Stepper::sites`] or [`Stepper::joined_sites`] steps them in [`SiteStorage`]; the macro derives [`Power`] |
+//! | step a field, the same site at each place of a grid or a mesh | the key `space`; [`Field::grid`] gives a [`Domain`], whose [`FieldStepper`] steps a [`FieldState`] |
+//! | choose a stable step of a field | [`Domain::stable_step`] and [`FieldStepper::suggest_step_size`] |
+//! | find where a field without a cost rests | [`Domain::relax`]; [`Relaxation`] and [`Relaxed`] |
 //!
 //! # Features
 //!
@@ -66,7 +69,7 @@
 //! |---|---|
 //! | `std` | elementary functions of the standard library in place of `libm`: those of the platform, [see below](crate#the-same-bits-everywhere) |
 //! | `lanes` | `F64x4`, `F64x8` and `F32x8`: several bodies side by side in vector registers, `no_std` and without heap |
-//! | `alloc` | `Ensemble`: many bodies, on the heap |
+//! | `alloc` | on the heap: `Ensemble`, many bodies; `Mesh`, and sites of a field with parameters of their own |
 //! | `rayon` | `Ensemble::par_advance` and `FieldStepper::par_advance`, on all cores; needs the standard library |
 //! | `num-dual` | the numbers of that crate as scalars, which carry derivatives; needs the standard library |
 //! | `double-double` | `DoubleDouble`: 31 digits for reference runs |
