@@ -87,11 +87,11 @@ impl<T: Real> Mesh<T> {
     /// use clebsch::{Error, Mesh};
     /// use nalgebra::Vector3;
     ///
-    /// let (x, y, z) = (Vector3::x(), Vector3::y(), Vector3::z());
+    /// let (x, y, z) = (Vector3::<f64>::x(), Vector3::y(), Vector3::z());
     /// let octahedron = [x, y, z, -x, -y, -z];
     /// let faces = [[0, 1, 2], [1, 3, 2], [3, 4, 2], [4, 0, 2], [1, 0, 5], [3, 1, 5], [4, 3, 5], [0, 4, 5]];
     /// let mesh = Mesh::new(&octahedron, &faces)?;
-    /// assert!((mesh.degree(&octahedron)? - 1.0_f64).abs() < 1e-15);
+    /// assert!((mesh.degree(&octahedron)? - 1.0).abs() < 1e-15);
     /// assert!((mesh.degree(&octahedron.map(|v| -v))? + 1.0).abs() < 1e-15);
     /// # Ok::<(), Error>(())
     /// ```

@@ -21,14 +21,14 @@ const CORNERS: usize = 3;
 /// use nalgebra::{Vector2, Vector3};
 ///
 /// // the surface of a tetrahedron
-/// let vertices = [Vector3::zeros(), Vector3::x(), Vector3::y(), Vector3::z()];
+/// let vertices = [Vector3::<f64>::zeros(), Vector3::x(), Vector3::y(), Vector3::z()];
 /// let faces = [[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]];
 /// let mesh = Mesh::new(&vertices, &faces)?;
 /// assert_eq!((mesh.sites(), mesh.edges().count(), mesh.faces().count()), (4, 6, 4));
 /// assert!((0..4).all(|site| !mesh.is_border(site)));
 ///
 /// // the second one runs through the common edge as the first does
-/// let square = [Vector2::zeros(), Vector2::x(), Vector2::y(), Vector2::new(1.0, 1.0)];
+/// let square = [Vector2::<f64>::zeros(), Vector2::x(), Vector2::y(), Vector2::new(1.0, 1.0)];
 /// let refused = Mesh::new(&square, &[[0, 1, 2], [1, 2, 3]]);
 /// assert_eq!(refused, Err(Error::FlippedFace { face: 1, from: 1, to: 2 }));
 /// # Ok::<(), Error>(())
