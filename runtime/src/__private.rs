@@ -57,7 +57,7 @@ pub use crate::parts::{
 };
 pub use crate::power::{Constants as SiteConstants, Power, PowerConstants, wrapped};
 pub use crate::scheme::kinds::*;
-pub use crate::scheme::{At, Kicks, Scheme, Sizes, Stages, compose, split};
+pub use crate::scheme::{At, JoinedInStorage, Kicks, Scheme, Sizes, Stages, compose, split};
 pub use crate::sphere::{push, tangent, turn_freely, turn_great_circle, turned_in_plane};
 pub use crate::steered::{
     Link, Price, arrival_of_state, bounds, check_reached, displacement, endpoint, forced_step, no_endpoint, pair,

@@ -326,8 +326,10 @@ pub trait Joined<const N: usize, const R: usize, const M: usize>: Power<N, Site:
         u: &Self::Input,
     ) -> Result<WithLoops<Self, N, R, M>, Error> {
         let mut room = from_fn(|_| Joint::default());
+        let (gradient, zero) = (&mut [Space::origin(); N], [Space::origin(); N]);
+        let free = (gradient, &mut { zero }, &mut { zero });
         let found = Joints::<Self, N, R, M>::new(self, c, &mut room)
-            .and_then(|mut joints| joints.reactions(t, (q, mu), u).map(|()| joints.border));
+            .and_then(|mut joints| joints.reactions(t, (q, mu), u, free).map(|()| joints.border));
         found.map(|border| (solutions(&room), border)).map_err(|(_, error)| error)
     }
 }

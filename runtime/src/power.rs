@@ -152,7 +152,9 @@ pub trait Power<const N: usize>:
     /// The constants of a step of size `h`.
     fn power_constants(&self, h: T<Self>) -> Result<Constants<Self, N>, Error> {
         const { assert!(N > 0, "a power has at least one site") };
-        const { assert!(N >= Self::LEAST_SITES, "the declaration names a site by a number that N does not have") };
+        const {
+            assert!(N >= Self::LEAST_SITES, "the declaration names a site that N does not have, or the same site twice")
+        };
         // sites that differ are checked one by one; the constants of the first stand for all where they are equal
         let others = if Self::IS_UNIFORM { 1 } else { N };
         (1..others).try_for_each(|i| site_constants(&self.site(i), h).map(drop))?;

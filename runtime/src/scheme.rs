@@ -72,6 +72,7 @@ use num_traits::Zero;
 
 pub(crate) use composed::{OfOrderEight, OfOrderFour, OfOrderSix};
 pub use composed::{Sizes, Stages, compose};
+pub use joined::JoinedInStorage;
 pub use sites::{AtSite, InStorage, Stored};
 pub use split::{Kicks, split};
 

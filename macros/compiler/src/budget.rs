@@ -61,9 +61,13 @@ fn too_large(declaration: &Declaration, stage: CompilerStage) -> Diagnostic {
     for text in others.smaller() {
         error = error.help(text);
     }
-    let error = error.help(instead);
-    let error = match others.no_sites() {
-        Some(reason) => error.note(format!("its sites are not stepped in loops: {reason}")),
+    let no_sites = others.no_sites();
+    // advice about a const generic is none for a number
+    let of_number = |help: &&str| !help.contains("const generic");
+    let cure = no_sites.as_ref().and_then(|reason| reason.first_help()).filter(of_number);
+    let error = error.help(cure.unwrap_or(instead));
+    let error = match &no_sites {
+        Some(reason) => error.note(format!("its sites are not stepped in loops: {}", reason.message())),
         None => error,
     };
     error.note("formulas are expanded at compile time, and products of sums get a term for each pair of terms")
@@ -155,7 +159,7 @@ impl Others<'_> {
     }
 
     /// Why the sites of a product by a number are not stepped in loops.
-    fn no_sites(&self) -> Option<String> {
+    fn no_sites(&self) -> Option<Diagnostic> {
         let declaration = self.declaration;
         let is_by_number = declaration.methods.is_empty() && crate::model::may_be_sites(declaration);
         let graph = Graph::new();
@@ -164,7 +168,7 @@ impl Others<'_> {
             crate::derive::derive(model).map(|_| ())
         };
         let tried = is_by_number.then(|| work::within(WORK / 12, by_sites))?;
-        tried.ok()?.err()?.into_iter().next().map(|error| error.message().to_string())
+        tried.ok()?.err()?.into_iter().next()
     }
 }
 

@@ -86,6 +86,11 @@ impl Diagnostic {
         &self.message
     }
 
+    /// The first text to type instead.
+    pub fn first_help(&self) -> Option<&str> {
+        self.lines.iter().find_map(|line| line.strip_prefix("help: "))
+    }
+
     /// The text to type instead.
     pub fn help(mut self, text: impl fmt::Display) -> Diagnostic {
         self.lines.push(format!("help: {text}"));

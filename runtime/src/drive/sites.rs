@@ -3,7 +3,7 @@
 use super::Drive;
 use crate::fields::getters;
 use crate::power::{Point, Power, SiteMomentum};
-use crate::scheme::{At, AtSite, InStorage, Scheme, Stored};
+use crate::scheme::{At, AtSite, InStorage, JoinedInStorage, Scheme, Stored};
 use crate::stepper::check_on_orbit;
 use crate::{Clebsch, Clock, Conserves, Error, Scalar, Space, Stepper, Time};
 use core::fmt::{self, Display, Formatter};
@@ -162,6 +162,11 @@ impl<R> AsMut<[R]> for NoJoints {
     }
 }
 
+/// The multipliers of the joints of a site of P.
+type Multipliers<P, const N: usize> = <<P as Clebsch>::Scheme as JoinedInStorage<P, N>>::Multipliers;
+/// Those of its equations that close loops.
+type LoopMultipliers<P, const N: usize> = <<P as Clebsch>::Scheme as JoinedInStorage<P, N>>::OfLoops;
+
 /// The room that the sites of P need for their joints.
 type Room<P, const N: usize> = <<P as Clebsch>::Scheme as InStorage<P, N>>::Room;
 
@@ -250,7 +255,114 @@ impl<P: Clebsch> Stepper<P> {
     pub fn joined_sites<Points, Momenta, Rooms, const N: usize>(
         self,
         storage: SiteStorage<Points, Momenta>,
+        room: Rooms,
+    ) -> Result<Sites<P, Points, Momenta, N, Rooms>, SiteError>
+    where
+        P: Power<N>,
+        Points: AsRef<[Point<P, N>]> + AsMut<[Point<P, N>]>,
+        Momenta: AsRef<[SiteMomentum<P, N>]> + AsMut<[SiteMomentum<P, N>]>,
+        Rooms: AsMut<[Room<P, N>]>,
+    {
+        self.prepared_sites(storage, room, |_| Ok(()))
+    }
+
+    /// The same from the velocities ξ that `storage` has in the place of the momenta.
+    ///
+    /// ```
+    /// # use clebsch::{Clebsch, Error, SiteStorage};
+    /// # use nalgebra::Vector2;
+    /// # #[derive(Clebsch, Clone, Debug)]
+    /// # #[clebsch(
+    /// #     action     = |a: [Translation<2>; N], x: [Vector2; N]| (0..N).map(|i| x[i] + a[i]),
+    /// #     lagrangian = |v| (0..N).map(|i| self.mass * v[i].norm_squared() / 2).sum(),
+    /// #     constraint = |x| [
+    /// #         x[0] == Vector2::zeros(),
+    /// #         (1..N).map(|i| (x[i] - x[i - 1]).norm_squared() == 1),
+    /// #     ],
+    /// # )]
+    /// # struct Rope<const N: usize> { mass: f64 }
+    /// // a straight rope turns about its first bead, with 1 rad/s
+    /// let stepper = Rope::<3> { mass: 0.2 }.into_stepper(0.1)?;
+    /// let places = vec![Vector2::zeros(), Vector2::x(), Vector2::x() * 2.0];
+    /// let velocities = vec![Vector2::zeros(), Vector2::y(), Vector2::y() * 2.0];
+    /// let room = vec![stepper.joint(); 3];
+    /// let rope = stepper.joined_sites_moving(SiteStorage::of(places, velocities), room)?;
+    /// assert_eq!(rope.momentum()[2], Vector2::y() * 0.4);
+    /// # Ok::<(), Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// Those of [`joined_sites`](Self::joined_sites).
+    pub fn joined_sites_moving<Points, Momenta, Rooms, const N: usize>(
+        self,
+        storage: SiteStorage<Points, Momenta>,
+        room: Rooms,
+    ) -> Result<Sites<P, Points, Momenta, N, Rooms>, SiteError>
+    where
+        P: Power<N, Scheme: JoinedInStorage<P, N>>,
+        Points: AsRef<[Point<P, N>]> + AsMut<[Point<P, N>]>,
+        Momenta: AsRef<[SiteMomentum<P, N>]> + AsMut<[SiteMomentum<P, N>]>,
+        Rooms: AsMut<[Room<P, N>]>,
+    {
+        self.prepared_sites(storage, room, |sites| {
+            let (q, velocities) = (sites.storage.configuration.as_ref(), sites.storage.momentum.as_mut());
+            P::Scheme::momenta_of_velocities(sites.stepper.at(sites.time.now()), array(q)?, array_mut(velocities)?);
+            Ok(())
+        })
+    }
+
+    /// The same from the nearest state, as [`project`](Self::project) finds it: `storage` need not obey the joints.
+    ///
+    /// ```
+    /// # use clebsch::{Clebsch, Error, SiteStorage};
+    /// # use nalgebra::Vector2;
+    /// # #[derive(Clebsch, Clone, Debug)]
+    /// # #[clebsch(
+    /// #     action     = |a: [Translation<2>; N], x: [Vector2; N]| (0..N).map(|i| x[i] + a[i]),
+    /// #     lagrangian = |v| (0..N).map(|i| v[i].norm_squared() / 2).sum(),
+    /// #     constraint = |x| [
+    /// #         x[0] == Vector2::zeros(),
+    /// #         (1..N).map(|i| (x[i] - x[i - 1]).norm_squared() == 1),
+    /// #     ],
+    /// # )]
+    /// # struct Rope<const N: usize>;
+    /// // the rods are too long by a tenth
+    /// let stepper = Rope::<3>.into_stepper(0.1)?;
+    /// let places = vec![Vector2::zeros(), Vector2::x() * 1.1, Vector2::x() * 2.2];
+    /// let room = vec![stepper.joint(); 3];
+    /// let rope = stepper.projected_joined_sites(SiteStorage::of(places, vec![Vector2::y(); 3]), room)?;
+    /// assert!((rope.configuration()[2] - Vector2::x() * 2.0).norm() < 1e-15);
+    /// assert_eq!(rope.momentum()[0], Vector2::zeros()); // it is fixed
+    /// # Ok::<(), Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// Those of [`joined_sites`](Self::joined_sites), and [`Error::FarFromConstraint`].
+    pub fn projected_joined_sites<Points, Momenta, Rooms, const N: usize>(
+        self,
+        storage: SiteStorage<Points, Momenta>,
+        room: Rooms,
+    ) -> Result<Sites<P, Points, Momenta, N, Rooms>, SiteError>
+    where
+        P: Power<N, Scheme: JoinedInStorage<P, N>>,
+        Points: AsRef<[Point<P, N>]> + AsMut<[Point<P, N>]>,
+        Momenta: AsRef<[SiteMomentum<P, N>]> + AsMut<[SiteMomentum<P, N>]>,
+        Rooms: AsMut<[Room<P, N>]>,
+    {
+        self.prepared_sites(storage, room, |sites| {
+            sites.check_each()?;
+            let SiteStorage { configuration, momentum, .. } = &mut sites.storage;
+            let state = (array_mut(configuration.as_mut())?, array_mut(momentum.as_mut())?);
+            Ok(P::Scheme::to_joints(sites.stepper.at(sites.time.now()), state, sites.room.as_mut())?)
+        })
+    }
+
+    /// Sites in storage of the right size, whose state is checked after `prepare`.
+    fn prepared_sites<Points, Momenta, Rooms, const N: usize>(
+        self,
+        storage: SiteStorage<Points, Momenta>,
         mut room: Rooms,
+        prepare: impl FnOnce(&mut Sites<P, Points, Momenta, N, Rooms>) -> Result<(), SiteError>,
     ) -> Result<Sites<P, Points, Momenta, N, Rooms>, SiteError>
     where
         P: Power<N>,
@@ -269,6 +381,7 @@ impl<P: Clebsch> Stepper<P> {
             return Err(wrong_length::<N>(found));
         }
         let mut sites = Sites { stepper: self, time: Time::at(Zero::zero()), steps: 0, storage, room };
+        prepare(&mut sites)?;
         sites.check()?;
         sites.kick()?;
         Ok(sites)
@@ -290,13 +403,19 @@ where
     Momenta: AsRef<[SiteMomentum<P, N>]> + AsMut<[SiteMomentum<P, N>]>,
     Rooms: AsMut<[Room<P, N>]>,
 {
-    /// Each site as a state of its own, and the joints of all of them.
-    fn check(&mut self) -> Result<(), SiteError> {
+    /// Each site as a state of its own.
+    fn check_each(&self) -> Result<(), SiteError> {
         let h = self.stepper.step_size();
         for (i, (q, mu)) in self.configuration().iter().zip(self.momentum()).enumerate() {
             let site = self.stepper.system().site(i).into_stepper(h).and_then(|site| site.state(*q, *mu));
             site.map_err(|error| SiteError { site: Some(i), error })?;
         }
+        Ok(())
+    }
+
+    /// The same, and the joints of all of them.
+    fn check(&mut self) -> Result<(), SiteError> {
+        self.check_each()?;
         let state = (array(self.storage.configuration.as_ref())?, array(self.storage.momentum.as_ref())?);
         Ok(P::Scheme::check(self.stepper.at(self.time.now()), state, self.room.as_mut())?)
     }
@@ -412,6 +531,79 @@ where
         P: Conserves,
     {
         Ok(self.stepper.system().conserved(array(self.configuration())?, array(self.momentum())?))
+    }
+}
+
+/// Where the sites are joined.
+impl<P, Points, Momenta, Rooms, const N: usize> Sites<P, Points, Momenta, N, Rooms>
+where
+    P: Power<N, Scheme: JoinedInStorage<P, N>>,
+    Points: AsRef<[Point<P, N>]> + AsMut<[Point<P, N>]>,
+    Momenta: AsRef<[SiteMomentum<P, N>]> + AsMut<[SiteMomentum<P, N>]>,
+    Rooms: AsMut<[Room<P, N>]>,
+{
+    /// The multipliers λ of the joints at this state, as [`Stepper::reactions`] has them: a vector for each site, written to
+    /// `multipliers`. Returns those of the equations that close loops.
+    ///
+    /// ```
+    /// # use clebsch::{Clebsch, Error, SiteStorage};
+    /// # use nalgebra::{Vector1, Vector2};
+    /// # #[derive(Clebsch, Clone, Debug)]
+    /// # #[clebsch(
+    /// #     action     = |a: [Translation<2>; N], x: [Vector2; N]| (0..N).map(|i| x[i] + a[i]),
+    /// #     lagrangian = |v| (0..N).map(|i| v[i].norm_squared() / 2).sum(),
+    /// #     potential  = |x| (0..N).map(|i| 10 * x[i].y).sum(),
+    /// #     constraint = |x| [
+    /// #         x[0].norm() == 1,
+    /// #         (1..N).map(|i| (x[i] - x[i - 1]).norm() == 1),
+    /// #     ],
+    /// # )]
+    /// # struct Rope<const N: usize>;
+    /// // beads of 1 kg hang at rest: each rod carries those below it, 10 N each
+    /// let stepper = Rope::<3>.into_stepper(0.1)?;
+    /// let places = vec![-Vector2::y(), -Vector2::y() * 2.0, -Vector2::y() * 3.0];
+    /// let room = vec![stepper.joint(); 3];
+    /// let mut rope = stepper.joined_sites(SiteStorage::of(places, vec![Vector2::zeros(); 3]), room)?;
+    /// let mut pulls = vec![Vector1::zeros(); 3];
+    /// rope.reactions(&mut pulls)?;
+    /// assert!((pulls[0].x + 30.0).abs() < 1e-13 && (pulls[2].x + 10.0).abs() < 1e-13);
+    /// # Ok::<(), Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// [`Error::NumberOfSites`] where `multipliers` has another length than N, [`Error::DependentConstraints`] with a site,
+    /// [`Error::NotFinite`] where numbers overflow.
+    pub fn reactions(&mut self, multipliers: &mut [Multipliers<P, N>]) -> Result<LoopMultipliers<P, N>, SiteError> {
+        self.reactions_under(&Space::origin(), multipliers)
+    }
+
+    /// The same while the input of the forces is `u`.
+    ///
+    /// # Errors
+    /// As [`reactions`](Self::reactions), and [`Error::NotFinite`] where the input is not.
+    pub fn reactions_under(
+        &mut self,
+        u: &P::Input,
+        multipliers: &mut [Multipliers<P, N>],
+    ) -> Result<LoopMultipliers<P, N>, SiteError> {
+        if !u.all_finite() {
+            return Err(SiteError { site: None, error: Error::NotFinite { name: "the input" } });
+        }
+        if multipliers.len() != N {
+            return Err(wrong_length::<N>(multipliers.len()));
+        }
+        let SiteStorage { configuration: q, momentum: mu, more_points: [_, gradient], more_momenta: [moved, _, kick] } =
+            &mut self.storage;
+        let state = (array(q.as_ref())?, array(mu.as_ref())?);
+        let free = (array_mut(gradient.as_mut())?, array_mut(moved.as_mut())?, array_mut(kick.as_mut())?);
+        let at = self.stepper.at(self.time.now());
+        let loops = P::Scheme::reactions(at, state, u, self.room.as_mut(), free, multipliers)?;
+        let error = Error::NotFinite { name: "the reactions of the constraint" };
+        let site = multipliers.iter().position(|of_site| !of_site.all_finite());
+        if site.is_some() || !loops.all_finite() {
+            return Err(SiteError { site, error });
+        }
+        Ok(loops)
     }
 }
 

@@ -9,7 +9,7 @@
 //! The push Aᵀx + bᵀy is AᵀS⁻¹r + W y. For L rows S is solved L times more at each configuration, which takes O(N L)
 //! operations, and K is a small dense matrix.
 
-use super::blocks::invert;
+use super::blocks::invert_by_size;
 use super::{Branch, Joined, Joints, Mobile};
 use crate::constraint::{Violation, check_place};
 use crate::parts::{Mu, Q, T};
@@ -95,7 +95,7 @@ impl<T: Scalar, const M: usize, const L: usize> Loops<T, M, L> {
 }
 
 /// The border of S: the loops, whose number is known to this type alone.
-pub trait Border<T, const M: usize>: Clone + core::fmt::Debug {
+pub trait Border<T: Scalar, const M: usize>: Clone + core::fmt::Debug {
     /// L
     const COUNT: usize;
 
@@ -113,6 +113,12 @@ pub trait Border<T, const M: usize>: Clone + core::fmt::Debug {
 
     /// K⁻¹ of the values, in their place.
     fn solve(&mut self);
+
+    /// The solution: L numbers.
+    type Values: Space<T>;
+
+    /// The solution.
+    fn solution(&self) -> Self::Values;
 }
 
 impl<T: Scalar, const M: usize, const L: usize> Border<T, M> for Loops<T, M, L> {
@@ -142,12 +148,18 @@ impl<T: Scalar, const M: usize, const L: usize> Border<T, M> for Loops<T, M, L> 
             }
         }
         let entries = SVector::from_iterator(self.all.iter().map(|row| row.metric));
-        invert(&mut self.matrix, &entries, least)
+        invert_by_size(&mut self.matrix, &entries, least)
     }
 
     fn solve(&mut self) {
         let solved = self.matrix * self.values();
         self.all.iter_mut().zip(solved.iter()).for_each(|(row, solved)| row.value = *solved);
+    }
+
+    type Values = SVector<T, L>;
+
+    fn solution(&self) -> SVector<T, L> {
+        self.values()
     }
 }
 
@@ -189,15 +201,21 @@ impl<P: Joined<N, R, M>, const N: usize, const R: usize, const M: usize> Joints<
         for number in 0..BorderOf::<P, N, R, M>::COUNT {
             let Some(&row) = self.border.all().get(number) else { continue };
             let (mut size, mut entries, mut metric) = (T::<P>::zero(), T::<P>::zero(), T::<P>::zero());
-            let mut moved = [Space::origin(); N];
+            for joint in self.room.iter_mut() {
+                if let Some(limb) = joint.branch.limb_mut() {
+                    limb.velocity = Space::origin();
+                }
+            }
             for (site, along) in row.ends() {
                 let (motion, site) = (self.mobile(site, along), site % N);
                 size = larger(size, q[site].max_abs());
                 entries += along.iter().fold(T::<P>::zero(), |sum, x| sum + x.abs());
                 metric += along.dot(&motion);
-                moved[site] += motion;
+                if let Some(limb) = self.room[site].branch.limb_mut() {
+                    limb.velocity += motion;
+                }
             }
-            self.put_along(&moved, &[Space::origin(); N]);
+            self.put_velocities();
             self.solve_branches();
             for joint in self.room.iter_mut() {
                 let solved = joint.block.right;

@@ -45,7 +45,7 @@ pub(crate) struct Joints<'a, P: Joined<N, R, M>, const N: usize, const R: usize,
     pub(super) system: &'a P,
     constants: &'a Constants<P, N>,
     pub(super) room: &'a mut [JointOf<P, N, R, M>; N],
-    pub(super) border: BorderOf<P, N, R, M>,
+    pub border: BorderOf<P, N, R, M>,
 }
 
 impl<'a, P: Joined<N, R, M>, const N: usize, const R: usize, const M: usize> Joints<'a, P, N, R, M> {
@@ -198,6 +198,11 @@ impl<'a, P: Joined<N, R, M>, const N: usize, const R: usize, const M: usize> Joi
             push += joint.rows.before.transpose() * x(joint);
         }
         push
+    }
+
+    /// The solutions of the blocks.
+    pub fn solutions(&self) -> impl Iterator<Item = &SVector<T<P>, R>> {
+        self.room.iter().map(|joint| &joint.block.right)
     }
 
     /// Aᵀλ of the move, or Aᵀμ of the projection after it.
@@ -389,53 +394,65 @@ impl<'a, P: Joined<N, R, M>, const N: usize, const R: usize, const M: usize> Joi
             moved[i] = self.of_site(i, |_, c| <P::Site as Mobile<M>>::mobility(SiteScheme::<P, N>::whole(c), push));
         }
         self.put_loop_bends(t, q, None);
-        self.solve_along(&moved, &[Space::origin(); N]);
+        self.solve_along(&moved, |_, _| Space::origin());
         Ok(())
     }
 
-    /// The multipliers of the motion, as the solutions of the blocks.
+    /// The multipliers of the motion, as the solutions of the blocks. The content of the three buffers does not matter.
     ///
     /// # Errors
     /// [`Error::DependentConstraints`].
-    pub fn reactions(&mut self, t: T<P>, (q, mu): (&Q<P>, &Mu<P>), u: &P::Input) -> Result<(), AtSite> {
+    pub fn reactions(
+        &mut self,
+        t: T<P>,
+        (q, mu): (&Q<P>, &Mu<P>),
+        u: &P::Input,
+        (gradient, accelerations, velocities): (&mut Q<P>, &mut Mu<P>, &mut Mu<P>),
+    ) -> Result<(), AtSite> {
         self.at(t, q, T::<P>::EPSILON.sqrt())?;
-        let kick = self.system.power_kick(t, q, -T::<P>::one());
-        let mut velocities = [Space::origin(); N];
-        let mut accelerations = [Space::origin(); N];
+        self.system.kick_into(t, q, -T::<P>::one(), gradient, accelerations, velocities);
         for i in 0..N {
-            let (q, mu, kick, u) = (&q[i], &mu[i], &kick[i], P::input_of_site(u, i));
+            let (q, mu, kick, u) = (&q[i], &mu[i], accelerations[i], P::input_of_site(u, i));
             (velocities[i], accelerations[i]) = self.of_site(i, |site, c| {
                 let c = SiteScheme::<P, N>::whole(c);
                 let free = site.acceleration(c, t, q, mu, u);
-                (site.velocity(c, t, q, mu), -(free + <P::Site as Mobile<M>>::mobility(c, kick)))
+                (site.velocity(c, t, q, mu), -(free + <P::Site as Mobile<M>>::mobility(c, &kick)))
             });
         }
-        let mut bends = [Space::origin(); N];
-        for i in 0..N {
-            bends[i] = -self.system.bend_at(t, q, i, &velocities[i], &velocities[Self::parent(i)]);
-        }
-        self.put_loop_bends(t, q, Some(&velocities));
-        self.solve_along(&accelerations, &bends);
+        self.put_loop_bends(t, q, Some(velocities));
+        let velocities = &*velocities;
+        self.solve_along(accelerations, |of, i| {
+            -of.system.bend_at(t, q, i, &velocities[i], &velocities[Self::parent(i)])
+        });
         Ok(())
     }
 
     /// Solves S x = A v + w with v of each site and w of its rows. Those of the loops are known.
-    fn solve_along(&mut self, along: &[SVector<T<P>, M>; N], more: &[SVector<T<P>, R>; N]) {
-        self.put_along(along, more);
-        self.put_loops_along(along);
-        self.backward();
-    }
-
-    /// Takes the right sides A v + w.
-    pub(super) fn put_along(&mut self, along: &[SVector<T<P>, M>; N], more: &[SVector<T<P>, R>; N]) {
+    fn solve_along(&mut self, along: &[SVector<T<P>, M>; N], more: impl Fn(&Self, usize) -> SVector<T<P>, R>) {
         let mut forward = Forward::new();
         for i in 0..N {
             let joint = &self.room[i];
-            let mut right = more[i] + joint.rows.own * along[i];
+            let mut right = more(self, i) + joint.rows.own * along[i];
             if Self::has_parent(i) {
                 right += joint.rows.before * along[Self::parent(i)];
             }
             self.forward(i, right, &mut forward);
+        }
+        self.put_loops_along(along);
+        self.backward();
+    }
+
+    /// Takes the right sides A v of a tree, with the velocities in the limbs.
+    pub(super) fn put_velocities(&mut self) {
+        let velocity = |of: &Self, i: usize| of.room[i].branch.limb().map_or_else(Space::origin, |limb| limb.velocity);
+        for i in 0..N {
+            let own = velocity(self, i);
+            let joint = &self.room[i];
+            let mut right = joint.rows.own * own;
+            if Self::has_parent(i) {
+                right += joint.rows.before * velocity(self, Self::parent(i));
+            }
+            self.room[i].block.right = right;
         }
     }
 

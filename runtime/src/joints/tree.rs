@@ -54,7 +54,7 @@ pub struct LoopedLimb<T, const R: usize, const M: usize, const L: usize> {
 }
 
 /// The room that a joint has in addition, by the order in which joints are eliminated.
-pub trait Branch<T, const R: usize, const M: usize>: Clone + core::fmt::Debug {
+pub trait Branch<T: Scalar, const R: usize, const M: usize>: Clone + core::fmt::Debug {
     /// Whether joints make a tree, and no chain.
     const IS_TREE: bool;
 

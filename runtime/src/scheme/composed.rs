@@ -10,6 +10,7 @@
 //! Orders 6 and 8 are those of Kahan and Li (1997), *Composition constants for raising the orders of unconventional
 //! schemes for ordinary differential equations*.
 
+use super::joined::JoinedInStorage;
 use super::sites::{AtSite, InStorage, Stored};
 use super::{At, AtOf, Before, Pair, Parted, Push, Scheme, Stepped};
 use crate::parts::{Mu, Q, T, U};
@@ -179,6 +180,32 @@ impl<S: Power<N>, I: InStorage<S, N>, Z: Sizes<K>, const K: usize, const N: usiz
             (state, sum, room)
         };
         compose(at.constants, at.t, (state, T::<S>::zero(), room), step, scaled).map(|(state, sum, _)| (state, sum))
+    }
+}
+
+impl<S: Power<N>, I: JoinedInStorage<S, N>, Z: Sizes<K>, const K: usize, const N: usize> JoinedInStorage<S, N>
+    for Composed<I, Z, K>
+{
+    type Multipliers = I::Multipliers;
+    type OfLoops = I::OfLoops;
+
+    fn momenta_of_velocities(at: AtOf<'_, S, Self>, q: &Q<S>, velocities: &mut Mu<S>) {
+        I::momenta_of_velocities(At::new(at.system, &at.constants.whole, at.t), q, velocities);
+    }
+
+    fn to_joints(at: AtOf<'_, S, Self>, state: (&mut Q<S>, &mut Mu<S>), room: &mut [I::Room]) -> Result<(), AtSite> {
+        I::to_joints(At::new(at.system, &at.constants.whole, at.t), state, room)
+    }
+
+    fn reactions(
+        at: AtOf<'_, S, Self>,
+        state: (&Q<S>, &Mu<S>),
+        u: &U<S>,
+        room: &mut [I::Room],
+        free: (&mut Q<S>, &mut Mu<S>, &mut Mu<S>),
+        multipliers: &mut [I::Multipliers],
+    ) -> Result<I::OfLoops, AtSite> {
+        I::reactions(At::new(at.system, &at.constants.whole, at.t), state, u, room, free, multipliers)
     }
 }
 

@@ -2,12 +2,14 @@
 
 use super::sites::{AtSite, BothKicks, InStorage, NoKick, SiteKicks, SitesInTurn, Stored};
 use super::{At, AtOf, Before, Pair, Push, Scheme, Stepped, is_due, look};
-use crate::joints::{Joined, Joint, JointOf, Joints, least_of_steps};
+use crate::joints::{Border, BorderOf, Joined, Joint, JointOf, Joints, Mobile, least_of_steps};
 use crate::parts::{F, Mu, Q, T, U};
+use crate::power::Power;
 use crate::space::plus;
-use crate::{Clock, Declared, Error, Space, Time};
+use crate::{Clock, Declared, Error, Scalar, Space, Time};
 use core::array::from_fn;
 use core::marker::PhantomData;
+use nalgebra::SVector;
 
 /// Half a kick, the moves, half a kick.
 pub type JoinedSitesOfSecondOrder<const N: usize, const R: usize, const M: usize> = JoinedSites<BothKicks, N, R, M>;
@@ -41,12 +43,77 @@ impl<S: Joined<N, R, M>, K: SiteKicks<S, N>, const N: usize, const R: usize, con
     }
 
     fn check(at: AtOf<'_, S, Self>, (q, mu): (&Q<S>, &Mu<S>), room: &mut [Self::Room]) -> Result<(), AtSite> {
-        let found = room.len();
-        let Ok(room) = room.try_into() else { return Err((0, Error::NumberOfSites { found, sites: N })) };
         Joints::<S, N, R, M>::check(at.system, at.t, q)?;
-        let (violation, site) = Joints::new(at.system, at.constants, room)?.defect(at.t, q, mu)?;
+        let (violation, site) = Joints::new(at.system, at.constants, of_all(room)?)?.defect(at.t, q, mu)?;
         violation.check().map_err(|error| (site, error))
     }
+}
+
+/// Joined sites in storage: starts and forces that need joints.
+pub trait JoinedInStorage<S: Power<N>, const N: usize>: InStorage<S, N> {
+    /// The multipliers of the joints of one site.
+    type Multipliers: Space<S::Scalar>;
+    /// Those of the equations that close loops.
+    type OfLoops: Space<S::Scalar>;
+
+    /// The momenta of velocities, in their place.
+    fn momenta_of_velocities(at: AtOf<'_, S, Self>, q: &Q<S>, velocities: &mut Mu<S>);
+
+    /// Moves q to φ = 0, and N to a momentum whose velocity obeys the joints.
+    fn to_joints(at: AtOf<'_, S, Self>, state: (&mut Q<S>, &mut Mu<S>), room: &mut [Self::Room]) -> Result<(), AtSite>;
+
+    /// The multipliers of the motion through (q, N) with the input u. The content of `free` does not matter.
+    fn reactions(
+        at: AtOf<'_, S, Self>,
+        state: (&Q<S>, &Mu<S>),
+        u: &U<S>,
+        room: &mut [Self::Room],
+        free: (&mut Q<S>, &mut Mu<S>, &mut Mu<S>),
+        multipliers: &mut [Self::Multipliers],
+    ) -> Result<Self::OfLoops, AtSite>;
+}
+
+impl<S: Joined<N, R, M>, K: SiteKicks<S, N>, const N: usize, const R: usize, const M: usize> JoinedInStorage<S, N>
+    for JoinedSites<K, N, R, M>
+{
+    type Multipliers = SVector<T<S>, R>;
+    type OfLoops = <BorderOf<S, N, R, M> as Border<T<S>, M>>::Values;
+
+    fn momenta_of_velocities(At { system, t, .. }: At<'_, S>, q: &Q<S>, velocities: &mut Mu<S>) {
+        for (i, (q, velocity)) in q.iter().zip(velocities).enumerate() {
+            *velocity = system.site(i).momentum_of_velocity(t, q, velocity);
+        }
+    }
+
+    fn to_joints(
+        At { system, constants, t, .. }: At<'_, S>,
+        (q, mu): (&mut Q<S>, &mut Mu<S>),
+        room: &mut [Self::Room],
+    ) -> Result<(), AtSite> {
+        let mut joints = Joints::new(system, constants, of_all(room)?)?;
+        joints.placed(t, q)?;
+        joints.projected(t, q, mu, T::<S>::EPSILON.sqrt()).map(|_| ())
+    }
+
+    fn reactions(
+        At { system, constants, t, .. }: At<'_, S>,
+        state: (&Q<S>, &Mu<S>),
+        u: &U<S>,
+        room: &mut [Self::Room],
+        free: (&mut Q<S>, &mut Mu<S>, &mut Mu<S>),
+        multipliers: &mut [Self::Multipliers],
+    ) -> Result<Self::OfLoops, AtSite> {
+        let mut joints = Joints::new(system, constants, of_all(room)?)?;
+        joints.reactions(t, state, u, free)?;
+        joints.solutions().zip(multipliers).for_each(|(found, place)| *place = *found);
+        Ok(joints.border.solution())
+    }
+}
+
+/// The room of all sites.
+fn of_all<R, const N: usize>(room: &mut [R]) -> Result<&mut [R; N], AtSite> {
+    let found = room.len();
+    room.try_into().map_err(|_| (0, Error::NumberOfSites { found, sites: N }))
 }
 
 impl<K, const N: usize, const R: usize, const M: usize> JoinedSites<K, N, R, M> {
@@ -62,9 +129,7 @@ impl<K, const N: usize, const R: usize, const M: usize> JoinedSites<K, N, R, M> 
     where
         K: SiteKicks<S, N>,
     {
-        let found = room.len();
-        let Ok(room) = room.try_into() else { return Err((0, Error::NumberOfSites { found, sites: N })) };
-        let mut joints = Joints::new(system, constants, room)?;
+        let mut joints = Joints::new(system, constants, of_all(room)?)?;
         if K::START != 0.0 {
             mu.iter_mut().zip(&*kick).for_each(|(mu, kick)| *mu = plus(mu, kick));
         }

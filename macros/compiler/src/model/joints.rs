@@ -30,6 +30,9 @@ impl<'g> ActedSystem<'_, '_, 'g> {
         let (diagnostics, sites) = (self.context.diagnostics, self.context.power.as_ref()?);
         let ends = all.iter().map(|Read { range, sides }| ends(sites, *range, sides, diagnostics));
         let mut ends = ends.collect::<Option<Vec<Ends>>>()?;
+        let sites = self.context.power.as_mut()?;
+        sites.least = ends.iter().fold(sites.least, |least, end| least.max(end.least));
+        let sites = &*sites;
         close_ring(&mut ends, &all, sites);
         let is_loop = diagnostics.take(loops(&mut ends, &all, sites))?;
         let is = |order: Order| ends.iter().any(|end| end.order == order);
@@ -82,6 +85,8 @@ struct Ends {
     own: usize,
     before: Option<usize>,
     order: Order,
+    /// The least N for which the later site is the later one.
+    least: i64,
 }
 
 /// How two sites follow each other.
@@ -103,14 +108,14 @@ fn close_ring(ends: &mut [Ends], all: &[Read<'_>], sites: &Sites<'_>) {
     let is_first = |at: usize| !sites.places[at].wraps && sites.places[at].index.is_zero();
     let hangs = |(end, read): (&Ends, &Read<'_>)| {
         let homes = homes(read.range, &sites.places[end.own], sites.count);
-        end.order == Order::Chain && end.before.is_some() && meet(&homes, &Some((last, sites.count)))
+        end.order == Order::Chain && end.before.is_some() && meet([&homes, &Some((last, sites.count))], sites.least)
     };
     let is_chain = ends.iter().zip(all).any(hangs);
     for end in ends.iter_mut().filter(|_| is_chain) {
         if let Some(before) = end.before.filter(|&before| is_last(end.own) && is_first(before))
             && end.order == Order::Tree
         {
-            *end = Ends { own: before, before: Some(end.own), order: Order::Ring };
+            *end = Ends { own: before, before: Some(end.own), order: Order::Ring, least: end.least };
         }
     }
 }
@@ -143,11 +148,11 @@ fn ends<'g>(sites: &Sites<'g>, range: Option<Range<'g>>, sides: &Sides<'g>, diag
     match read[..] {
         [] => refuse!(diagnostics, *place, "`{text}` reads no site";
             help "leave it out, or write the configuration that it fixes"),
-        [own] if sites.places[own].wraps => Some(Ends { own, before: None, order: Order::Ring }),
-        [own] => Some(Ends { own, before: None, order: Order::Chain }),
+        [own] if sites.places[own].wraps => Some(Ends { own, before: None, order: Order::Ring, least: 1 }),
+        [own] => Some(Ends { own, before: None, order: Order::Chain, least: 1 }),
         [first, second] => match order(&sites.places[first], &sites.places[second], range) {
-            Some((true, order)) => Some(Ends { own: first, before: Some(second), order }),
-            Some((false, order)) => Some(Ends { own: second, before: Some(first), order }),
+            Some((true, order, least)) => Some(Ends { own: first, before: Some(second), order, least }),
+            Some((false, order, least)) => Some(Ends { own: second, before: Some(first), order, least }),
             None => {
                 refuse!(diagnostics, *place, "it is not known which of {} and {} in `{text}` is the later site", name(first), name(second);
                     help "write the numbers of both sites, as `{0}[4]` and `{0}[1]`", sites.pattern;
@@ -160,8 +165,8 @@ fn ends<'g>(sites: &Sites<'g>, range: Option<Range<'g>>, sides: &Sides<'g>, diag
     }
 }
 
-/// Whether the first of two sites is the later one, and how they follow each other.
-fn order<'g>(first: &SiteIndex<'g>, second: &SiteIndex<'g>, range: Option<Range<'g>>) -> Option<(bool, Order)> {
+/// Whether the first of two sites is the later one, how they follow each other, and the least N for which it is so.
+fn order<'g>(first: &SiteIndex<'g>, second: &SiteIndex<'g>, range: Option<Range<'g>>) -> Option<(bool, Order, i64)> {
     let wraps = first.wraps || second.wraps;
     let Linear { constant, sites, indices } = Linear::of((first.index - second.index).expand())?;
     if let Some(&coefficient) = indices.iter().find(|&&coefficient| coefficient != 0) {
@@ -171,18 +176,21 @@ fn order<'g>(first: &SiteIndex<'g>, second: &SiteIndex<'g>, range: Option<Range<
             Linear::of(center.index).filter(|center| center.sites == 0 && center.indices.iter().all(|&i| i == 0))?;
         let start = Linear::of(homes_of(range?, own).0).filter(|start| start.sites == 0)?;
         let is_later = !wraps && start.constant > center.constant;
-        return is_later.then_some((coefficient > 0, Order::Tree));
+        return is_later.then_some((coefficient > 0, Order::Tree, 1));
     }
     match (constant, sites) {
-        (1, 0) if !wraps => Some((true, Order::Chain)),
-        (-1, 0) if !wraps => Some((false, Order::Chain)),
-        (1, _) if wraps => Some((true, Order::Ring)),
-        (-1, _) if wraps => Some((false, Order::Ring)),
+        (1, 0) if !wraps => Some((true, Order::Chain, 1)),
+        (-1, 0) if !wraps => Some((false, Order::Chain, 1)),
+        (1, _) if wraps => Some((true, Order::Ring, 1)),
+        (-1, _) if wraps => Some((false, Order::Ring, 1)),
         // the last site and the first
-        (-1, 1) => Some((false, Order::Ring)),
-        (1, -1) => Some((true, Order::Ring)),
-        (2.., 0) if !wraps => Some((true, Order::Tree)),
-        (..=-2, 0) if !wraps => Some((false, Order::Tree)),
+        (-1, 1) => Some((false, Order::Ring, 1)),
+        (1, -1) => Some((true, Order::Ring, 1)),
+        (2.., 0) if !wraps => Some((true, Order::Tree, 1)),
+        (..=-2, 0) if !wraps => Some((false, Order::Tree, 1)),
+        // a site counted from the last one, `q[N - 1]`, and one counted from the first: c + N ≥ 1
+        (_, 1) if !wraps => Some((true, Order::Tree, 1 - constant)),
+        (_, -1) if !wraps => Some((false, Order::Tree, 1 + constant)),
         _ => None,
     }
 }
@@ -203,7 +211,7 @@ impl<'g> Joints<'g> {
         let meets = |joint: &&Joint<'g>, first: usize| {
             let apart = joint.first + joint.count() <= first || first + count <= joint.first;
             let others = || homes(joint.term.ranges.first().copied(), &sites.places[joint.own], sites.count);
-            !joint.is_loop && !apart && meet(&of_site, &others())
+            !joint.is_loop && !apart && meet([&of_site, &others()], sites.least)
         };
         let mut first = 0;
         if is_loop {
@@ -234,7 +242,7 @@ fn loops<'g>(ends: &mut [Ends], all: &[Read<'g>], sites: &Sites<'g>) -> Result<V
                 help "let the range end before, and write the joint of `{0}[{1} - 1]` and `{0}[0]` by itself", sites.pattern, sites.length;
                 note "in a tree the joints of a site read it and one earlier site, and a joint more closes a loop");
         };
-        *end = Ends { own: before, before: Some(end.own), order: Order::Tree };
+        *end = Ends { own: before, before: Some(end.own), order: Order::Tree, least: end.least };
     }
     let is_numbered = |joint: usize| all[joint].range.is_none_or(|range| length(range).is_some());
     let joints = 0..ends.len();
@@ -266,7 +274,7 @@ fn have_one_parent<'g>(sites: &Sites<'g>, pair: [usize; 2], ends: &[Ends], all: 
     let [own, other] = pair.map(|joint| &ends[joint]);
     let (Some(before), Some(parent)) = (own.before, other.before) else { return true };
     let [first, second] = pair.map(|joint| homes(all[joint].range, &sites.places[ends[joint].own], sites.count));
-    !meet(&first, &second)
+    !meet([&first, &second], sites.least)
         || has_same_parent(
             [&sites.places[own.own], &sites.places[before]],
             [&sites.places[other.own], &sites.places[parent]],
@@ -297,12 +305,13 @@ fn homes<'g>(range: Option<Range<'g>>, own: &SiteIndex<'g>, count: Expr<'g>) -> 
     }
 }
 
-/// Whether two ranges may share a site for some N.
-fn meet<'g>(first: &Option<Range<'g>>, second: &Option<Range<'g>>) -> bool {
-    let (Some((a, b)), Some((c, d))) = (first, second) else { return true };
+/// Whether two ranges may share a site for some N from the least one on.
+fn meet<'g>(ranges: [&Option<Range<'g>>; 2], least: i64) -> bool {
+    let [Some((a, b)), Some((c, d))] = ranges else { return true };
     let is_before = |end: &Expr<'g>, start: &Expr<'g>| {
-        Linear::of((*start - *end).expand())
-            .is_some_and(|Linear { constant, sites, .. }| sites >= 0 && constant.saturating_add(sites) >= 0)
+        Linear::of((*start - *end).expand()).is_some_and(|Linear { constant, sites, .. }| {
+            sites >= 0 && constant.saturating_add(sites.saturating_mul(least)) >= 0
+        })
     };
     !is_before(b, c) && !is_before(d, a)
 }

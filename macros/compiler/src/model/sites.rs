@@ -164,6 +164,16 @@ pub(super) fn unrolled(key: &str, length: &Length) -> String {
     }
 }
 
+/// The cure of a formula that is another one at some sites, with the word for its key.
+pub(super) fn of_all_sites(key: &str, length: &Length) -> String {
+    match length {
+        Length::Generic(_) => unrolled(key, length),
+        Length::Number(count) => format!(
+            "write the same {key} for all sites, `(0..{count}).map(|i| …)`, with a field `[…; {count}]` for the numbers that differ"
+        ),
+    }
+}
+
 /// The terms of a kinetic energy, which may be of one site each alone.
 ///
 /// # Errors

@@ -1,4 +1,4 @@
-use super::{Backward, Block, Elimination, Forward, Place};
+use super::{Backward, Block, Elimination, Forward, Place, invert, invert_by_size};
 use nalgebra::{SMatrix, SVector};
 
 type Blocks = (SMatrix<f64, 2, 2>, SMatrix<f64, 2, 2>);
@@ -85,4 +85,75 @@ fn dependent_rows_are_counted() {
     blocks[1].0[(1, 1)] = 1.0;
     blocks[1].1[(1, 0)] = 1.0;
     assert_eq!(solve(&blocks, &mut [SVector::zeros(); 3], false), (1, 1));
+}
+
+/// L Lᵀ with rows of L between 1 and 10^−digits of the others, and its rank.
+fn gram<const N: usize>(number: &mut impl FnMut() -> f64, digits: f64, rank: usize) -> SMatrix<f64, N, N> {
+    let factor = SMatrix::<f64, N, N>::from_fn(|_, j| if j < rank { number() } else { 0.0 });
+    let sizes = SVector::<f64, N>::from_fn(|_, _| 10.0_f64.powf(digits * number()));
+    let mut gram = factor * factor.transpose();
+    for i in 0..N {
+        for j in 0..N {
+            gram[(i, j)] *= sizes[i] * sizes[j];
+        }
+    }
+    gram
+}
+
+/// The error is that of the matrix whose diagonal is scaled to 1. Pivots by size give no less.
+#[test]
+fn inverses_without_exchanges_are_as_right_as_with_pivots() {
+    const N: usize = 6;
+    let (mut number, mut worst) = (numbers(7), 0.0_f64);
+    for _ in 0..2000 {
+        let matrix = gram::<N>(&mut number, 6.0, N);
+        let scale = matrix.diagonal().map(f64::sqrt);
+        let scaled = SMatrix::<f64, N, N>::from_fn(|i, j| matrix[(i, j)] / (scale[i] * scale[j]));
+        let values = scaled.symmetric_eigenvalues();
+        let condition = values.max() / values.min();
+        if !(0.0..1e12).contains(&condition) {
+            continue;
+        }
+        let x = SVector::<f64, N>::from_fn(|i, _| number() / scale[i]);
+        let right = matrix * x;
+        let mut inverse = matrix;
+        assert_eq!(invert(&mut inverse, &matrix.diagonal(), 1e-14), 0);
+        let size = |x: SVector<f64, N>| x.component_mul(&scale).norm();
+        let error = size(inverse * right - x) / size(x);
+        let mut by_size = matrix;
+        assert_eq!(invert_by_size(&mut by_size, &matrix.diagonal(), 1e-14), 0);
+        let other = size(by_size * right - x) / size(x);
+        assert!(other < 32.0 * f64::EPSILON * condition, "{other:e}, condition {condition:e}");
+        let pivoted = size(matrix.full_piv_lu().solve(&right).expect("a regular matrix") - x) / size(x);
+        assert!(error < 32.0 * f64::EPSILON * condition, "{error:e}, {pivoted:e} with pivots, condition {condition:e}");
+        worst = worst.max(error / (pivoted + f64::EPSILON * condition));
+    }
+    assert!((0.01..20.0).contains(&worst), "{worst}");
+}
+
+/// Rows that depend on each other are counted where the others are independent enough, whatever the order of the rows.
+#[test]
+fn the_rank_does_not_depend_on_the_order() {
+    let mut number = numbers(11);
+    for rank in 0..=6 {
+        for _ in 0..2000 {
+            let matrix = gram::<6>(&mut number, 3.0, rank);
+            let scale = matrix.diagonal().map(f64::sqrt);
+            let scaled = SMatrix::<f64, 6, 6>::from_fn(|i, j| matrix[(i, j)] / (scale[i] * scale[j]));
+            let mut values = scaled.symmetric_eigenvalues();
+            values.as_mut_slice().sort_by(f64::total_cmp);
+            if rank > 0 && values[6 - rank] < 1e-4 {
+                continue;
+            }
+            let mut inverse = matrix;
+            let zeros = invert_by_size(&mut inverse, &matrix.diagonal(), 1e-10);
+            let reversed = SMatrix::<f64, 6, 6>::from_fn(|i, j| matrix[(5 - i, 5 - j)]);
+            let mut other = reversed;
+            assert_eq!(
+                (zeros, invert_by_size(&mut other, &reversed.diagonal(), 1e-10)),
+                (6 - rank, 6 - rank),
+                "{matrix}"
+            );
+        }
+    }
 }

@@ -7,6 +7,7 @@ mod chains;
 mod conserved;
 mod coordinates;
 mod derived;
+mod ends;
 mod invariants;
 mod joined;
 mod loops;

@@ -2,8 +2,8 @@
 
 use crate::arbitrary::{cases, vector};
 use clebsch::__private::{
-    Border, Branch, Joined, JointRows, Limb, Loop, LoopedLimb, Loops, Mobile, Power, put_loop_values, put_loops,
-    put_places,
+    At, Border, Branch, Joined, JoinedInStorage, JointRows, Limb, Loop, LoopedLimb, Loops, Mobile, Power,
+    put_loop_values, put_loops, put_places,
 };
 use clebsch::{Clebsch, Constrained, Error, SiteStorage};
 use clebsch_tests::oracle::near::assert_near;
@@ -30,6 +30,8 @@ pub struct Crane<const N: usize> {
     pub speed: f64,
     pub arm: Vector2<f64>,
 }
+
+type CraneSteps = <Crane<3> as Clebsch>::Scheme;
 
 /// Beads on rods: 1 and 2 on the first one, 3 and 4 on bead 1, 5 on bead 4. Bead 2 is on a line too.
 #[derive(Clebsch, Clone, Debug)]
@@ -183,6 +185,23 @@ proptest! {
             assert_near(a, b, 1e-14, "the momentum");
         }
         prop_assert_eq!(crane.momentum_of_velocity(0.0, &q, &velocities), moving.momentum());
+        let room = || std::array::from_fn::<_, 3, _>(|_| stepper.joint());
+        let moving_sites = stepper.clone().joined_sites_moving(SiteStorage::of(q, velocities), room())?;
+        prop_assert_eq!(moving_sites.momentum(), &moving.momentum());
+        let mut momenta = velocities;
+        CraneSteps::momenta_of_velocities(At::new(&crane, &constants, 0.0), &q, &mut momenta);
+        prop_assert_eq!(momenta, moving.momentum());
+
+        // from the nearest state
+        let mut near = q;
+        near[1][(0, 2)] += 1e-3;
+        let nearest = stepper.project(near, mu)?;
+        let sites = stepper.clone().projected_joined_sites(SiteStorage::of(near, mu), room())?;
+        prop_assert_eq!(sites.configuration(), nearest.configuration());
+        prop_assert_eq!(sites.momentum(), &nearest.momentum());
+        let (mut place, mut momentum) = (near, mu);
+        CraneSteps::to_joints(At::new(&crane, &constants, 0.0), (&mut place, &mut momentum), &mut room()).map_err(|(_, error)| error)?;
+        prop_assert_eq!((&place, momentum), (nearest.configuration(), nearest.momentum()));
 
         let mut open = q;
         open[1][(0, 2)] += 1e-3;
@@ -257,6 +276,7 @@ proptest! {
         prop_assert_eq!(loops.factor(|i, j| matrix[(i, j)], 1e-12), 0);
         loops.solve();
         assert_near(&loops.values(), &Vector3::new(entries[3], entries[4], entries[5]), 1e-12, "the solution");
+        prop_assert_eq!(loops.solution(), loops.values());
         prop_assert_eq!(loops.factor(|i, j| root[(i, 0)] * root[(j, 0)], 1e-12), 3 - usize::from(root[(0, 0)] != 0.0));
         let mut limb = <LoopedLimb<f64, 2, 2, 3> as Branch<f64, 2, 2>>::new();
         prop_assert_eq!((limb.columns().len(), limb.columns_mut().len()), (3, 3));
@@ -391,6 +411,16 @@ proptest! {
             assert_near(found, kappa, 1e-9, "the multipliers");
         }
         let lambda = crane.reactions_of_joints(&constants, 0.0, &q, &mu, &())?;
+        let stepper = crane.stepper(0.01)?;
+        let start = stepper.project(q, mu)?;
+        let room = std::array::from_fn::<_, 3, _>(|_| stepper.joint());
+        let mut sites = stepper.clone().projected_joined_sites(SiteStorage::of(q, mu), room)?;
+        let mut in_storage = [SVector::zeros(); 3];
+        sites.reactions(&mut in_storage)?;
+        prop_assert_eq!(in_storage, stepper.reactions(&start)?);
+        in_storage = [SVector::zeros(); 3];
+        sites.reactions_under(&(), &mut in_storage)?;
+        prop_assert_eq!(in_storage, stepper.reactions(&start)?);
         let (pushes, weight) = (push(&lambda), crane.power_kick(0.0, &q, -1.0));
         let (mut velocities, mut accelerations) = ([Vector3::zeros(); 3], [Vector3::zeros(); 3]);
         for i in 0..3 {

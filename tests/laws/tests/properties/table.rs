@@ -45,12 +45,12 @@ pub const PROPERTIES: &[(&str, &[Property])] = &[
     ("tests/laws/tests/properties/joints.rs", &[
         ("rows_of_joints_are_differences",              &["Joined::places_at", "Joined::rows_at"]),
         ("velocities_of_sites_are_those_of_momenta",    &["Mobile::mobility", "Mobile::momentum_at_rest", "Mobile::momentum_of_velocity", "Mobile::velocity"]),
-        ("states_and_steps_obey_joints",                &["Joined::check_joints", "Joined::defect_of_joints", "Joined::joined_momentum", "Joined::joined_places", "Stepper::joined_sites", "Stepper::joint"]),
+        ("states_and_steps_obey_joints",                &["Joined::check_joints", "Joined::defect_of_joints", "Joined::joined_momentum", "Joined::joined_places", "Stepper::joined_sites", "Stepper::joined_sites_moving", "Stepper::projected_joined_sites", "Stepper::joint", "JoinedInStorage::momenta_of_velocities", "JoinedInStorage::to_joints"]),
         ("bends_of_joints_are_second_differences",      &["Joined::bend_at", "Mobile::moved_by"]),
         ("multipliers_of_loops_are_those_of_their_pushes", &["Joined::loop_rows", "Joined::loop_places", "Joined::loop_bends", "Joined::multipliers_with_loops", "Joined::reactions_with_loops", "Loops::values"]),
-        ("loops_are_put_where_they_belong",             &["put_loops", "put_loop_values", "Border::new", "Border::all", "Border::all_mut", "Border::factor", "Border::solve", "Branch::columns", "Branch::columns_mut"]),
+        ("loops_are_put_where_they_belong",             &["put_loops", "put_loop_values", "Border::new", "Border::all", "Border::all_mut", "Border::factor", "Border::solve", "Border::solution", "Branch::columns", "Branch::columns_mut"]),
         ("multipliers_of_trees_are_those_of_their_pushes", &["Joined::parent", "Branch::new", "Branch::limb", "Branch::limb_mut"]),
-        ("reactions_keep_joints_closed",                &["Joined::multipliers_of_joints", "Joined::reactions_of_joints", "Mobile::acceleration"]),
+        ("reactions_keep_joints_closed",                &["Joined::multipliers_of_joints", "Joined::reactions_of_joints", "Sites::reactions", "Sites::reactions_under", "JoinedInStorage::reactions", "Mobile::acceleration"]),
         ("rows_are_put_where_they_belong",              &["Rows::none", "Rows::put", "put_places"]),
     ]),
     ("tests/laws/tests/properties/fields.rs", &[

@@ -4,7 +4,7 @@ use clebsch_symbolic::{Expr, IntoElements, IntoList, Property, Role, Shape};
 use syn::{BinOp, Expr as Syntax, ExprBinary, ExprIndex, ExprMethodCall, ExprRange, RangeLimits};
 
 use super::super::power::{Length, Linear, Range, SiteIndex, Term, index_name, sites_for};
-use super::super::sites::unrolled;
+use super::super::sites::of_all_sites;
 use super::super::value::{Each, Value};
 use super::Elaborator;
 use super::operators::division_by_zero;
@@ -234,7 +234,7 @@ impl<'g> Elaborator<'_, '_, 'g> {
             _ => {
                 let (key, text) = (self.key, spell(&Syntax::Index(index.clone())));
                 refuse!(self, index, "the {key} of a site depends on that site alone, and `{text}` is of another";
-                    help "{}", unrolled(key, &name);
+                    help "{}", of_all_sites(key, &name);
                     note "the equation of a step is solved site by site; in the potential and in the constraint, sites may meet")
             }
         }
