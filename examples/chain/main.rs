@@ -1,6 +1,7 @@
 //! A whip: links on ball joints that hang from a hand. The hand moves, then rests, and a wave runs down the chain.
 
 mod figure;
+mod long;
 mod newton_euler;
 mod watch;
 mod whip;
@@ -54,6 +55,9 @@ struct Flags {
     /// Print the time of a step for each number of links
     #[arg(long)]
     time: bool,
+    /// Steps with a hand that rests, whose laws are printed and claimed; 1000000 is a million
+    #[arg(long, value_name = "STEPS", default_value = "0")]
+    long: u64,
     #[command(flatten)]
     run: Run,
 }
@@ -101,6 +105,9 @@ fn run<const N: usize>(flags: &Flags) -> Result<Claims, Failure> {
     figure::draw(flags, &watch)?;
 
     let mut claims = Claims::new();
+    if flags.long > 0 {
+        long::run(&whip, (flags.lean(), step_size, flags.long), &mut claims)?;
+    }
     watch.claim(&mut claims);
     let silent = |_, _, _: &_, _| Ok(());
     let few = flags.whip::<FEW>();

@@ -14,7 +14,7 @@ use nalgebra::Vector3;
 /// Points of the figure, and of the comparison.
 pub const POINTS: u64 = 240;
 /// Rounding errors in a joint, ε of the size: those of the sweeps, and of the sum here.
-const ROUNDINGS: f64 = 16.0;
+pub const ROUNDINGS: f64 = 16.0;
 
 /// Of energies (J) and forces (N).
 const SCALE: f64 = 10.0;
