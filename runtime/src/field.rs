@@ -15,8 +15,11 @@ mod degree;
 mod domain;
 mod edges;
 mod grid;
+mod lattice;
 #[cfg(feature = "alloc")]
 mod mesh;
+#[cfg(feature = "alloc")]
+mod multigrid;
 mod relaxation;
 mod residuals;
 mod sites;
@@ -24,10 +27,13 @@ mod stability;
 mod stepper;
 mod sweep;
 
-pub use domain::{Domain, Lattice};
+pub use domain::Domain;
 pub use grid::{Grid, Side, Sides};
+pub use lattice::Lattice;
 #[cfg(feature = "alloc")]
 pub use mesh::Mesh;
+#[cfg(feature = "alloc")]
+pub use multigrid::Multigrid;
 pub use relaxation::{Relaxation, Relaxed};
 #[cfg(feature = "alloc")]
 pub use sites::Various;

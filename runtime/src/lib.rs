@@ -59,7 +59,7 @@
 //! | step N equal sites that are tied to each other | a const generic N: an array of sites is a system, [`Stepper::sites`] or [`Stepper::joined_sites`] steps them in [`SiteStorage`]; the macro derives [`Power`] |
 //! | step a field, the same site at each place of a grid or a mesh | the key `space`; [`Field::grid`] gives a [`Domain`], whose [`FieldStepper`] steps a [`FieldState`] |
 //! | choose a stable step of a field | [`Domain::stable_step`] and [`FieldStepper::suggest_step_size`] |
-//! | find where a field without a cost rests | [`Domain::relax`]; [`Relaxation`] and [`Relaxed`] |
+//! | find where a field without a cost rests | [`Domain::relax`]; [`Relaxation`] and [`Relaxed`], `Multigrid` on grids |
 //!
 //! # Features
 //!
@@ -69,7 +69,7 @@
 //! |---|---|
 //! | `std` | elementary functions of the standard library in place of `libm`: those of the platform, [see below](crate#the-same-bits-everywhere) |
 //! | `lanes` | `F64x4`, `F64x8` and `F32x8`: several bodies side by side in vector registers, `no_std` and without heap |
-//! | `alloc` | on the heap: `Ensemble`, many bodies; `Mesh`, and sites of a field with parameters of their own |
+//! | `alloc` | on the heap: `Ensemble`, many bodies; `Mesh`, `Multigrid`, and sites of a field with parameters of their own |
 //! | `rayon` | `Ensemble::par_advance` and `FieldStepper::par_advance`, on all cores; needs the standard library |
 //! | `num-dual` | the numbers of that crate as scalars, which carry derivatives; needs the standard library |
 //! | `double-double` | `DoubleDouble`: 31 digits for reference runs |
@@ -208,7 +208,7 @@ pub use field::{
     Relaxed, Side, Sides, StaticField,
 };
 #[cfg(feature = "alloc")]
-pub use field::{Mesh, Various};
+pub use field::{Mesh, Multigrid, Various};
 #[cfg(feature = "lanes")]
 pub use lanes::{F32x8, F32x8Mask, F64x4, F64x4Mask, F64x8, F64x8Mask};
 pub use method::{Declared, Method};

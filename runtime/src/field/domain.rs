@@ -2,82 +2,13 @@
 
 #[cfg(feature = "alloc")]
 use super::Mesh;
-use super::edges::{Configured, Edge};
-use super::{Alike, Field, FieldSite, FieldStepper, Grid, MovingField, Population, Sides};
+use super::edges::{Configured, Placed};
+use super::{Alike, Field, FieldStepper, Grid, Lattice, MovingField, Population, Sides};
 use crate::fields::getters;
-use crate::parts::{Mu, Q, T};
+use crate::parts::{Q, T};
 use crate::{Clebsch, Error};
 use core::fmt::{self, Debug, Formatter};
 use core::marker::PhantomData;
-
-/// The places of the sites of a field, and the edges between them: a [`Grid`], or a mesh.
-///
-/// ```
-/// # use clebsch::{Clebsch, Grid, Lattice};
-/// # use nalgebra::Vector1;
-/// # #[derive(Clebsch, Clone, Debug)]
-/// # #[clebsch(
-/// #     action = |a: Translation<1>, x: Vector1| x + a,
-/// #     cost   = |h, a| a.norm_squared() / (2 * h),
-/// #     space  = |dx, x, next| (next - x).norm_squared() / (2 * dx.powi(2)),
-/// # )]
-/// # struct Strand;
-/// fn sites<G: Lattice<Strand>>(lattice: &G) -> usize {
-///     lattice.sites()
-/// }
-///
-/// assert_eq!(sites(&Grid::new([12])), 12);
-/// ```
-pub trait Lattice<S: FieldSite>: Clone {
-    /// The number of sites.
-    fn sites(&self) -> usize;
-
-    /// Whether a site does not move.
-    fn is_fixed(&self, site: usize) -> bool;
-
-    /// Whether any site does not move.
-    fn has_fixed(&self) -> bool;
-
-    /// Whether this can be the lattice of a field.
-    ///
-    /// # Errors
-    /// [`Error::EmptyGrid`] or [`Error::Spacing`].
-    fn check(&self) -> Result<(), Error>;
-
-    /// Adds the forces at a time, times a weight, to the momenta of the sites from a number on. `site` gives the parameters of a
-    /// site, which may be alike.
-    #[doc(hidden)]
-    fn kick<'s>(
-        &self,
-        site: (impl Fn(usize) -> &'s S + Copy, bool),
-        at: (T<S>, T<S>),
-        q: &[Q<S>],
-        mu: (usize, &mut [Mu<S>]),
-    ) where
-        S: 's;
-
-    /// The energy of all edges.
-    #[doc(hidden)]
-    fn energy<'s>(&self, site: impl Fn(usize) -> &'s S + Copy, q: &[Q<S>]) -> T<S>
-    where
-        S: 's;
-
-    /// Visits the edges at a site, each with the end that the site is: 0 or 1.
-    #[doc(hidden)]
-    fn visit_edges(&self, site: usize, visit: impl FnMut(Edge, usize));
-
-    /// The energy of an edge.
-    #[doc(hidden)]
-    fn energy_of_edge(&self, system: &S, edge: Edge, q: [&Q<S>; 2]) -> T<S>;
-
-    /// The forces of an edge on its ends.
-    #[doc(hidden)]
-    fn forces(&self, system: &S, edge: Edge, q: [&Q<S>; 2]) -> (Mu<S>, Mu<S>);
-
-    /// The changes of these forces by small motions of the ends.
-    #[doc(hidden)]
-    fn forces_along(&self, system: &S, edge: Edge, q: [&Q<S>; 2], motions: [&Mu<S>; 2]) -> (Mu<S>, Mu<S>);
-}
 
 /// A field on a lattice. Made by [`Field::grid`].
 ///
@@ -125,9 +56,20 @@ impl<S: Clebsch + Clone, G, P: Population> Domain<S, G, P> {
         ref lattice: G;
     }
 
+    /// The sites without loads.
+    pub(super) fn placed(&self) -> Placed<'_, S, G, P> {
+        Placed { systems: self.systems.as_ref(), lattice: &self.lattice, load: None, population: PhantomData }
+    }
+
+    /// The declared sites.
+    #[cfg(feature = "alloc")]
+    pub(super) fn systems(&self) -> &P::Of<S> {
+        &self.systems
+    }
+
     /// The sites with their configurations.
     pub(super) fn configured<'a>(&'a self, q: &'a [Q<S>]) -> Configured<'a, S, G, P> {
-        Configured { systems: self.systems.as_ref(), lattice: &self.lattice, q, population: PhantomData }
+        Configured { systems: self.systems.as_ref(), lattice: &self.lattice, q, load: None, population: PhantomData }
     }
 
     /// The declared site with the parameters of a site; `None` if there is none of this number.

@@ -129,6 +129,13 @@ impl<T: Scalar, const D: usize> Grid<T, D> {
         &self.spacing
     }
 
+    /// The sides of all directions.
+    #[cfg(feature = "alloc")]
+    #[inline]
+    pub(super) fn all_sides(&self) -> &[Sides; D] {
+        &self.sides
+    }
+
     /// The number of all sites, at most that of the largest `usize`.
     #[inline]
     pub fn sites(&self) -> usize {

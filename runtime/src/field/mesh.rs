@@ -1,6 +1,7 @@
 //! Meshes: vertices and oriented faces, at whose edges a field has its energy.
 
 use super::edges::Edge;
+use super::lattice::times;
 use super::{Field, Lattice};
 use crate::parts::{Mu, Q, T};
 use crate::{Error, Real, Scalar, Space};
@@ -319,45 +320,6 @@ impl<S: Field<1>> Lattice<S> for Mesh<T<S>> {
         Ok(())
     }
 
-    fn kick<'s>(
-        &self,
-        (site, _): (impl Fn(usize) -> &'s S + Copy, bool),
-        (t, weight): (T<S>, T<S>),
-        q: &[Q<S>],
-        (first, mu): (usize, &mut [Mu<S>]),
-    ) where
-        S: 's,
-    {
-        for (number, mu) in (first..).zip(mu) {
-            let Some(own) = q.get(number) else { return };
-            if Mesh::is_fixed(self, number) {
-                continue;
-            }
-            let mut force = if S::HAS_POTENTIAL { site(number).force_on_site(t, own) } else { Space::origin() };
-            for &(edge, end) in self.edges_at(number) {
-                let Some(Side { ends: [from, to], length, weight, .. }) = self.edges.get(edge) else { continue };
-                let (Some(a), Some(b)) = (q.get(*from), q.get(*to)) else { continue };
-                let both = site(*from).edge_forces(0, &[*length], a, b);
-                let pushed = if end == 0 { both.0 } else { both.1 };
-                force = force.zip_map(&pushed, |force, pushed| force + *weight * pushed);
-            }
-            *mu = mu.zip_map(&force, |mu, force| mu + weight * force);
-        }
-    }
-
-    fn energy<'s>(&self, site: impl Fn(usize) -> &'s S + Copy, q: &[Q<S>]) -> T<S>
-    where
-        S: 's,
-    {
-        let mut total = T::<S>::zero();
-        for Side { ends: [from, to], length, weight, .. } in &self.edges {
-            if let (Some(a), Some(b)) = (q.get(*from), q.get(*to)) {
-                total += *weight * site(*from).edge_energy(0, &[*length], a, b);
-            }
-        }
-        total
-    }
-
     fn visit_edges(&self, site: usize, mut visit: impl FnMut(Edge, usize)) {
         for &(number, end) in self.edges_at(site) {
             if let Some(side) = self.edges.get(number) {
@@ -394,6 +356,5 @@ impl<S: Field<1>> Lattice<S> for Mesh<T<S>> {
 
 /// Both forces times the weight of their edge.
 fn scaled<S: Field<1>>((own, next): (Mu<S>, Mu<S>), weight: T<S>) -> (Mu<S>, Mu<S>) {
-    let by = |force: Mu<S>| force.zip_map(&force, |force, _| weight * force);
-    (by(own), by(next))
+    (times::<S>(&own, weight), times::<S>(&next, weight))
 }

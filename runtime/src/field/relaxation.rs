@@ -1,23 +1,25 @@
 //! Fields at rest: the configuration of least energy, by over-relaxation.
 
-use super::edges::Configured;
+use super::edges::{Configured, Placed};
 use super::stability::projection;
 use super::{Domain, FieldSite, Lattice, Population, StaticField};
 use crate::linear::{matrix, rows};
 use crate::newton::{Ldl, Spectrum};
 use crate::parts::{Mu, Q, T};
-use crate::space::{larger, plus};
-use crate::stepper::check_on_orbit;
+use crate::space::larger;
 use crate::{Clebsch, Error, Real, Scalar, SiteError, Space};
 use nalgebra::{SMatrix, SVector};
 use num_traits::Zero;
 
 /// The most sweeps as provided.
 const SWEEPS: u64 = 10_000;
-/// The tolerance as provided.
+/// The tolerance as provided, and the least one in units of ε.
 const TOLERANCE: f64 = 1e-10;
-/// Sweeps with one factor before it is judged, at least.
-const TRIAL: u64 = 6;
+const ROUNDED: i64 = 64;
+/// Corrections shrink by e^(−FOLDS) in a trial of the best factor.
+const FOLDS: f64 = 4.0;
+/// How much further from 2 a factor goes that was too large.
+const BACK: f64 = 1.2;
 /// Halvings of a correction that raises the energy, at most.
 const HALVINGS: usize = 8;
 /// The rounding errors of the energy of a site, in units of ε of all of its terms.
@@ -50,8 +52,8 @@ const LEAST: f64 = 1e-6;
 /// ```
 #[derive(Clone, Copy, Debug)]
 pub struct Relaxation<'a, S: Clebsch + Clone, G, P: Population> {
-    domain: &'a Domain<S, G, P>,
-    tolerance: T<S>,
+    pub(super) domain: &'a Domain<S, G, P>,
+    pub(super) tolerance: T<S>,
     sweeps: u64,
     factor: Option<T<S>>,
 }
@@ -102,19 +104,34 @@ impl<T: Copy> Relaxed<T> {
     }
 }
 
+impl<T: Scalar> Relaxed<T> {
+    /// The result with this configuration.
+    pub(super) fn of<S, G, P: Population>(field: &Configured<'_, S, G, P>, sweeps: u64, correction: T) -> Self
+    where
+        S: FieldSite<Scalar = T>,
+        G: Lattice<S>,
+    {
+        let sites = (0..field.q.len()).filter(|site| !field.lattice.is_fixed(*site));
+        let residual = sites.fold(T::zero(), |residual, site| larger(residual, field.force_at(site).max_abs()));
+        Self { sweeps, correction, residual, energy: field.energy(T::zero()) }
+    }
+}
+
 impl<S: Clebsch<Scalar: Real> + Clone, G, P: Population> Domain<S, G, P> {
     /// A relaxation of this field to rest: to a configuration where no site feels a force.
     pub fn relax(&self) -> Relaxation<'_, S, G, P>
     where
         S: StaticField,
     {
-        Relaxation { domain: self, tolerance: T::<S>::from_f64(TOLERANCE), sweeps: SWEEPS, factor: None }
+        let least = T::<S>::EPSILON * T::<S>::from_ratio(ROUNDED, 1);
+        let tolerance = larger(T::<S>::from_f64(TOLERANCE), least);
+        Relaxation { domain: self, tolerance, sweeps: SWEEPS, factor: None }
     }
 }
 
 impl<S: Clebsch<Scalar: Real> + Clone, G, P: Population> Relaxation<'_, S, G, P> {
-    /// The same with another tolerance: the largest correction of the last sweep, in the coordinates of the group. 10⁻¹⁰ as
-    /// provided. Slow modes are further from rest, by about the number of sites along the longest way.
+    /// The same with another tolerance: the largest correction of the last sweep, in the coordinates of the group. The larger one of
+    /// 10⁻¹⁰ and 64 ε as provided. Slow modes are further from rest, by about the number of sites along the longest way.
     #[must_use]
     pub fn tolerance(self, tolerance: T<S>) -> Self {
         Self { tolerance, ..self }
@@ -150,7 +167,10 @@ where
     ///
     /// Where H is not positive, eigenvalues are turned over: all corrections go downhill, to a minimum. The number of sweeps of a grid
     /// of n × n sites grows as n² with the factor 1, and as n with the best one. That is 2/(1 + sin(π/(n − 1))) for the equation of
-    /// Laplace with fixed sides. The factor that is found may take several times as many.
+    /// Laplace with fixed sides.
+    ///
+    /// Without a factor, trials find it. In a trial corrections would shrink by e⁻⁴ with the best factor. The rate in its second half
+    /// decides the next one.
     ///
     /// Source: Hageman and Young, *Applied Iterative Methods*, chapter 9 (the factor from the rate of convergence).
     ///
@@ -161,14 +181,15 @@ where
     /// * [`Error::NotFinite`] with the site where a force overflows.
     pub fn solve(&self, configuration: &mut [Q<S>]) -> Result<Relaxed<T<S>>, SiteError> {
         self.check(configuration)?;
+        let placed = self.domain.placed();
         let mut rate = Rate::new(self.factor);
         let (mut sweeps, mut correction) = (0, T::<S>::zero());
         while sweeps < self.sweeps {
-            let (largest, squares) = self.sweep(configuration, rate.factor)?;
+            let (largest, squares) = sweep(&placed, configuration, rate.factor, |_, _| ())?;
             sweeps += 1;
             correction = largest;
             if correction <= self.tolerance {
-                return self.found(configuration, sweeps, correction);
+                return Ok(Relaxed::of(&placed.at(configuration), sweeps, correction));
             }
             rate.judge(squares.sqrt());
         }
@@ -176,7 +197,7 @@ where
         Err(Error::NotRelaxed { sweeps, correction: correction.to_f64(), tolerance }.into())
     }
 
-    fn check(&self, q: &[Q<S>]) -> Result<(), SiteError> {
+    pub(super) fn check(&self, q: &[Q<S>]) -> Result<(), SiteError> {
         self.domain.lattice().check()?;
         let field = self.domain.configured(q);
         field.check_sites()?;
@@ -187,134 +208,81 @@ where
         }
         Ok(())
     }
-
-    /// One sweep. Returns the largest correction, and the sum of the squares of all.
-    fn sweep(&self, q: &mut [Q<S>], factor: T<S>) -> Result<(T<S>, T<S>), SiteError> {
-        let (mut largest, mut squares) = (T::<S>::zero(), T::<S>::zero());
-        for site in 0..q.len() {
-            if self.domain.lattice().is_fixed(site) {
-                continue;
-            }
-            let field = self.domain.configured(q);
-            let Some((moved, motion)) = field.relaxed(site, factor)? else { continue };
-            if let Some(q) = q.get_mut(site) {
-                *q = moved;
-            }
-            largest = larger(largest, motion.max_abs());
-            squares += motion.dot(&motion);
-        }
-        Ok((largest, squares))
-    }
-
-    fn found(&self, q: &[Q<S>], sweeps: u64, correction: T<S>) -> Result<Relaxed<T<S>>, SiteError> {
-        let field = self.domain.configured(q);
-        let mut residual = T::<S>::zero();
-        let sites = (0..q.len()).filter(|site| !self.domain.lattice().is_fixed(*site));
-        sites.for_each(|site| residual = larger(residual, field.force_at(site).max_abs()));
-        Ok(Relaxed { sweeps, correction, residual, energy: field.energy() })
-    }
 }
 
 /// The factor w of over-relaxation, found from the rate at which corrections shrink.
-struct Rate<T> {
-    factor: T,
+pub(super) struct Rate<T> {
+    pub factor: T,
     is_given: bool,
-    /// Sweeps with this factor.
+    /// Sweeps of this trial, and the size of the corrections after its first half.
     sweeps: u64,
-    /// The size of the last correction, and the rate before.
-    last: Option<(T, T)>,
+    half: T,
 }
 
 impl<T: Real> Rate<T> {
-    fn new(factor: Option<T>) -> Self {
-        Self { factor: factor.unwrap_or(T::one()), is_given: factor.is_some(), sweeps: 0, last: None }
+    pub fn new(factor: Option<T>) -> Self {
+        Self { factor: factor.unwrap_or(T::one()), is_given: factor.is_some(), sweeps: 0, half: T::zero() }
     }
 
-    /// Takes the size of the corrections of a sweep. A steady rate δ is that of the slowest mode, whose rate without over-relaxation is
-    /// μ² with μ = (δ + w − 1)/(w√δ). The best factor for it is 2/(1 + √(1 − μ²)).
-    fn judge(&mut self, size: T) {
+    /// The sweeps of one half of a trial. If w is the best factor, corrections shrink by e^(−FOLDS) in a trial.
+    fn half_of_trial(&self) -> u64 {
+        (FOLDS / 2.0 / (2.0 - self.factor.to_f64())) as u64
+    }
+
+    /// Takes the size of the corrections of a sweep. At the end of a trial their rate δ decides.
+    ///
+    /// One above w − 1 is that of the slowest mode. Its rate without over-relaxation is μ² with μ = (δ + w − 1)/(w√δ), and the best factor
+    /// is 2/(1 + √(1 − μ²)). A rate of w − 1 is that of a factor that is too large.
+    pub fn judge(&mut self, size: T) {
         self.sweeps += 1;
-        let Some((last, before)) = self.last.replace((size, T::zero())) else { return };
-        let rate = size / last;
-        self.last = Some((size, rate));
-        let one = T::one();
-        let is_steady = (rate - before).abs() < T::from_ratio(1, 10) * (one - rate);
-        // corrections of the best factor shrink by w − 1
-        if self.is_given || self.sweeps < TRIAL || !is_steady || rate >= one || rate <= self.factor - one {
+        let half = self.half_of_trial();
+        if self.sweeps == half {
+            self.half = size;
+        }
+        if self.is_given || self.sweeps < 2 * half {
+            return;
+        }
+        self.sweeps = 0;
+        let (one, two) = (T::one(), T::from_ratio(2, 1));
+        let rate = (size / self.half).powf(T::from_f64(1.0 / half as f64));
+        if rate >= one || !rate.is_finite() {
             return;
         }
         let mu = (rate + self.factor - one) / (self.factor * rate.sqrt());
-        if mu < one {
-            let best = T::from_ratio(2, 1) / (one + (one - mu * mu).sqrt());
-            if best > self.factor {
-                (self.factor, self.sweeps, self.last) = (best, 0, None);
-            }
-        }
+        self.factor = if rate > self.factor - one && mu < one {
+            larger(self.factor, two / (one + (one - mu * mu).sqrt()))
+        } else {
+            two - (two - self.factor) * T::from_f64(BACK)
+        };
     }
 }
 
-impl<S, G, P: Population> Configured<'_, S, G, P>
+/// One sweep: moves each site. Returns the largest motion, and the sum of the squares of all.
+pub(super) fn sweep<S, G, P: Population, const M: usize>(
+    placed: &Placed<'_, S, G, P>,
+    q: &mut [Q<S>],
+    factor: T<S>,
+    mut visit: impl FnMut(usize, &Mu<S>),
+) -> Result<(T<S>, T<S>), SiteError>
 where
-    S: FieldSite,
+    S: FieldSite<Momentum = SVector<<S as Clebsch>::Scalar, M>>,
+    T<S>: Real,
     G: Lattice<S>,
 {
-    /// There is a configuration for each site, and it is one.
-    pub(super) fn check_sites(&self) -> Result<(), SiteError> {
-        let (found, sites) = (self.q.len(), self.lattice.sites());
-        if found != sites {
-            return Err(Error::NumberOfSites { found, sites }.into());
+    let (mut largest, mut squares) = (T::<S>::zero(), T::<S>::zero());
+    for site in 0..q.len() {
+        if placed.lattice.is_fixed(site) {
+            continue;
         }
-        for site in 0..sites {
-            let Some((system, q)) = self.site(site) else { continue };
-            check_on_orbit(q, system.orbit_defect(q)).map_err(|error| SiteError { site: Some(site), error })?;
+        let Some((moved, motion)) = placed.at(q).relaxed(site, factor)? else { continue };
+        if let Some(q) = q.get_mut(site) {
+            *q = moved;
         }
-        Ok(())
+        visit(site, &motion);
+        largest = larger(largest, motion.max_abs());
+        squares += motion.dot(&motion);
     }
-
-    /// The force on a site, of its potential and of all edges.
-    fn force_at(&self, site: usize) -> Mu<S> {
-        let Some((system, q)) = self.site(site) else { return Space::origin() };
-        let mut force = system.force_on_site(T::<S>::zero(), q);
-        self.lattice.visit_edges(site, |edge, end| {
-            let Some((system, q)) = self.ends(edge) else { return };
-            let (own, next) = self.lattice.forces(system, edge, q);
-            force = plus(&force, if end == 0 { &own } else { &next });
-        });
-        force
-    }
-
-    /// The energy of all sites and edges.
-    fn energy(&self) -> T<S> {
-        let potential =
-            |site| self.site(site).map_or_else(T::<S>::zero, |(system, q)| system.potential(T::<S>::zero(), q));
-        let sites = (0..self.q.len()).fold(T::<S>::zero(), |sum, site| sum + potential(site));
-        let Some(first) = self.systems.first() else { return sites };
-        sites + self.lattice.energy(|site| self.systems.get(P::number(site)).unwrap_or(first), self.q)
-    }
-
-    /// The energy of a site and of its edges, if it stood at `q`. Behind it is the sum of the sizes of all terms, which tells its rounding.
-    fn energy_at(&self, site: usize, q: &Q<S>) -> (T<S>, T<S>) {
-        let Some((system, _)) = self.site(site) else { return (T::<S>::zero(), T::<S>::zero()) };
-        let mut energy = system.potential(T::<S>::zero(), q);
-        let mut size = energy.abs();
-        self.lattice.visit_edges(site, |edge, end| {
-            let Some((system, mut ends)) = self.ends(edge) else { return };
-            // an edge from the site to itself is visited for each end
-            let is_own = edge.ends == [site; 2];
-            if is_own && end == 1 {
-                return;
-            }
-            for (place, number) in ends.iter_mut().zip(edge.ends) {
-                if number == site {
-                    *place = q;
-                }
-            }
-            let own = self.lattice.energy_of_edge(system, edge, ends);
-            energy += own;
-            size += own.abs();
-        });
-        (energy, size)
-    }
+    Ok((largest, squares))
 }
 
 impl<S, G, P: Population, const M: usize> Configured<'_, S, G, P>
@@ -340,10 +308,12 @@ where
         let (before, terms) = self.energy_at(site, q);
         let rounding = T::<S>::EPSILON * T::<S>::from_ratio(ROUNDINGS, 1);
         let mut motion = step * factor;
+        let load = self.load.and_then(|load| load.get(site));
         for _ in 0..HALVINGS {
             let moved = system.moved_by(q, &motion);
             let (after, others) = self.energy_at(site, &moved);
-            if after <= before + rounding * (terms + others) {
+            let work = load.map_or_else(T::<S>::zero, |load| load.dot(&motion));
+            if after - work <= before + rounding * (terms + others + work.abs()) {
                 return Ok(Some((moved, motion)));
             }
             motion *= T::<S>::from_ratio(1, 2);

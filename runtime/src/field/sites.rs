@@ -26,6 +26,11 @@ pub trait Population {
         values: &Self::Of<V>,
         make: impl FnMut(usize, &V) -> Result<W, E>,
     ) -> Result<Self::Of<W>, E>;
+
+    /// The values of some of the sites.
+    #[cfg(feature = "alloc")]
+    #[doc(hidden)]
+    fn some<V: Clone>(values: &Self::Of<V>, sites: &[usize]) -> Self::Of<V>;
 }
 
 /// All sites of a field have the same parameters.
@@ -62,6 +67,11 @@ impl Population for Alike {
         mut make: impl FnMut(usize, &V) -> Result<W, E>,
     ) -> Result<[W; 1], E> {
         Ok([make(0, value)?])
+    }
+
+    #[cfg(feature = "alloc")]
+    fn some<V: Clone>(value: &[V; 1], _: &[usize]) -> [V; 1] {
+        value.clone()
     }
 }
 
@@ -101,5 +111,9 @@ impl Population for Various {
         mut make: impl FnMut(usize, &V) -> Result<W, E>,
     ) -> Result<alloc::vec::Vec<W>, E> {
         values.iter().enumerate().map(|(site, value)| make(site, value)).collect()
+    }
+
+    fn some<V: Clone>(values: &alloc::vec::Vec<V>, sites: &[usize]) -> alloc::vec::Vec<V> {
+        sites.iter().filter_map(|site| values.get(*site).cloned()).collect()
     }
 }

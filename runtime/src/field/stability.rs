@@ -1,6 +1,7 @@
 //! The longest step at which small waves of a field do not grow.
 
 use super::edges::{Configured, Edge};
+use super::lattice::times;
 use super::{Domain, FieldSite, FieldState, FieldStepper, Lattice, Population};
 use crate::linear::{matrix, rows};
 use crate::newton::{Ldl, Spectrum};
@@ -197,7 +198,7 @@ impl<T: Real, const M: usize> Roots<T, M> {
 }
 
 /// The unit vector of a coordinate.
-fn unit<T: Scalar, const M: usize>(j: usize) -> SVector<T, M> {
+pub(super) fn unit<T: Scalar, const M: usize>(j: usize) -> SVector<T, M> {
     SVector::from_fn(|i, _| if i == j { T::one() } else { T::zero() })
 }
 
@@ -274,7 +275,8 @@ where
         let Some((system, q)) = self.site(site) else { return stiffness };
         if S::HAS_POTENTIAL {
             for j in 0..M {
-                subtract_from(&mut stiffness, j, &system.force_on_site_along(t, q, &unit(j)));
+                let change = system.force_on_site_along(t, q, &unit(j));
+                subtract_from(&mut stiffness, j, &times::<S>(&change, self.lattice.share(site)));
             }
         }
         self.lattice.visit_edges(site, |edge, end| self.add_block(&mut stiffness, edge, [end, end]));

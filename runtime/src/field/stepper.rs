@@ -1,6 +1,7 @@
 //! Steps of all sites of a field, in place.
 
 use super::edges::Configured;
+use super::lattice::summed;
 use super::{Alike, FieldSite, Lattice, Population};
 use crate::fields::getters;
 use crate::parts::{Mu, Q, T, U};
@@ -175,7 +176,7 @@ impl<S: FieldSite + Clone, G: Lattice<S>, P: Population> FieldStepper<S, G, P> {
 
     /// The sites with their configurations.
     pub(super) fn configured<'a>(&'a self, q: &'a [Q<S>]) -> Configured<'a, S, G, P> {
-        Configured { systems: self.systems.as_ref(), lattice: &self.lattice, q, population: PhantomData }
+        Configured { systems: self.systems.as_ref(), lattice: &self.lattice, q, load: None, population: PhantomData }
     }
 
     /// A stepper of another step size.
@@ -438,13 +439,11 @@ impl<S: FieldSite + Clone, G: Lattice<S>, P: Population> FieldStepper<S, G, P> {
     {
         let (q, mu) = self.parts(state)?;
         let t = state.time.now();
-        let systems = self.systems.as_ref();
-        let (Some(stage), Some(first)) = (self.stage(0), systems.first()) else { return Ok(Zero::zero()) };
-        let sites = summed(q.iter().zip(mu).zip(self.all(0, stage)).map(|((q, mu), (system, constants))| {
-            let constants = S::Scheme::whole(constants);
-            <Declared as Method<S>>::kinetic_energy(system, constants, t, q, mu) + system.potential(t, q)
+        let Some(stage) = self.stage(0) else { return Ok(Zero::zero()) };
+        let kinetic = summed(q.iter().zip(mu).zip(self.all(0, stage)).map(|((q, mu), (system, constants))| {
+            <Declared as Method<S>>::kinetic_energy(system, S::Scheme::whole(constants), t, q, mu)
         }));
-        Ok(sites + self.lattice.energy(|site| systems.get(P::number(site)).unwrap_or(first), q))
+        Ok(kinetic + self.configured(q).energy(t))
     }
 
     /// The momenta that no step changes, sums over all sites. A side that is fixed, or a lattice that is not the same
@@ -534,23 +533,6 @@ fn are_finite<T: Scalar, V: Space<T>>(values: &[V]) -> bool {
     }
     sums.iter_mut().zip(others).for_each(|(sum, value)| *sum = plus(sum, value));
     sums.iter().all(Space::all_finite)
-}
-
-/// The most numbers that are added one after the other.
-const RUN: usize = 256;
-
-/// The sum of many numbers. Runs are added by themselves first, so that less is rounded away.
-fn summed<T: Scalar>(numbers: impl Iterator<Item = T>) -> T {
-    let (mut total, mut run, mut count) = (T::zero(), T::zero(), 0);
-    for number in numbers {
-        run += number;
-        count += 1;
-        if count == RUN {
-            total += run;
-            (run, count) = (T::zero(), 0);
-        }
-    }
-    total + run
 }
 
 /// The sites that one thread takes at a time.

@@ -1,0 +1,145 @@
+//! Lattices: which sites there are, and which edges join them.
+
+use super::FieldSite;
+use super::edges::Edge;
+use crate::parts::{Mu, Q, T};
+use crate::space::plus;
+use crate::{Error, Scalar, Space};
+use num_traits::{One, Zero};
+
+/// The places of the sites of a field, and the edges between them: a [`Grid`](crate::Grid), or a mesh.
+///
+/// ```
+/// # use clebsch::{Clebsch, Grid, Lattice};
+/// # use nalgebra::Vector1;
+/// # #[derive(Clebsch, Clone, Debug)]
+/// # #[clebsch(
+/// #     action = |a: Translation<1>, x: Vector1| x + a,
+/// #     cost   = |h, a| a.norm_squared() / (2 * h),
+/// #     space  = |dx, x, next| (next - x).norm_squared() / (2 * dx.powi(2)),
+/// # )]
+/// # struct Strand;
+/// fn sites<G: Lattice<Strand>>(lattice: &G) -> usize {
+///     lattice.sites()
+/// }
+///
+/// assert_eq!(sites(&Grid::new([12])), 12);
+/// ```
+pub trait Lattice<S: FieldSite>: Clone {
+    /// The number of sites.
+    fn sites(&self) -> usize;
+
+    /// Whether a site does not move.
+    fn is_fixed(&self, site: usize) -> bool;
+
+    /// Whether any site does not move.
+    fn has_fixed(&self) -> bool;
+
+    /// Whether this can be the lattice of a field.
+    ///
+    /// # Errors
+    /// [`Error::EmptyGrid`] or [`Error::Spacing`].
+    fn check(&self) -> Result<(), Error>;
+
+    /// How many sites of the declaration a site stands for: its potential is multiplied by it. 1 as provided.
+    #[doc(hidden)]
+    fn share(&self, _site: usize) -> T<S> {
+        T::<S>::one()
+    }
+
+    /// Adds the forces at a time, times a weight, to the momenta of the sites from a number on. `site` gives the parameters of a
+    /// site, which may be alike.
+    #[doc(hidden)]
+    fn kick<'s>(
+        &self,
+        (site, _): (impl Fn(usize) -> &'s S + Copy, bool),
+        (t, weight): (T<S>, T<S>),
+        q: &[Q<S>],
+        (first, mu): (usize, &mut [Mu<S>]),
+    ) where
+        S: 's,
+    {
+        for (number, mu) in (first..).zip(mu) {
+            if !self.is_fixed(number) {
+                let force = self.force(site, t, q, number);
+                *mu = mu.zip_map(&force, |mu, force| mu + weight * force);
+            }
+        }
+    }
+
+    /// The force on a site at a time: that of its potential, and those of all edges.
+    #[doc(hidden)]
+    fn force<'s>(&self, site: impl Fn(usize) -> &'s S + Copy, t: T<S>, q: &[Q<S>], number: usize) -> Mu<S>
+    where
+        S: 's,
+    {
+        let Some(own) = q.get(number) else { return Space::origin() };
+        let mut force = Space::origin();
+        if S::HAS_POTENTIAL {
+            force = times::<S>(&site(number).force_on_site(t, own), self.share(number));
+        }
+        self.visit_edges(number, |edge, end| {
+            let [from, to] = edge.ends;
+            let (Some(a), Some(b)) = (q.get(from), q.get(to)) else { return };
+            let (own, next) = self.forces(site(from), edge, [a, b]);
+            force = plus(&force, if end == 0 { &own } else { &next });
+        });
+        force
+    }
+
+    /// The energy of all edges.
+    #[doc(hidden)]
+    fn energy<'s>(&self, site: impl Fn(usize) -> &'s S + Copy, q: &[Q<S>]) -> T<S>
+    where
+        S: 's,
+    {
+        summed((0..self.sites()).map(|number| {
+            let mut energy = T::<S>::zero();
+            self.visit_edges(number, |edge, end| {
+                let [from, to] = edge.ends;
+                if let (0, Some(a), Some(b)) = (end, q.get(from), q.get(to)) {
+                    energy += self.energy_of_edge(site(from), edge, [a, b]);
+                }
+            });
+            energy
+        }))
+    }
+
+    /// Visits the edges at a site, each with the end that the site is: 0 or 1.
+    #[doc(hidden)]
+    fn visit_edges(&self, site: usize, visit: impl FnMut(Edge, usize));
+
+    /// The energy of an edge.
+    #[doc(hidden)]
+    fn energy_of_edge(&self, system: &S, edge: Edge, q: [&Q<S>; 2]) -> T<S>;
+
+    /// The forces of an edge on its ends.
+    #[doc(hidden)]
+    fn forces(&self, system: &S, edge: Edge, q: [&Q<S>; 2]) -> (Mu<S>, Mu<S>);
+
+    /// The changes of these forces by small motions of the ends.
+    #[doc(hidden)]
+    fn forces_along(&self, system: &S, edge: Edge, q: [&Q<S>; 2], motions: [&Mu<S>; 2]) -> (Mu<S>, Mu<S>);
+}
+
+/// A force times a weight.
+pub(super) fn times<S: FieldSite>(force: &Mu<S>, weight: T<S>) -> Mu<S> {
+    force.zip_map(force, |force, _| weight * force)
+}
+
+/// The most numbers that are added one after the other.
+const RUN: usize = 256;
+
+/// The sum of many numbers. Runs are added by themselves first, so that less is rounded away.
+pub(super) fn summed<T: Scalar>(numbers: impl Iterator<Item = T>) -> T {
+    let (mut total, mut run, mut count) = (T::zero(), T::zero(), 0);
+    for number in numbers {
+        run += number;
+        count += 1;
+        if count == RUN {
+            total += run;
+            (run, count) = (T::zero(), 0);
+        }
+    }
+    total + run
+}
