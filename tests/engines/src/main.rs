@@ -49,19 +49,29 @@ fn ours<const N: usize>(h: f64) -> Report {
     report
 }
 
-fn engine(n: usize, h: f64, reduced: bool) -> Report {
+/// The joints of the engine.
+#[derive(Clone, Copy, PartialEq)]
+enum Joints {
+    /// Each body has six coordinates, and impulses at the joints.
+    Impulse,
+    /// The coordinates are those of the joints, with the damping that a new joint has.
+    Damped,
+    /// The same without damping.
+    Undamped,
+}
+
+fn engine(n: usize, h: f64, joints: Joints) -> Report {
     let mut report = Report { gap: 0.0, energy: 0.0, nanoseconds: f64::INFINITY };
     for _ in 0..3 {
         let mut bodies = RigidBodySet::new();
         let (mut impulse, mut multibody) = (ImpulseJointSet::new(), MultibodyJointSet::new());
         let ground = bodies.insert(RigidBodyBuilder::fixed().build());
-        let mut handles = Vec::new();
+        let (mut handles, mut turns) = (Vec::new(), vec![Rotation::IDENTITY]);
         for (turn, place) in places(n) {
             let turn = nalgebra::UnitQuaternion::from_rotation_matrix(&Rotation3::from_matrix_unchecked(turn));
-            let pose = Pose::from_parts(
-                Vector::new(place.x, place.y, place.z),
-                Rotation::from_xyzw(turn.i, turn.j, turn.k, turn.w),
-            );
+            let turn = Rotation::from_xyzw(turn.i, turn.j, turn.k, turn.w);
+            turns.push(turn);
+            let pose = Pose::from_parts(Vector::new(place.x, place.y, place.z), turn);
             let mass =
                 MassProperties::new(Vector::new(0., 0., 0.), MASS, Vector::new(INERTIA[0], INERTIA[1], INERTIA[2]));
             let mut body =
@@ -71,14 +81,21 @@ fn engine(n: usize, h: f64, reduced: bool) -> Report {
         }
         for i in 0..n {
             let (before, anchor) = if i == 0 { (ground, 0.0) } else { (handles[i - 1], HALF) };
+            // the coordinates of a multibody start at 0, whatever the pose of the body is
+            let between = turns[i].inverse() * turns[i + 1];
             let joint = SphericalJointBuilder::new()
-                .local_anchor1(Vector::new(0., 0., anchor))
-                .local_anchor2(Vector::new(0., 0., -HALF));
-            if reduced {
-                multibody.insert(before, handles[i], joint, true);
-            } else {
+                .local_frame1(Pose::from_parts(Vector::new(0., 0., anchor), between))
+                .local_frame2(Pose::from_parts(Vector::new(0., 0., -HALF), Rotation::IDENTITY));
+            if joints == Joints::Impulse {
                 impulse.insert(before, handles[i], joint, true);
+            } else {
+                multibody.insert(before, handles[i], joint, true);
             }
+        }
+        // each joint that is inserted sets its own damping, so this is last
+        if joints == Joints::Undamped {
+            let of_chain = multibody.rigid_body_link(handles[0]).expect("a joint").multibody;
+            multibody.get_multibody_mut(of_chain).expect("a multibody").damping_mut().fill(0.0);
         }
         let parameters = IntegrationParameters { dt: h, ..Default::default() };
         let mut pipeline = PhysicsPipeline::new();
@@ -143,11 +160,14 @@ fn print(name: &str, n: usize, h: f64, report: Report) {
 fn compare<const N: usize>() {
     for h in [1e-3, 2.5e-4] {
         print("clebsch", N, h, ours::<N>(h));
-        print("impulse joints", N, h, engine(N, h, false));
+        print("impulse joints", N, h, engine(N, h, Joints::Impulse));
     }
     // these take a minute for more
     if N <= 10 {
-        print("multibody joints", N, 1e-3, engine(N, 1e-3, true));
+        print("multibody joints", N, 1e-3, engine(N, 1e-3, Joints::Damped));
+        for h in [1e-3, 2.5e-4] {
+            print("without damping", N, h, engine(N, h, Joints::Undamped));
+        }
     }
 }
 

@@ -94,21 +94,20 @@ impl<'g> ConstraintFormulas<'g> {
         check(model, system, energy)?;
         let inverse = inverse(system, inertia);
         let places = constraint.places.map(|value| PlaceFormulas::new(system, value, inverse));
-        let (mut rows, mut values, mut between) = (Vec::new(), Vec::new(), Vec::new());
+        let (mut rows, mut values) = (Vec::new(), Vec::new());
         if let Some(PlaceFormulas { value, rows: of_places, .. }) = places {
             let later = (model.time, model.graph.integer(1));
             rows.push(of_places);
             values.push(-value.differential(&[later]));
-            between.push(between_places(model, value, moved(model)));
         }
         let mut is_mean = false;
         if let Some(VelocityRows { rows: of_velocities, values: of_rows }) = constraint.velocities {
             is_mean = is_mean_of_rows(model, [of_velocities, of_rows]);
             rows.push(of_velocities);
             values.push(of_rows);
-            between.push(self::between(model, (of_velocities, of_rows), is_mean, moved(model)));
         }
-        let [rows, values, between] = [rows, values, between].map(|parts| model.graph.below(&parts));
+        let [rows, values] = [rows, values].map(|parts| model.graph.below(&parts));
+        let between = between(model, constraint, is_mean, &moved(model));
         check_rows(constraint, rows)?;
         let by_inertia = product(rows, inverse);
         let gyroscopic = system.symbols.slope(energy.gyroscopic);
@@ -135,11 +134,10 @@ impl<'g> ConstraintFormulas<'g> {
 
     /// ψ(t, q, F), with these images Φ_F(q).
     pub(super) fn between_by(&self, model: &Mechanics<'g>, images: &Images<'g>) -> Expr<'g> {
-        let places = self.places.as_ref().map(|places| between_places(model, places.value, images.clone()));
-        let velocities = model.constraint.as_ref().and_then(|constraint| constraint.velocities);
-        let velocities = velocities
-            .map(|VelocityRows { rows, values }| between(model, (rows, values), self.is_mean_of_rows, images.clone()));
-        model.graph.below(&places.into_iter().chain(velocities).into_list())
+        model
+            .constraint
+            .as_ref()
+            .map_or(self.between, |constraint| between(model, constraint, self.is_mean_of_rows, images))
     }
 
     /// y − Aᵀ S⁻¹(A Σ⁻¹y − ψ).
@@ -287,15 +285,28 @@ pub(super) fn inverse<'g>(system: &SystemFormulas<'g>, inertia: Expr<'g>) -> Exp
     graph.stack(shape, shape.positions().map(entry).into_list())
 }
 
+/// ψ(t, q, F), with these images Φ_F(q): those of places first.
+fn between<'g>(
+    model: &Mechanics<'g>,
+    constraint: &Constraint<'g>,
+    is_mean_of_rows: bool,
+    moved: &Images<'g>,
+) -> Expr<'g> {
+    let places = constraint.places.map(|value| between_places(model, value, moved.clone()));
+    let velocities = constraint.velocities.as_ref();
+    let velocities = velocities.map(|rows| between_velocities(model, rows, is_mean_of_rows, moved.clone()));
+    model.graph.below(&places.into_iter().chain(velocities).into_list())
+}
+
 /// ψ(t, q, F) of a constraint on places, φ(t + h, Φ_F q)/h.
 fn between_places<'g>(model: &Mechanics<'g>, value: Expr<'g>, moved: Images<'g>) -> Expr<'g> {
     value.substitute(&after_step(model, moved)) / model.step_size
 }
 
-/// ψ(t, q, F): the constraint on the velocity ξ(F)/h of a step, at the mean of both ends.
-fn between<'g>(
+/// ψ(t, q, F) of a constraint on the velocity ξ(F)/h of a step, at the mean of both ends.
+fn between_velocities<'g>(
     model: &Mechanics<'g>,
-    (rows, values): (Expr<'g>, Expr<'g>),
+    VelocityRows { rows, values }: &VelocityRows<'g>,
     is_mean_of_rows: bool,
     moved: Images<'g>,
 ) -> Expr<'g> {
@@ -352,7 +363,7 @@ fn check_rows<'g>(constraint: &Constraint<'g>, all: Expr<'g>) -> Result<(), Diag
 /// The features of the kinetic energy and of the action that do not go with a constraint.
 fn check<'g>(model: &Mechanics<'g>, system: &SystemFormulas<'g>, energy: &Energy<'g>) -> Result<(), Diagnostics> {
     let spans = &model.spans;
-    check_inertia(model, system, energy)?;
+    check_system(model, system, energy)?;
     features::check((Feature::Constraint, Found::somewhere()), |feature| match feature {
         Feature::ExactDiscretization => exact::is_exact(model).then(|| Found::at(spans.kinetic.place)),
         Feature::OddVelocity if model.constraint.as_ref().is_some_and(|constraint| constraint.velocities.is_some()) => {
@@ -363,8 +374,8 @@ fn check<'g>(model: &Mechanics<'g>, system: &SystemFormulas<'g>, energy: &Energy
     })
 }
 
-/// The same, of a constraint on configurations alone.
-pub(super) fn check_inertia<'g>(
+/// The kinetic energies and the actions that go with no constraint, of velocities or of places.
+pub(super) fn check_system<'g>(
     model: &Mechanics<'g>,
     system: &SystemFormulas<'g>,
     energy: &Energy<'g>,

@@ -5,7 +5,7 @@
 
 use clebsch_symbolic::{Expr, IntoList, Shape, identity};
 
-use super::constraint::{check_inertia, free_motion, inverse};
+use super::constraint::{check_system, free_motion, inverse};
 use super::energy::Energy;
 use super::power::{SiteTerm, home, of_terms, symbol_at};
 use super::{Home, SystemFormulas};
@@ -54,7 +54,7 @@ pub(super) fn of<'g>(
 ) -> Result<Option<JointFormulas<'g>>, Diagnostics> {
     let Some(power) = &model.power else { return Ok(None) };
     let Some(joints) = &power.joints else { return Ok(None) };
-    check_inertia(model, system, energy)?;
+    check_system(model, system, energy)?;
     features::check((Feature::Joints, Found::somewhere()), |feature| {
         let moves = feature == Feature::MovingInertia && system.is_moving(inertia);
         moves.then(|| Found::at(model.spans.kinetic.place))
