@@ -68,7 +68,9 @@ impl<T: Scalar, const R: usize, const M: usize> Rows<T, R, M> {
 /// Puts C values of φ in their place, the first of them in row `first`.
 #[inline(always)]
 pub fn put_places<T: Scalar, const R: usize, const C: usize>(places: &mut SVector<T, R>, first: usize, values: [T; C]) {
-    for (place, value) in places.iter_mut().skip(first).zip(values) {
+    // of a slice: the iterator of a matrix is not unrolled
+    let behind = places.as_mut_slice().get_mut(first..).unwrap_or_default();
+    for (place, value) in behind.iter_mut().zip(values) {
         *place = value;
     }
 }

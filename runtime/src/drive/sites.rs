@@ -133,6 +133,8 @@ pub struct Sites<P: Clebsch, Points, Momenta, const N: usize, Rooms = NoJoints> 
     steps: u64,
     storage: SiteStorage<Points, Momenta>,
     room: Rooms,
+    /// The time at which the room has the factors of the joints, if it has them at this configuration.
+    factored: Option<P::Scalar>,
 }
 
 /// The room of sites without joints: none.
@@ -380,7 +382,7 @@ impl<P: Clebsch> Stepper<P> {
         if size_of::<Room<P, N>>() > 0 && found != N {
             return Err(wrong_length::<N>(found));
         }
-        let mut sites = Sites { stepper: self, time: Time::at(Zero::zero()), steps: 0, storage, room };
+        let mut sites = Sites { stepper: self, time: Time::at(Zero::zero()), steps: 0, storage, room, factored: None };
         prepare(&mut sites)?;
         sites.check()?;
         sites.kick()?;
@@ -426,7 +428,8 @@ where
             &mut self.storage;
         let (q, mu) = (array_mut(q.as_mut())?, array_mut(next.as_mut())?);
         let (kick, gradient) = (array_mut(kick.as_mut())?, array_mut(gradient.as_mut())?);
-        P::Scheme::start(self.stepper.at(self.time.now()), Stored { q, mu, kick, gradient });
+        let factored = &mut None;
+        P::Scheme::start(self.stepper.at(self.time.now()), Stored { q, mu, kick, gradient, factored });
         Ok(())
     }
 
@@ -460,7 +463,9 @@ where
         let from = (array(configuration.as_ref())?, array(momentum.as_ref())?, array(kick.as_ref())?);
         let (q, mu) = (array_mut(next.as_mut())?, array_mut(moved.as_mut())?);
         let (kick, gradient) = (array_mut(next_kick.as_mut())?, array_mut(gradient.as_mut())?);
-        let next_state = Stored { q, mu, kick, gradient };
+        // after an error the room has those of another configuration
+        let mut factored = self.factored.take();
+        let next_state = Stored { q, mu, kick, gradient, factored: &mut factored };
         let sum = P::Scheme::step_from(self.stepper.at(self.time.now()), from, u, next_state, self.room.as_mut())?;
         if !sum.is_finite()
             && let Some(error) = not_finite(next.as_ref(), moved.as_ref(), next_kick.as_ref())
@@ -478,7 +483,7 @@ where
         swap(configuration, next);
         swap(momentum, moved);
         swap(kick, next_kick);
-        (self.time, self.steps) = (time, self.steps.saturating_add(1));
+        (self.time, self.steps, self.factored) = (time, self.steps.saturating_add(1), factored);
         Ok(())
     }
 
@@ -597,6 +602,7 @@ where
         let state = (array(q.as_ref())?, array(mu.as_ref())?);
         let free = (array_mut(gradient.as_mut())?, array_mut(moved.as_mut())?, array_mut(kick.as_mut())?);
         let at = self.stepper.at(self.time.now());
+        self.factored = None;
         let loops = P::Scheme::reactions(at, state, u, self.room.as_mut(), free, multipliers)?;
         let error = Error::NotFinite { name: "the reactions of the constraint" };
         let site = multipliers.iter().position(|of_site| !of_site.all_finite());

@@ -215,7 +215,8 @@ impl<'a, P: Joined<N, R, M>, const N: usize, const R: usize, const M: usize> Joi
         pushes
     }
 
-    /// Moves all sites from (q, N) with multipliers so that φ(t + h, q⁺) = 0.
+    /// Moves all sites from (q, N) with multipliers so that φ(t + h, q⁺) = 0. The room may have the rows and the factors at
+    /// (t, q) already. The border of loops is none of it.
     ///
     /// # Errors
     /// Those of the step of a site, [`Error::DependentConstraints`] and [`Error::NotConverged`].
@@ -225,9 +226,12 @@ impl<'a, P: Joined<N, R, M>, const N: usize, const R: usize, const M: usize> Joi
         (q, mu): (&Q<P>, &Mu<P>),
         u: Option<&P::Input>,
         (next, moved): (&mut Q<P>, &mut Mu<P>),
+        is_factored: bool,
     ) -> Result<(), AtSite> {
         let h = self.constants.part(1.0);
-        self.at(t, q, least_of_steps())?;
+        if !is_factored || Self::HAS_LOOPS {
+            self.at(t, q, least_of_steps())?;
+        }
         self.room.iter_mut().for_each(|joint| joint.multipliers = Space::origin());
         self.forget_loops();
         if Self::IS_TREE {

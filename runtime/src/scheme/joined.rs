@@ -28,7 +28,7 @@ impl<S: Joined<N, R, M>, K: SiteKicks<S, N>, const N: usize, const R: usize, con
 {
     type Room = JointOf<S, N, R, M>;
 
-    fn start(At { system, constants, t, .. }: At<'_, S>, Stored { q, mu, kick, gradient }: Stored<'_, S>) {
+    fn start(At { system, constants, t, .. }: At<'_, S>, Stored { q, mu, kick, gradient, .. }: Stored<'_, S>) {
         system.kick_into(t, q, constants.part(K::START), gradient, kick, mu);
     }
 
@@ -122,7 +122,7 @@ impl<K, const N: usize, const R: usize, const M: usize> JoinedSites<K, N, R, M> 
     fn step_telling<'a, S: Joined<N, R, M>>(
         At { system, constants, t, .. }: At<'_, S>,
         u: Option<&U<S>>,
-        Stored { q, mu, kick, gradient }: Stored<'a, S>,
+        Stored { q, mu, kick, gradient, factored }: Stored<'a, S>,
         room: &mut [JointOf<S, N, R, M>],
         mut pushed: impl FnMut(Told<'_, '_, S, N, R, M>),
     ) -> Result<(Stored<'a, S>, T<S>), AtSite>
@@ -134,14 +134,20 @@ impl<K, const N: usize, const R: usize, const M: usize> JoinedSites<K, N, R, M> 
             mu.iter_mut().zip(&*kick).for_each(|(mu, kick)| *mu = plus(mu, kick));
         }
         // the gradient and the kick are made after the move: their places are free
-        joints.moved(t, (q, mu), u, (gradient, kick))?;
+        // a system that no time changes has no clock
+        let has_clock = size_of::<S::Time>() > 0;
+        let is_factored = factored.take().is_some_and(|then| !has_clock || then == t);
+        joints.moved(t, (q, mu), u, (gradient, kick), is_factored)?;
         pushed(Told { joints: &joints, place: q, is_after: false });
         q.copy_from_slice(gradient);
         mu.copy_from_slice(kick);
-        let sum = system.kick_into(t + constants.h, q, constants.part(K::END), gradient, kick, mu);
-        let added = joints.projected(t + constants.h, q, mu, least_of_steps())?;
+        let end = t + constants.h;
+        let sum = system.kick_into(end, q, constants.part(K::END), gradient, kick, mu);
+        let added = joints.projected(end, q, mu, least_of_steps())?;
         pushed(Told { joints: &joints, place: q, is_after: true });
-        Ok((Stored { q, mu, kick, gradient }, sum + added))
+        // the next step starts there
+        *factored = Some(end);
+        Ok((Stored { q, mu, kick, gradient, factored }, sum + added))
     }
 
     /// Steps, whose pushes are told.
@@ -160,10 +166,11 @@ impl<K, const N: usize, const R: usize, const M: usize> JoinedSites<K, N, R, M> 
         let mut gradient = [Space::origin(); N];
         let mut room = [Space::origin(); N];
         let mut joints: [_; N] = from_fn(|_| Joint::default());
-        let mut clock = Clock::at(t);
+        let (mut clock, mut factored) = (Clock::at(t), None);
         for number in 0..steps {
             let kick = K::place(&mut left, &mut room);
-            let stored = Stored { q: &mut q, mu: &mut mu, kick, gradient: &mut gradient };
+            let factored = &mut factored;
+            let stored = Stored { q: &mut q, mu: &mut mu, kick, gradient: &mut gradient, factored };
             let at = At::new(system, constants, clock.now());
             Self::step_telling(at, Some(u), stored, &mut joints, &mut pushed).map_err(|(_, error)| error)?;
             clock = clock.after_step(constants.h);

@@ -83,6 +83,8 @@ pub struct Stored<'a, S: Clebsch> {
     pub kick: &'a mut Mu<S>,
     /// Room for ∂V/∂q.
     pub gradient: &'a mut Q<S>,
+    /// The time at which the room of the joints has the factors of their matrix at q; `None` where it has not.
+    pub factored: &'a mut Option<T<S>>,
 }
 
 /// An error at the site with this index.
@@ -129,7 +131,7 @@ pub trait InStorage<S: Power<N>, const N: usize>: Scheme<S> {
 impl<S: Power<N>, K: SiteKicks<S, N>, const N: usize> InStorage<S, N> for SitesInTurn<K, N> {
     type Room = ();
 
-    fn start(At { system, constants, t, .. }: At<'_, S>, Stored { q, mu, kick, gradient }: Stored<'_, S>) {
+    fn start(At { system, constants, t, .. }: At<'_, S>, Stored { q, mu, kick, gradient, .. }: Stored<'_, S>) {
         system.kick_into(t, q, constants.part(K::START), gradient, kick, mu);
     }
 
@@ -142,9 +144,9 @@ impl<S: Power<N>, K: SiteKicks<S, N>, const N: usize> InStorage<S, N> for SitesI
     ) -> Result<(Stored<'a, S>, T<S>), AtSite> {
         let kick = (K::START != 0.0).then_some(&*state.kick);
         system.drift_in_place(constants, t, state.q, state.mu, kick, u)?;
-        let Stored { q, mu, kick, gradient } = state;
+        let Stored { q, mu, kick, gradient, factored } = state;
         let sum = system.kick_into(t + constants.h, q, constants.part(K::END), gradient, kick, mu);
-        Ok((Stored { q, mu, kick, gradient }, sum))
+        Ok((Stored { q, mu, kick, gradient, factored }, sum))
     }
 
     #[inline]

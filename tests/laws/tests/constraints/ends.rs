@@ -75,6 +75,23 @@ mod declared {
         ],
     )]
     pub struct Forked<const N: usize>;
+
+    /// A rope of beads whose first one a hand holds, in a wind that is an input.
+    #[derive(Clebsch, Clone, Debug)]
+    #[clebsch(
+        action     = |a: [Translation<2>; N], x: [Vector2; N]| (0..N).map(|i| x[i] + a[i]),
+        lagrangian = |v| (0..N).map(|i| v[i].norm_squared() / 2).sum(),
+        potential  = |x| (0..N).map(|i| 9.81 * x[i].y).sum(),
+        constraint = |t, x| [
+            x[0] == self.swing * t.sin() * Vector2::x(),
+            (1..N).map(|i| (x[i] - x[i - 1]).norm_squared() == 1),
+        ],
+        force      = |v, wind: Vector2| (0..N).map(|i| wind - v[i]),
+        order      = 4,
+    )]
+    pub struct Blown<const N: usize> {
+        pub swing: f64,
+    }
 }
 
 use declared::*;
@@ -240,5 +257,40 @@ fn the_last_site_may_hang_from_any() -> Result<(), Error> {
     // the site has one row, as all others have
     let pulls: [Vector1<f64>; 6] = stepper.reactions(&late)?;
     assert!(pulls.iter().all(|pull| pull.x < 0.0), "{pulls:?}");
+    Ok(())
+}
+
+/// Sites in storage go on from the factors of the last step, if there are any: after errors and reactions there are none.
+#[test]
+fn sites_step_to_the_same_bits_after_errors_and_reactions() -> Result<(), Error> {
+    let places: Beads = places().0;
+    let stepper = Blown::<6> { swing: 0.1 }.into_stepper(0.003)?;
+    let hand = [Vector2::x() * 0.1; 6];
+    let mut state = stepper.state_moving(places, hand)?;
+    let storage = SiteStorage::of(places.to_vec(), hand.to_vec());
+    let mut sites = stepper.clone().joined_sites_moving(storage, vec![stepper.joint(); 6])?;
+    let breeze = Vector2::new(0.5, 0.1);
+    let mut errors = 0;
+    for step in 0..60 {
+        for size in (0..40).map(|number| 10.0_f64.powf(f64::from(number) / 4.0)).filter(|_| step % 20 == 10) {
+            let (mut blown, gale) = (sites.clone(), Vector2::repeat(size));
+            if blown.step_with(&gale).is_err() {
+                errors += 1;
+                blown.step_with(&breeze)?;
+                let next = stepper.step_with(&state, &breeze)?;
+                assert_eq!(blown.configuration(), next.configuration(), "step {step}, gale {size}");
+            }
+        }
+        if step % 11 == 5 {
+            let mut rods = [Vector2::zeros(); 6];
+            sites.reactions_under(&breeze, &mut rods)?;
+            assert_eq!(rods, stepper.reactions_under(&state, &breeze)?, "step {step}");
+        }
+        state = stepper.step_with(&state, &breeze)?;
+        sites.step_with(&breeze)?;
+        assert_eq!(sites.configuration(), state.configuration(), "step {step}");
+        assert_eq!(sites.momentum(), state.momentum(), "step {step}");
+    }
+    assert!(errors > 20, "{errors}");
     Ok(())
 }
