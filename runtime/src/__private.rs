@@ -23,7 +23,7 @@ pub use crate::energy::{
     VelocityEquation, kinetic_energy, kinetic_energy_at, kinetic_energy_uniform, legendre_fenchel,
 };
 pub use crate::exponential::{exponential, phi, phi_times};
-pub use crate::field::{Field, FieldSite, MovingField, StaticField};
+pub use crate::field::{ConnectedField, Field, FieldSite, MovingField, StaticField};
 pub use crate::free_rotation::{
     FreeRotation, KeptRotation, free_momentum, gibbs_vector_of_matrix, gibbs_vector_of_quaternion,
 };

@@ -145,6 +145,31 @@ errors! {
             /// Another one.
             to: usize,
         } => "no face has an edge between the vertices {from} and {to}";
+        /// There is not one group element for each number of an edge.
+        NumberOfEdges {
+            /// The elements.
+            found: usize,
+            /// The numbers of edges.
+            edges: usize,
+        } => "there are {found} elements for {edges} edges: give one for each number, the identity where a side has no edge";
+        /// The elements of edges are not those of a configuration.
+        NotFlat {
+            /// The start of the first edge that does not fit.
+            from: usize,
+            /// Its end.
+            to: usize,
+            /// By how much its element differs from that of the configuration.
+            distance: f64,
+            /// The difference that was allowed.
+            tolerance: f64,
+        } => "the element of the edge from {from} to {to} is {distance:.3e} off the way along other edges, above {tolerance:.3e}: a face has a curvature, or the way goes around a hole";
+        /// No path of edges leads to a site.
+        Unreached {
+            /// The site.
+            site: usize,
+            /// The site from which paths start.
+            from: usize,
+        } => "no path of edges leads from the site {from} to the site {site}: leave sites without edges to the others out of the lattice";
         /// The factor of over-relaxation is not between 0 and 2.
         OverRelaxation {
             /// The factor.

@@ -11,6 +11,10 @@
 //! Source: Marsden, Patrick and Shkoller, *Multisymplectic geometry, variational integrators, and nonlinear PDEs*,
 //! Communications in Mathematical Physics 199 (1998).
 
+#[cfg(feature = "alloc")]
+mod complex;
+#[cfg(feature = "alloc")]
+mod connection;
 mod degree;
 mod domain;
 mod edges;
@@ -20,6 +24,7 @@ mod lattice;
 mod mesh;
 #[cfg(feature = "alloc")]
 mod multigrid;
+mod multisymplectic;
 mod relaxation;
 mod residuals;
 mod sites;
@@ -27,6 +32,10 @@ mod stability;
 mod stepper;
 mod sweep;
 
+#[cfg(feature = "alloc")]
+pub use complex::CellComplex;
+#[cfg(feature = "alloc")]
+pub use connection::{ConnectionState, ConnectionStepper};
 pub use domain::Domain;
 pub use grid::{Grid, Side, Sides};
 pub use lattice::Lattice;
@@ -40,7 +49,7 @@ pub use sites::Various;
 pub use sites::{Alike, Population};
 pub use stepper::{FieldState, FieldStepper};
 
-use crate::parts::{Mu, Q, T};
+use crate::parts::{Mu, Parts, Q, T};
 use crate::space::plus;
 use crate::{Clebsch, Space};
 
@@ -131,6 +140,33 @@ pub trait MovingField: FieldSite {}
     note = "step it, `domain.stepper(h)`, or leave out its cost"
 )]
 pub trait StaticField: FieldSite {}
+
+/// A field whose edges have energies of their group elements alone. `#[derive(Clebsch)]` implements it with `emit = [connection]`.
+///
+/// ```
+/// use clebsch::{Clebsch, ConnectedField};
+/// use nalgebra::{Rotation3, Vector3};
+///
+/// /// Rotations along a line, each with a spring to the next.
+/// #[derive(Clebsch, Clone, Debug)]
+/// #[clebsch(
+///     action = |F: SO<3>, R: SO<3>| R * F,
+///     space  = |ds, W| (W - I).norm_squared() / (4 * ds),
+///     emit   = [connection],
+/// )]
+/// struct Ribbon;
+///
+/// let [a, b] = [0.1, 0.4].map(|angle| Rotation3::new(Vector3::z() * angle).into_inner());
+/// assert!((Ribbon.edge_element(&a, &b) - a.transpose() * b).amax() < 1e-15);
+/// ```
+#[diagnostic::on_unimplemented(
+    message = "`{Self}` has no connection",
+    note = "write `emit = [connection]`; the energies of its edges are those of elements, `space = |dx, W| …`"
+)]
+pub trait ConnectedField: FieldSite + Parts + Clebsch<Configuration = <Self as Clebsch>::Element> {
+    /// The group element W with Φ_W(q) = next: q⁻¹·next for a right action, next·q⁻¹ for a left one.
+    fn edge_element(&self, q: &Q<Self>, next: &Q<Self>) -> Q<Self>;
+}
 
 /// A site of a field with neighbours in D directions of space. `#[derive(Clebsch)]` implements it where there is the key `space`.
 ///

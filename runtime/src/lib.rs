@@ -59,6 +59,7 @@
 //! | step N equal sites that are tied to each other | a const generic N: an array of sites is a system, [`Stepper::sites`] or [`Stepper::joined_sites`] steps them in [`SiteStorage`]; the macro derives [`Power`] |
 //! | step a field, the same site at each place of a grid or a mesh | the key `space`; [`Field::grid`] gives a [`Domain`], whose [`FieldStepper`] steps a [`FieldState`] |
 //! | choose a stable step of a field | [`Domain::stable_step`] and [`FieldStepper::suggest_step_size`] |
+//! | step the elements of edges in place of configurations | `emit = [connection]`; [`ConnectedField`], `Domain::connection` |
 //! | find where a field without a cost rests | [`Domain::relax`]; [`Relaxation`] and [`Relaxed`], `Multigrid` on grids |
 //!
 //! # Features
@@ -204,11 +205,11 @@ pub use drive::{Bodies, Ensemble, Failure};
 pub use drive::{Drive, Integrator, NoJoints, SiteError, SiteStorage, Sites};
 pub use error::Error;
 pub use field::{
-    Alike, Domain, Field, FieldSite, FieldState, FieldStepper, Grid, Lattice, MovingField, Population, Relaxation,
-    Relaxed, Side, Sides, StaticField,
+    Alike, ConnectedField, Domain, Field, FieldSite, FieldState, FieldStepper, Grid, Lattice, MovingField, Population,
+    Relaxation, Relaxed, Side, Sides, StaticField,
 };
 #[cfg(feature = "alloc")]
-pub use field::{Mesh, Multigrid, Various};
+pub use field::{CellComplex, ConnectionState, ConnectionStepper, Mesh, Multigrid, Various};
 #[cfg(feature = "lanes")]
 pub use lanes::{F32x8, F32x8Mask, F64x4, F64x4Mask, F64x8, F64x8Mask};
 pub use method::{Declared, Method};

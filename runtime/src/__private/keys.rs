@@ -198,6 +198,9 @@ pub mod emit {
 
     /// Steps of the momentum alone: the configuration is `()`.
     pub mod momentum {}
+
+    /// The trait `ConnectedField`: the group elements of the edges of a field, stepped without configurations.
+    pub mod connection {}
 }
 
 /// The scalar type: `f64`, `f32` or a type parameter of the struct. Fields and spaces that name a scalar decide it otherwise.

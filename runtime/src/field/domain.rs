@@ -32,10 +32,15 @@ use core::marker::PhantomData;
 /// let refused = Strand.grid([100]).spacing([0.0]).stepper(0.005).unwrap_err();
 /// assert_eq!(refused, Error::Spacing { direction: 0, value: 0.0 });
 /// ```
-#[derive(Clone)]
 pub struct Domain<S: Clone, G, P: Population = Alike> {
     systems: P::Of<S>,
     lattice: G,
+}
+
+impl<S: Clone, G: Clone, P: Population> Clone for Domain<S, G, P> {
+    fn clone(&self) -> Self {
+        Self { systems: self.systems.clone(), lattice: self.lattice.clone() }
+    }
 }
 
 impl<S: Clone, G: Debug, P: Population> Debug for Domain<S, G, P> {

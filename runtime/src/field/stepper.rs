@@ -115,11 +115,11 @@ impl<Points, Momenta, C> FieldState<Points, Momenta, C> {
 }
 
 /// The configurations and the momenta of sites.
-type Sites<'s, S> = (&'s mut [Q<S>], &'s mut [Mu<S>]);
+pub(super) type Sites<'s, S> = (&'s mut [Q<S>], &'s mut [Mu<S>]);
 
 /// A part of a step: its number, and the time at which it starts.
 #[derive(Clone, Copy)]
-struct Part<T> {
+pub(super) struct Part<T> {
     number: usize,
     t: T,
 }
@@ -239,7 +239,7 @@ impl<S: FieldSite + Clone, G: Lattice<S>, P: Population> FieldStepper<S, G, P> {
     }
 
     /// The momenta of sites that do not move, to 0.
-    fn clear_fixed(&self, mu: &mut [Mu<S>]) {
+    pub(super) fn clear_fixed(&self, mu: &mut [Mu<S>]) {
         if self.lattice.has_fixed() {
             let fixed = mu.iter_mut().enumerate().filter(|(i, _)| self.lattice.is_fixed(*i));
             fixed.for_each(|(_, mu)| *mu = Space::origin());
@@ -317,7 +317,7 @@ impl<S: FieldSite + Clone, G: Lattice<S>, P: Population> FieldStepper<S, G, P> {
     }
 
     /// Steps made of kicks and drifts of all sites, and a note in the state where one fails.
-    fn tried<Points, Momenta>(
+    pub(super) fn tried<Points, Momenta>(
         &self,
         state: &mut FieldState<Points, Momenta, S::Time>,
         steps: u64,
@@ -378,7 +378,8 @@ impl<S: FieldSite + Clone, G: Lattice<S>, P: Population> FieldStepper<S, G, P> {
             *time = after;
             *made = made.saturating_add(1);
         }
-        // the momenta after the last kick
+        // the last kick pushes all sites
+        self.clear_fixed(mu);
         check_finite_sites(0, (q, mu), mu)
     }
 
@@ -391,7 +392,7 @@ impl<S: FieldSite + Clone, G: Lattice<S>, P: Population> FieldStepper<S, G, P> {
     }
 
     /// Moves the sites from one on, each by itself.
-    fn drift(
+    pub(super) fn drift(
         &self,
         Part { number, t }: Part<T<S>>,
         first: usize,
@@ -437,13 +438,23 @@ impl<S: FieldSite + Clone, G: Lattice<S>, P: Population> FieldStepper<S, G, P> {
         Points: AsRef<[Q<S>]>,
         Momenta: AsRef<[Mu<S>]>,
     {
-        let (q, mu) = self.parts(state)?;
-        let t = state.time.now();
+        Ok(self.kinetic_energy(state)? + self.configured(state.configuration.as_ref()).energy(state.time.now()))
+    }
+
+    /// The kinetic energies of all sites.
+    pub(super) fn kinetic_energy<Points, Momenta>(
+        &self,
+        state: &FieldState<Points, Momenta, S::Time>,
+    ) -> Result<T<S>, SiteError>
+    where
+        Points: AsRef<[Q<S>]>,
+        Momenta: AsRef<[Mu<S>]>,
+    {
+        let ((q, mu), t) = (self.parts(state)?, state.time.now());
         let Some(stage) = self.stage(0) else { return Ok(Zero::zero()) };
-        let kinetic = summed(q.iter().zip(mu).zip(self.all(0, stage)).map(|((q, mu), (system, constants))| {
+        Ok(summed(q.iter().zip(mu).zip(self.all(0, stage)).map(|((q, mu), (system, constants))| {
             <Declared as Method<S>>::kinetic_energy(system, S::Scheme::whole(constants), t, q, mu)
-        }));
-        Ok(kinetic + self.configured(q).energy(t))
+        })))
     }
 
     /// The momenta that no step changes, sums over all sites. A side that is fixed, or a lattice that is not the same

@@ -16,7 +16,7 @@ use clebsch_tests::fixtures::spherical_pendulum::SphericalPendulum;
 use clebsch_tests::fixtures::spin_chain::SpinChain;
 use clebsch_tests::fixtures::steered_body::SteeredBody;
 use clebsch_tests::fixtures::wave_map::WaveMap;
-use nalgebra::{Matrix3, Quaternion, Vector1, Vector2, Vector3, Vector5};
+use nalgebra::{Matrix2, Matrix3, Quaternion, Vector1, Vector2, Vector3, Vector5};
 
 /// A film over a frame, its height x.
 #[derive(Clebsch, Clone, Debug)]
@@ -93,6 +93,15 @@ pub struct Crossing;
 )]
 pub struct Rod;
 
+/// Rotations in the plane along a line.
+#[derive(Clebsch, Clone, Debug)]
+#[clebsch(
+    action = |F: SO<2>, R: SO<2>| R * F,
+    space  = |ds, W| (W - I).norm_squared() / (4 * ds),
+    emit   = [connection],
+)]
+struct Ribbon;
+
 fn principal() -> Vector3<f64> {
     Vector3::new(1.0, 1.4, 1.9)
 }
@@ -142,6 +151,10 @@ fn lattices() -> Vec<Scene> {
         let mut heights = [0.0, height, 0.0, 0.0].map(Vector1::new);
         refused(relaxation.solve(&mut heights).map_err(|error| error.error))
     };
+    let (ribbon, identity) = (Ribbon.grid([3]).periodic(), Matrix2::identity());
+    let reconstructed = |elements: &[Matrix2<f64>], start: usize| {
+        refused(ribbon.reconstruct(elements, (start, identity), 1e-9).map_err(|error| error.error))
+    };
     vec![
         scene(refused(mesh(&[vec![0, 1, 4]])), &["face 0 has the corner 4", "4 vertices", "from 0 on"]),
         scene(refused(mesh(&[vec![0, 1]])), &["face 0 has 2 different corners", "at least three"]),
@@ -161,6 +174,18 @@ fn lattices() -> Vec<Scene> {
         scene(
             relaxed(film.relax().over_relaxation(2.5), 0.0),
             &["the factor of over-relaxation is 2.5", "above 0 and below 2"],
+        ),
+        scene(
+            refused(ribbon.flatness(&[identity; 2])),
+            &["there are 2 elements for 3 edges", "the identity where a side has no edge"],
+        ),
+        scene(
+            reconstructed(&[identity, identity, -identity], 0),
+            &["the element of the edge from 1 to 2 is 2.000e0 off", "above 1.000e-9", "goes around a hole"],
+        ),
+        scene(
+            reconstructed(&[identity; 3], 5),
+            &["no path of edges leads from the site 5 to the site 0", "out of the lattice"],
         ),
         scene(
             relaxed(film.relax().sweeps(1), 1.0),

@@ -3,9 +3,11 @@
 
 #![allow(missing_docs)]
 
+mod connections;
 mod elements;
 mod grids;
 mod meshes;
+mod multisymplectic;
 mod reference;
 mod refused;
 mod relaxation;

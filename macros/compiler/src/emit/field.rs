@@ -5,7 +5,7 @@ use proc_macro2::TokenStream;
 use quote::{format_ident, quote};
 
 use super::function::Body;
-use super::functions::{FIELD, FIELD_SITE};
+use super::functions::{CONNECTION, FIELD, FIELD_SITE};
 use super::scope::size;
 use super::{Emitter, flag};
 use crate::derive::Id;
@@ -87,6 +87,12 @@ impl Emitter<'_, '_> {
         let edges = self.target.derived(Some(quote!(runtime::Field<#directions>)), quote!(#gathers #functions));
         let marker = if field.is_static { quote!(runtime::StaticField) } else { quote!(runtime::MovingField) };
         let marker = self.target.derived(Some(marker), TokenStream::new());
-        quote!(#site #edges #marker)
+        let connection = self.model.emit.connection.then(|| {
+            let element = self.functions(CONNECTION, (0, 0), &words, |function, kernel| {
+                Some(function.computes(&scope, kernel?).after(Some(ends.clone())))
+            });
+            self.target.derived(Some(quote!(runtime::ConnectedField)), element)
+        });
+        quote!(#site #edges #marker #connection)
     }
 }

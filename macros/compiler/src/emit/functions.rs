@@ -201,6 +201,12 @@ functions! {
         fn force_inside(&self, t: T, spacing: &Spacings, q: &Q, before: &Neighbours, after: &Neighbours) -> Mu { Id::ForceInside => }
     }
 
+    /// `ConnectedField`: the elements of edges.
+    CONNECTION(true) {
+        /// The element that moves a site to its neighbour.
+        fn edge_element(&self, q: &Q, next: &Q) -> F { Id::EdgeElement }
+    }
+
     /// `VelocityEquation`, of a Lagrangian that is not quadratic.
     VELOCITY(false) {
         /// The Lagrangian of a velocity, its gradient and its Hessian.

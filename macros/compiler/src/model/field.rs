@@ -10,7 +10,7 @@ use super::scope::{Scope, check_reserved};
 use super::space::{Space, leaf_names};
 use super::typed::ActedSystem;
 use super::value::Value;
-use super::{Configuration, EdgeEnergy, Factor, LeafSpace};
+use super::{Configuration, EdgeEnergy, Factor, LeafSpace, System};
 use crate::diagnostic::{Diagnostics, refuse, report};
 use crate::parse::{Argument, Closure, Declaration, Pattern, Potential, spell_type, tail};
 
@@ -206,7 +206,14 @@ impl<'g> ActedSystem<'_, '_, 'g> {
 
 /// Reports features that a field cannot have yet. Powers report that they are none.
 pub(super) fn check(declaration: &Declaration, diagnostics: &Diagnostics) {
-    let Some(closure) = declaration.spaces.first() else { return };
+    let connection = features::declared(declaration, Feature::Connection);
+    let Some(closure) = declaration.spaces.first() else {
+        if connection.is_some() {
+            report!(diagnostics, declaration.ident.span(), "`emit = [connection]` is for fields, and this is one system";
+                help "write `space = |dx, W| …` with the element W from a site to its neighbour, or leave out the word `connection`");
+        }
+        return;
+    };
     let field = (Feature::Field, Found::at(closure.key.span()));
     let resting = declaration.is_static.then_some((Feature::StaticField, field.1.clone()));
     let potential = declaration.potential.as_ref().and_then(Potential::closure).filter(|_| declaration.is_static);
@@ -217,7 +224,25 @@ pub(super) fn check(declaration: &Declaration, diagnostics: &Diagnostics) {
             help "write `|{}| …`", second.pattern.spell();
             note "nothing moves it in time: `relax` finds where it rests");
     }
-    for feature in [field].into_iter().chain(resting) {
-        diagnostics.extend(features::refusals_of(feature, |feature| features::declared(declaration, feature)));
+    let connected = connection.map(|found| (Feature::Connection, found));
+    let of_ends = |closure: &&Closure| closure.arguments.len() > ENDS.len();
+    let ends = declaration.spaces.iter().find(of_ends).map(|closure| Found::at(closure.head));
+    let found = |feature| match feature {
+        Feature::EndsOfEdges => ends.clone(),
+        _ => features::declared(declaration, feature),
+    };
+    for feature in [field].into_iter().chain(resting).chain(connected) {
+        diagnostics.extend(features::refusals_of(feature, found));
     }
+}
+
+/// Whatever moves the elements of edges is known without configurations.
+///
+/// # Errors
+/// A kinetic energy that depends on the configuration.
+pub(super) fn check_connection(system: &System<'_>, energy: Expr<'_>) -> Result<(), Diagnostics> {
+    let Some(leaf) = system.configurations.iter().find(|leaf| energy.depends_on(leaf.symbol)) else { return Ok(()) };
+    let dependent = Found::at(system.spans.kinetic.place).named(&leaf.name);
+    Err(features::refusal((Feature::DependsOnConfiguration, dependent), (Feature::Connection, Found::somewhere()))
+        .into())
 }

@@ -168,6 +168,9 @@ pub fn model<'g>(graph: &'g Graph, declaration: &Declaration, by_number: ByNumbe
         Mover::Inputs(motion) => return Ok(Model::Steered(Box::new(Steered { system: Rc::new(system), motion }))),
     };
     let force = formulas.force;
+    if dials.emit.connection {
+        field::check_connection(&system, kinetic.energy())?;
+    }
     if dials.emit.momentum {
         system = momentum::alone(system, kinetic.energy(), force.as_ref())?;
     }

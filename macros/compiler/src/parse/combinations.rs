@@ -54,6 +54,7 @@ fn place(keys: &Keys, of_steps: &Keys, feature: Feature) -> Option<Span> {
         Feature::Tangent => emitted(emit.tangent),
         Feature::Boundary => emitted(emit.boundary),
         Feature::Momentum => emitted(emit.momentum),
+        Feature::Connection => emitted(emit.connection),
         // it discretises the velocity of a constraint too
         Feature::Discretization if keys.lists.contains_key("constraint") => None,
         Feature::Discretization => dials.discretization.as_ref().map(|discretization| discretization.span),

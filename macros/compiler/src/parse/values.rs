@@ -107,9 +107,7 @@ impl Reader<'_, '_> {
         let list = bracket(self.stream)?;
         let words: Punctuated<Ident, Token![,]> = Punctuated::parse_terminated_with(&list, Ident::parse_any)?;
         for word in &words {
-            if word == "connection" {
-                self.diagnostics.push(Diagnostic::later(word, "`connection` as `emit`", None));
-            } else if word == "generated" && !cfg!(feature = "generated") {
+            if word == "generated" && !cfg!(feature = "generated") {
                 report!(self.diagnostics, word, "`emit = [generated]` needs the feature `generated` of the crate `clebsch`";
                     help "add the feature: `clebsch = {{ …, features = [\"generated\"] }}`");
             } else if let Some(emitted) = self.choose(word, &EMITTED) {

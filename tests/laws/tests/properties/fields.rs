@@ -2,9 +2,10 @@
 
 use crate::arbitrary::{cases, vector};
 use clebsch::{
-    Alike, Clebsch, Error, Field, FieldSite, Grid, Lattice, Mesh, Population, Side, Sides, SiteError, Various,
+    Alike, CellComplex, Clebsch, ConnectedField, Error, Field, FieldSite, Grid, Lattice, Mesh, Population, Side, Sides,
+    SiteError, Various,
 };
-use nalgebra::{Rotation3, Vector3};
+use nalgebra::{Matrix3, Rotation3, SVector, Vector1, Vector3};
 use proptest::prelude::*;
 
 /// Spins with springs between them in two directions, in a field that grows with the time.
@@ -97,6 +98,29 @@ pub struct Needles {
 pub struct Vanes {
     pub field: Vector3<f64>,
 }
+
+/// Rotations with springs between them, in two directions.
+#[derive(Clebsch, Clone, Debug)]
+#[clebsch(
+    action = |F: SO<3>, R: SO<3>| R * F,
+    cost   = |h, F| (F - I).norm_squared() / (4 * h),
+    space  = [
+        |dx, W| (W - I).norm_squared() / (4 * dx.powi(2)),
+        |dy, W| self.stiffness * (W - I).norm_squared() / (4 * dy.powi(2)),
+    ],
+    emit   = [connection],
+)]
+pub struct Crystal {
+    pub stiffness: f64,
+}
+
+/// A film, its height x.
+#[derive(Clebsch, Clone, Debug)]
+#[clebsch(
+    action = |a: Translation<1>, x: Vector1| x + a,
+    space  = [|dx, x, next| (next - x).norm_squared() / 2, |dy, x, next| (next - x).norm_squared() / 2],
+)]
+pub struct Film;
 
 /// The vertices and triangles of a sheet of n × m squares, with places and diagonals of choice.
 fn sheet(n: usize, m: usize, shifts: &[Vector3<f64>], turned: &[bool]) -> (Vec<Vector3<f64>>, Vec<[usize; 3]>) {
@@ -251,6 +275,102 @@ proptest! {
                 near((moved(1e-4) - moved(-1e-4)) / 2e-4, 0.0, 1e-6);
             }
         }
+    }
+
+    #[test]
+    fn connections_are_those_of_configurations(
+        sides in [side(), side()], all in states(12), turns in prop::collection::vec(vector::<3>(1.0), 12), spacing in 0.4_f64..2.0,
+        walk in prop::collection::vec(0_usize..4, 1..12), at in any::<prop::sample::Index>(), turn in vector::<3>(0.5),
+    ) {
+        let domain = Crystal { stiffness: 0.7 }.grid([3, 4]).sides(sides).spacing([spacing, 1.0]);
+        let q: Vec<Matrix3<f64>> = turns.iter().map(|turn| Rotation3::new(*turn).into_inner()).collect();
+        let elements = domain.edge_elements(&q).expect("elements");
+        prop_assert_eq!((elements.len(), domain.edge_numbers()), (24, 24));
+        let nearby = |a: &[Matrix3<f64>], b: &[Matrix3<f64>]| a.iter().zip(b).for_each(|(a, b)| near((a - b).amax(), 0.0, 1e-11));
+        let mut faces = 0;
+        CellComplex::<Crystal>::visit_faces(domain.lattice(), |path| {
+            assert_eq!(path.len(), 4);
+            faces += 1;
+        });
+        prop_assert_eq!(domain.curvature(&elements).expect("numbers of edges").len(), faces);
+        // flat, and the same again from any site
+        near(domain.flatness(&elements).expect("numbers of edges"), 0.0, 1e-14);
+        for curvature in domain.curvature(&elements).expect("numbers of edges") {
+            near((curvature - Matrix3::identity()).amax(), 0.0, 1e-14);
+        }
+        let start = at.index(12);
+        nearby(&domain.reconstruct(&elements, (start, q[start]), 1e-12).expect("a configuration"), &q);
+        // around any closed walk: there and back
+        let mut path = vec![start];
+        for direction in walk {
+            let place = [path[path.len() - 1] / 4, path[path.len() - 1] % 4];
+            let next = [[place[0] + 1, place[1]], [place[0], place[1] + 1], [place[0].wrapping_sub(1), place[1]], [place[0], place[1].wrapping_sub(1)]];
+            if let Some(site) = domain.lattice().index(next[direction]) {
+                path.push(site);
+            }
+        }
+        let steps: Vec<[usize; 2]> = path.windows(2).map(|pair| [pair[0], pair[1]]).collect();
+        for [from, to] in &steps {
+            let (number, is_forward) = domain.edge_between(*from, *to).expect("an edge");
+            let element = Crystal { stiffness: 1.0 }.edge_element(&q[*from], &q[*to]);
+            let expected = if is_forward { elements[number] } else { elements[number].transpose() };
+            // in a ring of two sites there are two edges
+            near((element - expected).amax(), 0.0, 1e-14);
+        }
+        let back: Vec<usize> = path.iter().chain(path.iter().rev().skip(1)).copied().collect();
+        if back.len() > 1 {
+            let around = domain.holonomy(&elements, &back[..back.len() - 1]).expect("a closed path");
+            near((around - Matrix3::identity()).amax(), 0.0, 1e-13);
+        }
+        // one element that is turned curves the faces at its edge
+        if let Some([from, to]) = steps.first() {
+            let (number, _) = domain.edge_between(*from, *to).expect("an edge");
+            let mut curved = elements.clone();
+            curved[number] *= Rotation3::new(turn).into_inner();
+            let expected = (Rotation3::new(turn).into_inner() - Matrix3::identity()).norm();
+            let found = domain.curvature(&curved).expect("numbers of edges");
+            let sizes = found.iter().map(|own| (own - Matrix3::identity()).norm());
+            prop_assert!(sizes.clone().filter(|size| (size - expected).abs() < 1e-12).count() >= 1);
+            prop_assert!(domain.flatness(&curved).expect("numbers of edges") <= expected + 1e-12);
+        }
+        // momenta of edges are forces of configurations
+        let (momenta, forces) = (domain.edge_momenta(&elements).expect("momenta"), domain.forces_of_edges(&elements).expect("forces"));
+        for (site, force) in forces.iter().enumerate() {
+            let own = domain.lattice().force(|_| domain.system(0).expect("a site"), 0.0, &q, site);
+            near((force - own).amax(), 0.0, 1e-11);
+        }
+        let total = |end: usize| momenta.iter().map(|both| both[end]).sum::<Vector3<f64>>();
+        near((total(0) - total(1) - forces.iter().sum::<Vector3<f64>>()).amax(), 0.0, 1e-11);
+        // steps of edges are those of sites
+        let mu: Vec<_> = all.1.iter().map(|mu| mu * 0.3).collect();
+        let (by_sites, by_edges) = (domain.clone().stepper(0.02).expect("a stepper"), domain.connection(0.02).expect("a stepper"));
+        let mut sites = by_sites.state(q, mu.clone()).expect("a state");
+        let mut edges = by_edges.state(elements, mu).expect("a state");
+        by_edges.step(&mut edges).expect("a step");
+        by_edges.advance(&mut edges, 4).expect("steps");
+        by_sites.advance(&mut sites, 5).expect("steps");
+        nearby(edges.elements(), &by_edges.domain().edge_elements(sites.configuration()).expect("elements"));
+        for (found, expected) in edges.momentum().iter().zip(sites.momentum()) {
+            near((found - expected).amax(), 0.0, 1e-11);
+        }
+        near(by_edges.energy(&edges).expect("an energy"), by_sites.energy(&sites).expect("an energy"), 1e-10);
+        prop_assert_eq!(edges.steps(), 5);
+    }
+
+    #[test]
+    fn harmonic_functions_pair_to_zero(
+        n in 2_usize..7, m in 2_usize..7, inside in prop::collection::vec(any::<bool>(), 49), coefficients in [vector::<4>(1.0), vector::<4>(1.0)],
+    ) {
+        // a film that does not move at its sides
+        let film = Film.grid([n, m]).fixed();
+        let harmonic = |c: &SVector<f64, 4>| -> Vec<Vector1<f64>> {
+            let place = |site: usize| ((site / m) as f64, (site % m) as f64);
+            (0..n * m).map(place).map(|(x, y)| Vector1::new(c[0] * x + c[1] * y + c[2] * x * y + c[3] * (x * x - y * y))).collect()
+        };
+        let [v, w] = coefficients.each_ref().map(harmonic);
+        let sum = film.multisymplectic(&vec![Vector1::zeros(); n * m], [&v, &w], |site| inside[site]).expect("a sum");
+        near(sum, 0.0, 1e-10);
+        near(film.multisymplectic(&vec![Vector1::zeros(); n * m], [&v, &v], |site| inside[site]).expect("a sum"), 0.0, 1e-12);
     }
 
     #[test]

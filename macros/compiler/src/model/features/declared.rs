@@ -23,6 +23,7 @@ pub(crate) fn declared(declaration: &Declaration, feature: Feature) -> Option<Fo
         Feature::Tangent => emitted(dials.emit.tangent),
         Feature::Boundary => emitted(dials.emit.boundary),
         Feature::Momentum => emitted(dials.emit.momentum),
+        Feature::Connection => emitted(dials.emit.connection),
         Feature::Matrices => {
             let code = dials.code.as_ref().filter(|code| code.value == CodeForm::Matrices);
             code.map(|code| Found::at(code.span))

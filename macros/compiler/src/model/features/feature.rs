@@ -79,9 +79,11 @@ features! {
     Tangent "`emit = [tangent]`",
     Boundary "`emit = [boundary]`",
     Momentum "`emit = [momentum]`",
+    Connection "`emit = [connection]`",
     VelocityConstraint "a constraint with a velocity",
     Joints "joints between the sites of a power",
     StaticField "a field without a cost",
+    EndsOfEdges "an energy of both ends of an edge",
     // groups and spaces
     Power "a power",
     Forces "forces",

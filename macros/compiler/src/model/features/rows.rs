@@ -15,7 +15,7 @@ const WITHOUT_MATRICES: &[Feature] =
 
 /// The refused features, the others, the message, the reason, and the replacement.
 #[rustfmt::skip]
-pub(super) const ROWS: [Row; 71] = [
+pub(super) const ROWS: [Row; 75] = [
     // inputs move the configuration
     row(&[Dynamics], &[Controls],
         "there are `controls` and `dynamics`, but one thing moves a configuration", "",
@@ -187,6 +187,19 @@ pub(super) const ROWS: [Row; 71] = [
         "{beside} has no {refused}",
         "nothing moves it in time: `relax` finds where it rests",
         "leave it out, or write a `cost`"),
+    row(&[EndsOfEdges], &[Connection],
+        "{beside} has the elements of edges alone, and this energy reads both ends", "",
+        "write it of the element, `|dx, W| …`, or leave out the word `connection`"),
+    row(&[DependsOnConfiguration], &[Connection],
+        "{beside} has the elements of edges alone, and this depends on `{name}`", "",
+        "leave out the word `connection`"),
+    row(&[Potential], &[Connection],
+        "{beside} has the elements of edges alone, without a {refused}",
+        "it depends on the configuration of a site, and a connection has none",
+        "leave out the {refused}, or the word `connection`"),
+    row(&[Force, ForceOn], &[Connection],
+        "{refused} is not for a connection yet", LATER,
+        "leave it out, or the word `connection`"),
     row(&[OpaquePotential, Symmetry, Summation, Method], &[Field],
         "{refused} is not for a field yet", LATER,
         "leave it out"),
