@@ -49,7 +49,7 @@ const SCENES: [(&str, &str); 19] = [
 ];
 
 /// Scenes whose runs by default take seconds without optimisation.
-const LONG: [&str; 19] = [
+const LONG: [&str; 21] = [
     "sphere_molecules",
     "rigid_body_5d",
     "rigid_body_n",
@@ -69,6 +69,8 @@ const LONG: [&str; 19] = [
     "magnons",
     "rod",
     "lattice",
+    "skyrmion",
+    "chiral",
 ];
 
 /// Scenes whose short runs take seconds too: most end with a plan or a fit.
@@ -135,7 +137,7 @@ fn defaults_hold_all_their_claims() {
 
 /// Scenes of plans, which short runs do not suit, and those of constraints and fields, which have no steps of order 1.
 /// They are a name, flags, and the columns of the CSV file.
-const PLANS: [(&str, &[&str], &str); 13] = [
+const PLANS: [(&str, &[&str], &str); 15] = [
     (
         "slew",
         &["--least", "effort"],
@@ -151,6 +153,8 @@ const PLANS: [(&str, &[&str], &str); 13] = [
     ("magnons", &[], "step,time,energy,L1,L2,L3,centre"),
     ("rod", &[], "step,time,x1,y1,z1,x2,y2,z2,energy,p1,p2,p3,L1,L2,L3"),
     ("lattice", &[], "step,time,energy,L3"),
+    ("chiral", &[], "step,time,energy,curvature,apart"),
+    ("skyrmion", &[], "step,time,q1,q2,q3,e1,e2,e3"),
     ("double_pendulum", &[], "step,time,x1,y1,z1,x2,y2,z2,a1,a2,a3,b1,b2,b3"),
     ("quadrotor", &[], "step,time,R11,R12,R13,R21,R22,R23,R31,R32,R33,x1,x2,x3,v1,v2,v3,pi1,pi2,pi3,u1,u2,u3,u4"),
 ];
@@ -240,6 +244,8 @@ fn other_flags_hold_all_their_claims() {
         ("magnons", &["--sites", "60", "--steps", "100"]),
         ("rod", &["--edges", "4", "--steps", "100"]),
         ("lattice", &["--side", "24", "--steps", "1"]),
+        ("chiral", &["--sites", "8", "--steps", "40"]),
+        ("skyrmion", &["--steps", "16", "--step-size", "0.25", "--size", "2"]),
         ("rattleback", &["--steps", "200"]),
         ("double_pendulum", &["--steps", "50"]),
         ("chain", &["--links", "5", "--steps", "20"]),
@@ -445,6 +451,10 @@ fn mistakes_are_explained() {
         ("rod", &["--step-size", "0.01"], "the longest stable step"),
         ("rod", &["--push", "1,2"], "3 numbers separated by commas are needed, 2 were given"),
         ("lattice", &["--side", "23"], "`23` is not from 24 to 1024"),
+        ("chiral", &["--sites", "3"], "`3` is not from 4 to 512"),
+        ("chiral", &["--step-size", "0.1"], "the longest stable step"),
+        ("skyrmion", &["--size", "0.4"], "a skyrmion of less than 4 falls through it"),
+        ("skyrmion", &["--steps", "15"], "15 cells are not an even number from 16 to 1024"),
         ("lattice", &["--step-size", "0.6"], "the longest stable step"),
         ("sphere_geodesics", &["--step-size", "2"], "step 1 was not reached"),
         ("sphere_geodesics", &["--sphere", "5"], "possible values: 3, 7, 20, 100"),

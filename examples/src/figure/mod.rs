@@ -9,6 +9,7 @@ mod panel;
 mod place;
 mod plane;
 mod theme;
+mod vectors;
 
 pub use canvas::{Area, Broken, Drawn, draw, draw_to};
 pub use cells::{Cells, Frame, direction, diverging};
@@ -21,3 +22,4 @@ pub use plotters::style::RGBColor;
 pub use theme::{
     BLUE, GREEN, INK, ORANGE, PIECES, PURPLE, RED, TEAL, along, caption, colour_bar, columns, pieces, rows,
 };
+pub use vectors::Vectors;

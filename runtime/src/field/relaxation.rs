@@ -300,8 +300,8 @@ where
         if size.is_zero() {
             return Ok(None);
         }
-        let stiffness = self.stiffness_at(site, T::<S>::zero());
-        let step = downhill(&stiffness, &projection(system, q), &force);
+        let projection = projection(system, q);
+        let step = downhill(&self.stiffness_at(site, T::<S>::zero(), &projection), &projection, &force);
         if !(size.is_finite() && step.all_finite()) {
             return Err(SiteError { site: Some(site), error: Error::NotFinite { name: "the force on a site" } });
         }

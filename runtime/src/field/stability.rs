@@ -266,11 +266,12 @@ where
                 neighbours += norms.of(scale * block * inverse);
             }
         });
-        norms.of(scale * self.stiffness_at(site, t) * inverse) + neighbours
+        let stiffness = self.site(site).map(|(system, q)| self.stiffness_at(site, t, &projection(system, q)));
+        norms.of(scale * stiffness.unwrap_or_else(SMatrix::zeros) * inverse) + neighbours
     }
 
     /// H_aa of a site: P H P with the projection P to motions that move the site, where some do not.
-    pub(super) fn stiffness_at(&self, site: usize, t: T<S>) -> SMatrix<T<S>, M, M> {
+    pub(super) fn stiffness_at(&self, site: usize, t: T<S>, projection: &SMatrix<T<S>, M, M>) -> SMatrix<T<S>, M, M> {
         let mut stiffness = SMatrix::zeros();
         let Some((system, q)) = self.site(site) else { return stiffness };
         if S::HAS_POTENTIAL {
@@ -282,7 +283,6 @@ where
         self.lattice.visit_edges(site, |edge, end| self.add_block(&mut stiffness, edge, [end, end]));
         // the second derivative along exp(s η) is the symmetric part
         let symmetric = (stiffness + stiffness.transpose()) * T::<S>::from_ratio(1, 2);
-        let projection = projection(system, q);
         projection * symmetric * projection
     }
 
