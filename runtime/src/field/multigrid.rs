@@ -93,7 +93,7 @@ where
     /// Energies of edges may be for each length (1/dx), for each site (1/dx²), or without a length. Parameters of sites are those of
     /// every second one.
     ///
-    /// It allocates three configurations and three momenta for each site of the grid, and for the coarser ones.
+    /// It allocates two configurations and five momenta for each site of the grid, at most, and fewer for the coarser ones.
     ///
     /// Source: Brandt, *Multi-level adaptive solutions to boundary-value problems*, Mathematics of Computation 31 (1977) (the full
     /// approximation scheme).
