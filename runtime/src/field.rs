@@ -27,6 +27,8 @@ mod multigrid;
 mod multisymplectic;
 mod relaxation;
 mod residuals;
+#[cfg(feature = "serde")]
+mod saved;
 mod sites;
 mod stability;
 mod stepper;
@@ -44,6 +46,8 @@ pub use mesh::Mesh;
 #[cfg(feature = "alloc")]
 pub use multigrid::Multigrid;
 pub use relaxation::{Relaxation, Relaxed};
+#[cfg(feature = "serde")]
+pub use saved::SavedField;
 #[cfg(feature = "alloc")]
 pub use sites::Various;
 pub use sites::{Alike, Population};

@@ -75,7 +75,7 @@
 //! | `num-dual` | the numbers of that crate as scalars, which carry derivatives; needs the standard library |
 //! | `double-double` | `DoubleDouble`: 31 digits for reference runs |
 //! | `generated` | the dial `emit = [generated]`: the constant `GENERATED`, the generated code as text |
-//! | `serde` | states that are written and read back; `Stepper::resume` goes on bit for bit, if the format keeps all digits (`serde_json` with `float_roundtrip`) |
+//! | `serde` | states that are written and read back; `Stepper::resume` and `FieldStepper::resume` go on bit for bit, if the format keeps all digits (`serde_json` with `float_roundtrip`) |
 //!
 //! # Where dials end
 //!
@@ -204,6 +204,8 @@ pub use double_double::DoubleDouble;
 pub use drive::{Bodies, Ensemble, Failure};
 pub use drive::{Drive, Integrator, NoJoints, SiteError, SiteStorage, Sites};
 pub use error::Error;
+#[cfg(feature = "serde")]
+pub use field::SavedField;
 pub use field::{
     Alike, ConnectedField, Domain, Field, FieldSite, FieldState, FieldStepper, Grid, Lattice, MovingField, Population,
     Relaxation, Relaxed, Side, Sides, StaticField,

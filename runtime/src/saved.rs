@@ -121,7 +121,7 @@ impl<S: Clebsch, M: Method<S>> Stepper<S, M> {
 }
 
 /// A time as it was read. A rounding error that is not below its last place is dropped.
-fn resumed_time<T: Scalar, C: Time<T>>(time: &C) -> C {
+pub(crate) fn resumed_time<T: Scalar, C: Time<T>>(time: &C) -> C {
     // a rounding error below the last place does not show
     let is_same = time.after_step(T::zero()).now().equals(time.now());
     let mut resumed = *time;

@@ -80,12 +80,12 @@ struct Stage<S: Clebsch, P: Population> {
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FieldState<Points, Momenta, Time = ()> {
-    configuration: Points,
-    momentum: Momenta,
-    time: Time,
-    steps: u64,
+    pub(super) configuration: Points,
+    pub(super) momentum: Momenta,
+    pub(super) time: Time,
+    pub(super) steps: u64,
     /// The error after which the state is that of no time.
-    failed: Option<SiteError>,
+    pub(super) failed: Option<SiteError>,
 }
 
 impl<Points, Momenta, C> FieldState<Points, Momenta, C> {
@@ -215,13 +215,26 @@ impl<S: FieldSite + Clone, G: Lattice<S>, P: Population> FieldStepper<S, G, P> {
     {
         let time = Time::at(Zero::zero());
         let mut state = FieldState { configuration, momentum, time, steps: 0, failed: None };
+        self.check_sites(&mut state)?;
+        Ok(state)
+    }
+
+    /// There are a configuration and a momentum for each site, and they can be those of a state. Those of fixed sites become 0.
+    pub(super) fn check_sites<Points, Momenta>(
+        &self,
+        state: &mut FieldState<Points, Momenta, S::Time>,
+    ) -> Result<(), SiteError>
+    where
+        Points: AsRef<[Q<S>]>,
+        Momenta: AsRef<[Mu<S>]> + AsMut<[Mu<S>]>,
+    {
         let (q, mu) = (state.configuration.as_ref(), state.momentum.as_mut());
         self.check_lengths(q, mu)?;
         self.clear_fixed(mu);
         for (i, ((q, mu), system)) in q.iter().zip(&*mu).zip(self.each()).enumerate() {
-            at(i, check_momentum(system, q, mu).and_then(|()| system.check_kinetic_energy(Zero::zero(), q)))?;
+            at(i, check_momentum(system, q, mu).and_then(|()| system.check_kinetic_energy(state.time.now(), q)))?;
         }
-        Ok(state)
+        Ok(())
     }
 
     /// The parameters of all sites in their order.

@@ -2,8 +2,8 @@
 
 use crate::arbitrary::{cases, vector};
 use clebsch::{
-    Alike, CellComplex, Clebsch, ConnectedField, Error, Field, FieldSite, Grid, Lattice, Mesh, Population, Side, Sides,
-    SiteError, Various,
+    Alike, CellComplex, Clebsch, Clock, ConnectedField, Error, Field, FieldSite, Grid, Lattice, Mesh, Population,
+    SavedField, Side, Sides, SiteError, Various,
 };
 use nalgebra::{Matrix3, Rotation3, SVector, Vector1, Vector3};
 use proptest::prelude::*;
@@ -633,6 +633,33 @@ proptest! {
             Err(SiteError { error: Error::Unsolvable { .. } | Error::StepTooLong { .. }, .. }) | Ok(()) => {}
             Err(error) => prop_assert!(false, "{error}"),
         }
+    }
+
+    #[test]
+    fn saved_fields_resume_bit_for_bit(all in states(6), sides in [side(), side()], torque in vector::<3>(1.0), steps in 0_u64..5, wrong in any::<prop::sample::Index>()) {
+        let stepper = spins().grid([2, 3]).sides(sides).stepper(0.05).expect("a stepper");
+        let mut state = stepper.state(all.0, all.1).expect("a state");
+        if stepper.advance(&mut state, steps).is_err() {
+            prop_assert!(serde_json::to_string(&state).is_err());
+            return Ok(());
+        }
+        let text = serde_json::to_string(&state).expect("numbers");
+        let read = |text: &str| serde_json::from_str::<SavedField<Vec<Vector3<f64>>, Vec<Vector3<f64>>, Clock<f64>>>(text).expect("numbers");
+        let mut resumed = stepper.resume(read(&text)).expect("a state");
+        prop_assert_eq!(&resumed, &state);
+        let goes_on = stepper.step_with(&mut state, &[torque; 6]);
+        prop_assert_eq!(stepper.step_with(&mut resumed, &[torque; 6]), goes_on);
+        prop_assert_eq!(&resumed, &state);
+        prop_assert_eq!(resumed.time::<f64>().to_bits(), state.time::<f64>().to_bits());
+        // a file that was changed
+        let site = wrong.index(6);
+        let mut changed: serde_json::Value = serde_json::from_str(&text).expect("text");
+        changed["configuration"][site][0] = serde_json::Value::from(3.0);
+        let refused = stepper.resume(read(&changed.to_string())).map_err(|error| error.site);
+        prop_assert_eq!(refused.err(), Some(Some(site)));
+        let other = spins().grid([2, 2]).stepper(0.05).expect("a stepper");
+        let refused = other.resume(read(&text)).map_err(|error| error.error);
+        prop_assert_eq!(refused.err(), Some(Error::NumberOfSites { found: 6, sites: 4 }));
     }
 
     #[test]

@@ -69,6 +69,7 @@ pub const PROPERTIES: &[(&str, &[Property])] = &[
         ("residuals_are_rounding_errors",         &["FieldStepper::step_with_residuals"]),
         ("kicks_are_slopes_of_the_energy",        &["Lattice::kick", "Lattice::force", "Lattice::share", "Lattice::energy", "FieldStepper::energy", "Domain::spacing", "Domain::stepper"]),
         ("fields_run_back",                       &["FieldStepper::step", "FieldStepper::advance", "FieldStepper::step_with", "FieldStepper::state", "FieldStepper::step_size", "FieldState::configuration", "FieldState::momentum", "FieldState::steps", "FieldState::time", "FieldState::into_storage", "Field::grid"]),
+        ("saved_fields_resume_bit_for_bit",       &["FieldStepper::resume"]),
         ("total_momenta_stay",                    &["FieldStepper::conserved", "FieldStepper::par_advance", "FieldStepper::system", "Domain::various", "Population::each", "Population::number", "Population::some"]),
     ]),
     ("tests/laws/tests/properties/derivatives.rs", &[
