@@ -23,8 +23,14 @@ const INSTANCES: [(&str, &[(&str, &str)]); 11] = [
 ];
 
 /// The directions of space of fields that have more than one, and the number of the conserved momenta of those that move.
-const DIRECTIONS: [(&str, &str); 4] =
-    [("harmonic_map", "2"), ("lattice.Block", "3, 3"), ("wave_map", "2, 3"), ("wave_map.WaveMap", "2, 3")];
+const DIRECTIONS: [(&str, &str); 6] = [
+    ("chiral.Chiral", "2, 6"),
+    ("harmonic_map", "2"),
+    ("lattice.Block", "3, 3"),
+    ("skyrmion.HarmonicMap", "2"),
+    ("wave_map", "2, 3"),
+    ("wave_map.WaveMap", "2, 3"),
+];
 
 /// The names in `f32` of the lanes of `f64`.
 const LANES: [&str; 2] = ["F64x4", "F64x8"];
@@ -108,7 +114,8 @@ fn scene(root: &Path, path: &Path) -> String {
     let root = |system: &System| roots(&format!("{folder}.{}", system.name), [system]);
     let roots: String = declared.systems.iter().map(root).collect();
     let text = declared.text.replace("f32", "f64");
-    format!("mod scene_{folder} {{\nuse clebsch::{{Clebsch, Scalar}};\nuse nalgebra::*;\n{text}\n{roots}}}\n")
+    let file = path.file_stem().and_then(|stem| stem.to_str()).expect("names are plain");
+    format!("mod scene_{folder}_{file} {{\nuse clebsch::{{Clebsch, Scalar}};\nuse nalgebra::*;\n{text}\n{roots}}}\n")
 }
 
 /// The functions that are exported for systems of a module, inside of it.
