@@ -18,7 +18,7 @@ use super::complex::Passed;
 use super::{CellComplex, ConnectedField, Domain, Population};
 use crate::parts::{Mu, Q, T};
 use crate::space::{larger, plus};
-use crate::{Error, Mask, Scalar, SiteError, Space};
+use crate::{Clebsch, Error, Mask, Scalar, SiteError, Space};
 use alloc::vec::Vec;
 use num_traits::Zero;
 
@@ -32,22 +32,7 @@ fn distance<S: ConnectedField>(a: &Q<S>, b: &Q<S>) -> T<S> {
     a.zip_map(b, |a, b| a - b).max_abs()
 }
 
-impl<S, G, P: Population> Domain<S, G, P>
-where
-    S: ConnectedField + Clone,
-    G: CellComplex<S>,
-{
-    /// How many numbers edges have: see [`CellComplex`].
-    pub fn edge_numbers(&self) -> usize {
-        self.lattice().edge_numbers()
-    }
-
-    /// The edge from a site to another by its number, and whether it starts at the first; the first one if there are several. `None`
-    /// for sites that are no neighbours.
-    pub fn edge_between(&self, from: usize, to: usize) -> Option<(usize, bool)> {
-        self.lattice().edge_between(from, to)
-    }
-
+impl<S: Clebsch + Clone, G, P: Population> Domain<S, G, P> {
     /// The elements of all edges of a configuration, by their numbers; the identity where there is no edge.
     ///
     /// ```
@@ -76,7 +61,11 @@ where
     ///
     /// # Errors
     /// [`Error::NumberOfSites`]; [`Error::OffOrbit`] and [`Error::NotFinite`] with the site of a configuration.
-    pub fn edge_elements(&self, q: &[Q<S>]) -> Result<Vec<Q<S>>, SiteError> {
+    pub fn edge_elements(&self, q: &[Q<S>]) -> Result<Vec<Q<S>>, SiteError>
+    where
+        S: ConnectedField,
+        G: CellComplex<S>,
+    {
         let field = self.configured(q);
         field.check_sites()?;
         let mut elements = alloc::vec![identity::<S>(); self.lattice().edge_numbers()];
@@ -89,6 +78,23 @@ where
             });
         }
         Ok(elements)
+    }
+}
+
+impl<S, G, P: Population> Domain<S, G, P>
+where
+    S: ConnectedField + Clone,
+    G: CellComplex<S>,
+{
+    /// How many numbers edges have: see [`CellComplex`].
+    pub fn edge_numbers(&self) -> usize {
+        self.lattice().edge_numbers()
+    }
+
+    /// The edge from a site to another by its number, and whether it starts at the first; the first one if there are several. `None`
+    /// for sites that are no neighbours.
+    pub fn edge_between(&self, from: usize, to: usize) -> Option<(usize, bool)> {
+        self.lattice().edge_between(from, to)
     }
 
     /// The product of the elements along edges that follow each other, times another element.

@@ -88,16 +88,16 @@ impl<S: Clebsch> ConnectionState<S> {
     }
 }
 
-impl<S, G, P: Population> Domain<S, G, P>
-where
-    S: ConnectedField + MovingField + Clone,
-    G: CellComplex<S>,
-{
+impl<S: Clebsch + Clone, G: Clone, P: Population> Domain<S, G, P> {
     /// A stepper of step size `h` for the elements of edges, without configurations.
     ///
     /// # Errors
     /// As [`stepper`](Self::stepper).
-    pub fn connection(&self, h: T<S>) -> Result<ConnectionStepper<S, G, P>, Error> {
+    pub fn connection(&self, h: T<S>) -> Result<ConnectionStepper<S, G, P>, Error>
+    where
+        S: ConnectedField + MovingField,
+        G: CellComplex<S>,
+    {
         Ok(ConnectionStepper { domain: self.clone(), stepper: self.clone().stepper(h)? })
     }
 }
