@@ -9,7 +9,7 @@ mod sheet;
 use clap::Parser;
 use clebsch_examples::claims::{Claims, largest};
 use clebsch_examples::csv::Csv;
-use clebsch_examples::flags::{Run, Scene, count, finite, parse, positive};
+use clebsch_examples::flags::{Run, Scene, count_within, finite, parse, positive};
 use clebsch_examples::round_off;
 use clebsch_examples::scene::{Failure, conclude, say};
 use clebsch_examples::table::Table;
@@ -49,10 +49,7 @@ struct Flags {
 
 /// A number of sites that is no surprise for the memory.
 fn sizes(text: &str) -> Result<usize, String> {
-    match count(text)? {
-        number @ 4..=512 => Ok(number as usize),
-        number => Err(format!("`{number}` is not from 4 to 512")),
-    }
+    count_within(text, 4..=512)
 }
 
 /// One run.

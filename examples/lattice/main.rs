@@ -7,7 +7,7 @@ use block::Cube;
 use clap::Parser;
 use clebsch_examples::claims::{Claims, largest};
 use clebsch_examples::csv::Csv;
-use clebsch_examples::flags::{Run, Scene, count, parse};
+use clebsch_examples::flags::{Run, Scene, count_within, parse};
 use clebsch_examples::integrate::integrate_field;
 use clebsch_examples::scene::{Failure, conclude, say};
 use clebsch_examples::table::Table;
@@ -46,10 +46,7 @@ struct Flags {
 
 /// A number of sites for the memory of today.
 fn side(text: &str) -> Result<usize, String> {
-    match count(text)? {
-        number @ 24..=1024 => Ok(number as usize),
-        number => Err(format!("`{number}` is not from 24 to 1024")),
-    }
+    count_within(text, 24..=1024)
 }
 
 /// Times of a block.

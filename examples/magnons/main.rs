@@ -8,7 +8,7 @@ mod ring;
 use clap::Parser;
 use clebsch_examples::claims::{Claims, largest};
 use clebsch_examples::csv::Csv;
-use clebsch_examples::flags::{Run, Scene, count, parse, positive};
+use clebsch_examples::flags::{Run, Scene, count_within, parse, positive};
 use clebsch_examples::scene::{Failure, conclude, say};
 use clebsch_examples::table::Table;
 use cone::{Branch, Cone};
@@ -54,10 +54,7 @@ struct Flags {
 
 /// A number of spins that is no surprise for the memory.
 fn sizes(text: &str) -> Result<usize, String> {
-    match count(text)? {
-        number @ 40..=1_000_000 => Ok(number as usize),
-        number => Err(format!("`{number}` is not from 40 to 1000000")),
-    }
+    count_within(text, 40..=1_000_000)
 }
 
 /// Degrees of a cone.

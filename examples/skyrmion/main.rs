@@ -106,7 +106,7 @@ fn solve(square: Square, map: Map<'_>) -> Result<Solved, Failure> {
 
 /// Energies and distances from the instanton, with claims about their orders.
 fn energies(skyrmions: &[Solved], exact: Map<'_>, claims: &mut Claims) -> Result<Table<5>, Failure> {
-    let mut table = Table::new(["sites", "energy", "degree", "energy − 4π degree", "off the instanton"]);
+    let mut table = Table::new(["sites", "energy", "degree", "energy − 4π |degree|", "off the instanton"]);
     let mut errors = Vec::new();
     for Solved { square, q, .. } in skyrmions {
         let (energy, degree, above) = square.above_degree(q)?;
@@ -122,7 +122,7 @@ fn energies(skyrmions: &[Solved], exact: Map<'_>, claims: &mut Claims) -> Result
         errors.push((above, off));
     }
     claims.holds(
-        "the energy is below 4π times the degree",
+        "the energy is below 4π |degree|",
         errors.iter().all(|(above, _)| *above < 0.0),
         "chords are shorter than arcs",
     );

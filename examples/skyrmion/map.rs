@@ -49,7 +49,7 @@ impl Square {
         HarmonicMap.grid([self.sites(); 2]).fixed()
     }
 
-    /// The energy less 4π times the degree. Edges along the sides belong to the square by half.
+    /// The energy, the degree, and the energy less 4π |degree|. Edges along the sides belong to the square by half.
     pub fn above_degree(&self, q: &[Vector3<f64>]) -> Result<(f64, f64, f64), SiteError> {
         let n = self.sites();
         let field = self.field();

@@ -3,6 +3,7 @@
 use crate::scene::Failure;
 use clap::{Args, Parser, ValueEnum};
 use std::fmt::{self, Display, Formatter};
+use std::ops::RangeInclusive;
 use std::path::PathBuf;
 
 /// The differences between the scenes in the flags that all of them take.
@@ -136,6 +137,13 @@ pub fn count(text: &str) -> Result<u64, String> {
         Ok(number) => Ok(number),
         Err(_) => Err(format!("`{}` is not a whole number above zero", text.trim())),
     }
+}
+
+/// A whole number in a range, ends included.
+pub fn count_within(text: &str, range: RangeInclusive<usize>) -> Result<usize, String> {
+    let number = count(text)?;
+    let within = usize::try_from(number).ok().filter(|number| range.contains(number));
+    within.ok_or_else(|| format!("`{number}` is not from {} to {}", range.start(), range.end()))
 }
 
 /// `N` finite numbers, as in `1,-2.5,3e-2`.

@@ -11,7 +11,7 @@ mod watch;
 use clap::Parser;
 use clebsch_examples::claims::Claims;
 use clebsch_examples::csv::Csv;
-use clebsch_examples::flags::{Run, Scene, count, finite, parse, positive};
+use clebsch_examples::flags::{Run, Scene, count_within, finite, parse, positive};
 use clebsch_examples::scene::{Failure, conclude, say};
 use clebsch_examples::table::Table;
 use std::process::ExitCode;
@@ -55,10 +55,7 @@ struct Flags {
 
 /// A number of sites that is no surprise for the memory.
 fn sizes(text: &str) -> Result<usize, String> {
-    match count(text)? {
-        number @ 4..=4096 => Ok(number as usize),
-        number => Err(format!("`{number}` is not from 4 to 4096")),
-    }
+    count_within(text, 4..=4096)
 }
 
 fn main() -> ExitCode {

@@ -169,7 +169,7 @@ errors! {
             site: usize,
             /// The site from which paths start.
             from: usize,
-        } => "no path of edges leads from the site {from} to the site {site}: leave sites without edges to the others out of the lattice";
+        } => "no path of edges leads from the site {from} to the site {site}: start at a site of the lattice, and leave sites without edges to the others out of it";
         /// The factor of over-relaxation is not between 0 and 2.
         OverRelaxation {
             /// The factor.

@@ -50,7 +50,8 @@ pub struct Multigrid<'a, S: Clebsch + Clone, const D: usize, P: Population> {
 impl<'a, S: StaticField<Scalar: Real> + Field<D> + Clone, P: Population, const D: usize>
     Relaxation<'a, S, Grid<T<S>, D>, P>
 {
-    /// Relaxation by cycles over this grid and coarser ones, with this tolerance.
+    /// Relaxation by cycles over this grid and coarser ones, with this tolerance. It has its own most cycles, and no factor of
+    /// over-relaxation: those given before are not read.
     pub fn multigrid(self) -> Multigrid<'a, S, D, P> {
         Multigrid { domain: self.domain, tolerance: self.tolerance, cycles: CYCLES }
     }
@@ -58,7 +59,7 @@ impl<'a, S: StaticField<Scalar: Real> + Field<D> + Clone, P: Population, const D
 
 impl<S: Clebsch + Clone, P: Population, const D: usize> Multigrid<'_, S, D, P> {
     /// The same with another tolerance: the largest correction of a cycle, by its last sweeps or by the coarser grid. It is in the
-    /// coordinates of the group, as provided that of [`Relaxation::tolerance`].
+    /// coordinates of the group. As provided it is that of the relaxation, see [`Relaxation::tolerance`].
     #[must_use]
     pub fn tolerance(self, tolerance: T<S>) -> Self {
         Self { tolerance, ..self }

@@ -22,8 +22,8 @@ const FOLDS: f64 = 4.0;
 const BACK: f64 = 1.2;
 /// Halvings of a correction that raises the energy, at most.
 const HALVINGS: usize = 8;
-/// The rounding errors of the energy of a site, in units of ε of all of its terms.
-const ROUNDINGS: i64 = 32;
+/// The rounding errors of an energy, in units of ε of all of its terms.
+pub(super) const ROUNDINGS: i64 = 32;
 /// The least eigenvalue of a stiffness relative to the largest, where one is not positive.
 const LEAST: f64 = 1e-6;
 

@@ -185,7 +185,7 @@ fn lattices() -> Vec<Scene> {
         ),
         scene(
             reconstructed(&[identity; 3], 5),
-            &["no path of edges leads from the site 5 to the site 0", "out of the lattice"],
+            &["no path of edges leads from the site 5 to the site 0", "start at a site of the lattice"],
         ),
         scene(
             relaxed(film.relax().sweeps(1), 1.0),

@@ -2,7 +2,7 @@
 
 use super::coarse::{Between, Coarse};
 use crate::field::edges::{Configured, Placed};
-use crate::field::relaxation::{Rate, sweep};
+use crate::field::relaxation::{ROUNDINGS, Rate, sweep};
 use crate::field::{Domain, Field, Grid, Population};
 use crate::parts::{Mu, Q, T};
 use crate::space::larger;
@@ -24,8 +24,6 @@ const SETTLED: f64 = 1e-2;
 const STRONG: f64 = 0.4;
 /// Halvings of a correction that raises the energy, at most.
 const HALVINGS: usize = 4;
-/// The rounding errors of an energy, in units of ε of all of its terms.
-const ROUNDINGS: i64 = 32;
 
 /// One grid.
 ///
