@@ -88,6 +88,15 @@ errors! {
             /// The sites in this direction.
             sites: usize,
         } => "the grid has {sites} sites in direction {direction}: give each direction at least one, and all of them fewer than memory has";
+        /// A slab of a grid has no row, or rows that are not there.
+        Rows {
+            /// Its first row, from 0 on.
+            first: usize,
+            /// The row behind its last one.
+            end: usize,
+            /// The rows of the grid.
+            rows: usize,
+        } => "the slab has the rows {first}..{end} of a grid with {rows} rows: give it at least one, and none beyond the last";
         /// A spacing of a grid is zero, negative, NaN or infinite.
         Spacing {
             /// The direction, from 0 on.

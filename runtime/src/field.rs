@@ -30,6 +30,7 @@ mod residuals;
 #[cfg(feature = "serde")]
 mod saved;
 mod sites;
+mod slab;
 mod stability;
 mod stepper;
 mod sweep;
@@ -51,6 +52,7 @@ pub use saved::SavedField;
 #[cfg(feature = "alloc")]
 pub use sites::Various;
 pub use sites::{Alike, Population};
+pub use slab::Slab;
 pub use stepper::{FieldState, FieldStepper};
 
 use crate::parts::{Mu, Parts, Q, T};
@@ -213,6 +215,11 @@ pub trait Field<const D: usize>: FieldSite {
     /// Whether the force on a site is found from all of its edges at once, by [`force_inside`](Self::force_inside).
     #[doc(hidden)]
     const GATHERS: bool;
+
+    /// The number of neighbours on each side, in a direction, on which the force on a site depends. Edges join a site to the next one, so it is 1.
+    ///
+    /// A [`Slab`](crate::Slab) has so many rows of its neighbours.
+    const REACH: usize = 1;
 
     /// The energy U of the edge from `q` to its neighbour `next` in a direction, in joules: the value of the closure of `space`.
     /// Directions count from 0; one that is not there is taken for the last. `spacing` has the spacings of all directions.

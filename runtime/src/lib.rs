@@ -58,6 +58,7 @@
 //! | step many bodies at once | [many bodies](crate#many-bodies), on lanes and on all cores |
 //! | step N equal sites that are tied to each other | a const generic N: an array of sites is a system, [`Stepper::sites`] or [`Stepper::joined_sites`] steps them in [`SiteStorage`]; the macro derives [`Power`] |
 //! | step a field, the same site at each place of a grid or a mesh | the key `space`; [`Field::grid`] gives a [`Domain`], whose [`FieldStepper`] steps a [`FieldState`] |
+//! | step some rows of a field, the others elsewhere | [`Domain::slab`] gives a [`Slab`]; [`FieldStepper::advance_exchanging`] |
 //! | choose a stable step of a field | [`Domain::stable_step`] and [`FieldStepper::suggest_step_size`] |
 //! | step the elements of edges in place of configurations | `emit = [connection]`; [`ConnectedField`], `Domain::connection` |
 //! | find where a field without a cost rests | [`Domain::relax`]; [`Relaxation`] and [`Relaxed`], `Multigrid` on grids |
@@ -208,7 +209,7 @@ pub use error::Error;
 pub use field::SavedField;
 pub use field::{
     Alike, ConnectedField, Domain, Field, FieldSite, FieldState, FieldStepper, Grid, Lattice, MovingField, Population,
-    Relaxation, Relaxed, Side, Sides, StaticField,
+    Relaxation, Relaxed, Side, Sides, Slab, StaticField,
 };
 #[cfg(feature = "alloc")]
 pub use field::{CellComplex, ConnectionState, ConnectionStepper, Mesh, Multigrid, Various};

@@ -56,6 +56,11 @@ impl<S: Clebsch + Clone, G> Domain<S, G> {
 }
 
 impl<S: Clebsch + Clone, G, P: Population> Domain<S, G, P> {
+    /// Sites with these parameters on a lattice.
+    pub(super) fn of(systems: P::Of<S>, lattice: G) -> Self {
+        Self { systems, lattice }
+    }
+
     getters! {
         /// The places of the sites.
         ref lattice: G;
@@ -67,7 +72,6 @@ impl<S: Clebsch + Clone, G, P: Population> Domain<S, G, P> {
     }
 
     /// The declared sites.
-    #[cfg(feature = "alloc")]
     pub(super) fn systems(&self) -> &P::Of<S> {
         &self.systems
     }

@@ -1,12 +1,13 @@
 //! The edges at a site, one by one.
 
-use super::lattice::summed;
+use super::lattice::{rows_of, summed};
 use super::{FieldSite, Grid, Lattice, Population};
 use crate::parts::{Mu, Q, T};
 use crate::space::plus;
 use crate::stepper::check_on_orbit;
 use crate::{Clebsch, Error, Scalar, SiteError, Space};
 use core::marker::PhantomData;
+use core::ops::Range;
 use num_traits::Zero;
 
 /// An edge of a lattice: its direction, and the numbers of the sites at its ends.
@@ -87,10 +88,15 @@ where
 
     /// The energy of all sites and edges at a time, in joules. Loads have none.
     pub(super) fn energy(&self, t: T<S>) -> T<S> {
+        summed(rows_of(self.lattice.own(), self.lattice.row_length()).map(|row| self.energy_of(t, row)))
+    }
+
+    /// The energy of some sites, and of the edges that start there.
+    pub(super) fn energy_of(&self, t: T<S>, row: Range<usize>) -> T<S> {
         let Some(first) = self.systems.first() else { return T::<S>::zero() };
         let potential = |site| self.site(site).map_or_else(T::<S>::zero, |(system, q)| system.potential(t, q));
-        let sites = (0..self.q.len()).map(|site| self.lattice.share(site) * potential(site));
-        summed(sites) + self.lattice.energy(|site| self.systems.get(P::number(site)).unwrap_or(first), self.q)
+        let sites = row.clone().map(|site| self.lattice.share(site) * potential(site));
+        summed(sites) + self.lattice.energy(|site| self.systems.get(P::number(site)).unwrap_or(first), self.q, row)
     }
 
     /// The energy of a site and of its edges, if it stood at `q`. Behind it is the sum of the sizes of all terms, which tells its rounding.

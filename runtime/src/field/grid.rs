@@ -130,9 +130,8 @@ impl<T: Scalar, const D: usize> Grid<T, D> {
     }
 
     /// The sides of all directions.
-    #[cfg(feature = "alloc")]
     #[inline]
-    pub(super) fn all_sides(&self) -> &[Sides; D] {
+    pub fn all_sides(&self) -> &[Sides; D] {
         &self.sides
     }
 
@@ -179,8 +178,14 @@ impl<T: Scalar, const D: usize> Grid<T, D> {
 
     /// The number of sites that stand next to each other.
     #[inline]
-    pub(super) fn row(&self) -> usize {
+    pub(super) fn line(&self) -> usize {
         self.sizes.last().copied().unwrap_or(1)
+    }
+
+    /// The number of sites with one place in the first direction.
+    #[inline]
+    pub(super) fn row(&self) -> usize {
+        self.sizes.iter().skip(1).fold(1, |all: usize, size| all.saturating_mul(*size))
     }
 
     /// Whether a site may be fixed at all.

@@ -5,6 +5,7 @@ use super::edges::Edge;
 use crate::parts::{Mu, Q, T};
 use crate::space::plus;
 use crate::{Error, Scalar, Space};
+use core::ops::Range;
 use num_traits::{One, Zero};
 
 /// The places of the sites of a field, and the edges between them: a [`Grid`](crate::Grid), or a mesh.
@@ -40,6 +41,18 @@ pub trait Lattice<S: FieldSite>: Clone {
     /// # Errors
     /// [`Error::EmptyGrid`] or [`Error::Spacing`].
     fn check(&self) -> Result<(), Error>;
+
+    /// The sites that are moved here: all of them as provided.
+    #[doc(hidden)]
+    fn own(&self) -> Range<usize> {
+        0..self.sites()
+    }
+
+    /// The number of sites in a row. Sums are added row by row.
+    #[doc(hidden)]
+    fn row_length(&self) -> usize {
+        RUN
+    }
 
     /// How many sites of the declaration a site stands for: its potential is multiplied by it. 1 as provided.
     #[doc(hidden)]
@@ -87,13 +100,13 @@ pub trait Lattice<S: FieldSite>: Clone {
         force
     }
 
-    /// The energy of all edges.
+    /// The energy of the edges that start at some sites.
     #[doc(hidden)]
-    fn energy<'s>(&self, site: impl Fn(usize) -> &'s S + Copy, q: &[Q<S>]) -> T<S>
+    fn energy<'s>(&self, site: impl Fn(usize) -> &'s S + Copy, q: &[Q<S>], starts: Range<usize>) -> T<S>
     where
         S: 's,
     {
-        summed((0..self.sites()).map(|number| {
+        summed(starts.map(|number| {
             let mut energy = T::<S>::zero();
             self.visit_edges(number, |edge, end| {
                 let [from, to] = edge.ends;
@@ -127,19 +140,45 @@ pub(super) fn times<S: FieldSite>(force: &Mu<S>, weight: T<S>) -> Mu<S> {
     force.zip_map(force, |force, _| weight * force)
 }
 
+/// The rows of some sites, each of so many; the last one may be shorter.
+pub(super) fn rows_of(sites: Range<usize>, length: usize) -> impl Iterator<Item = Range<usize>> {
+    let end = sites.end;
+    sites.step_by(length.max(1)).map(move |start| start..start.saturating_add(length.max(1)).min(end))
+}
+
 /// The most numbers that are added one after the other.
 const RUN: usize = 256;
 
 /// The sum of many numbers. Runs are added by themselves first, so that less is rounded away.
-pub(super) fn summed<T: Scalar>(numbers: impl Iterator<Item = T>) -> T {
-    let (mut total, mut run, mut count) = (T::zero(), T::zero(), 0);
-    for number in numbers {
-        run += number;
-        count += 1;
-        if count == RUN {
-            total += run;
-            (run, count) = (T::zero(), 0);
+#[derive(Clone, Copy)]
+pub(super) struct Sum<T> {
+    total: T,
+    run: T,
+    count: usize,
+}
+
+impl<T: Scalar> Sum<T> {
+    pub(super) fn none() -> Self {
+        Self { total: T::zero(), run: T::zero(), count: 0 }
+    }
+
+    pub(super) fn add(&mut self, number: T) {
+        self.run += number;
+        self.count += 1;
+        if self.count == RUN {
+            self.total += self.run;
+            (self.run, self.count) = (T::zero(), 0);
         }
     }
-    total + run
+
+    pub(super) fn value(&self) -> T {
+        self.total + self.run
+    }
+}
+
+/// The sum of many numbers, as [`Sum`].
+pub(super) fn summed<T: Scalar>(numbers: impl Iterator<Item = T>) -> T {
+    let mut sum = Sum::none();
+    numbers.for_each(|number| sum.add(number));
+    sum.value()
 }

@@ -28,9 +28,8 @@ pub trait Population {
     ) -> Result<Self::Of<W>, E>;
 
     /// The values of some of the sites.
-    #[cfg(feature = "alloc")]
     #[doc(hidden)]
-    fn some<V: Clone>(values: &Self::Of<V>, sites: &[usize]) -> Self::Of<V>;
+    fn some<V: Clone>(values: &Self::Of<V>, sites: impl Iterator<Item = usize>) -> Self::Of<V>;
 }
 
 /// All sites of a field have the same parameters.
@@ -69,8 +68,7 @@ impl Population for Alike {
         Ok([make(0, value)?])
     }
 
-    #[cfg(feature = "alloc")]
-    fn some<V: Clone>(value: &[V; 1], _: &[usize]) -> [V; 1] {
+    fn some<V: Clone>(value: &[V; 1], _: impl Iterator<Item = usize>) -> [V; 1] {
         value.clone()
     }
 }
@@ -113,7 +111,7 @@ impl Population for Various {
         values.iter().enumerate().map(|(site, value)| make(site, value)).collect()
     }
 
-    fn some<V: Clone>(values: &alloc::vec::Vec<V>, sites: &[usize]) -> alloc::vec::Vec<V> {
-        sites.iter().filter_map(|site| values.get(*site).cloned()).collect()
+    fn some<V: Clone>(values: &alloc::vec::Vec<V>, sites: impl Iterator<Item = usize>) -> alloc::vec::Vec<V> {
+        sites.filter_map(|site| values.get(site).cloned()).collect()
     }
 }

@@ -1,7 +1,7 @@
 //! Steps of all sites of a field, in place.
 
 use super::edges::Configured;
-use super::lattice::summed;
+use super::lattice::{Sum, rows_of, summed};
 use super::{Alike, FieldSite, Lattice, Population};
 use crate::fields::getters;
 use crate::parts::{Mu, Q, T, U};
@@ -11,6 +11,7 @@ use crate::stepper::{check_momentum, check_on_orbit, check_step_size};
 use crate::{Clebsch, Conserved, Conserves, Declared, Error, Method, Scalar, SiteError, Space, Time};
 use core::fmt::{self, Debug, Formatter};
 use core::marker::PhantomData;
+use core::ops::Range;
 use num_traits::Zero;
 
 /// The most sizes of the parts of a step: those of order 8.
@@ -219,7 +220,7 @@ impl<S: FieldSite + Clone, G: Lattice<S>, P: Population> FieldStepper<S, G, P> {
         Ok(state)
     }
 
-    /// There are a configuration and a momentum for each site, and they can be those of a state. Those of fixed sites become 0.
+    /// There are a configuration and a momentum for each site, and they can be those of a state. Momenta of sites that do not move become 0.
     pub(super) fn check_sites<Points, Momenta>(
         &self,
         state: &mut FieldState<Points, Momenta, S::Time>,
@@ -253,7 +254,7 @@ impl<S: FieldSite + Clone, G: Lattice<S>, P: Population> FieldStepper<S, G, P> {
 
     /// The momenta of sites that do not move, to 0.
     pub(super) fn clear_fixed(&self, mu: &mut [Mu<S>]) {
-        if self.lattice.has_fixed() {
+        if self.lattice.has_fixed() || self.lattice.own().len() < mu.len() {
             let fixed = mu.iter_mut().enumerate().filter(|(i, _)| self.lattice.is_fixed(*i));
             fixed.for_each(|(_, mu)| *mu = Space::origin());
         }
@@ -284,7 +285,76 @@ impl<S: FieldSite + Clone, G: Lattice<S>, P: Population> FieldStepper<S, G, P> {
         Points: AsRef<[Q<S>]> + AsMut<[Q<S>]>,
         Momenta: AsRef<[Mu<S>]> + AsMut<[Mu<S>]>,
     {
-        self.tried(state, steps, |at, q, mu| self.kick(at, q, (0, mu)), |part, sites| self.drift(part, 0, sites, None))
+        let drift = |part: Part<T<S>>, sites: Sites<'_, S>| {
+            let (first, own) = self.own(sites);
+            self.drift(part, first, own, None)
+        };
+        self.tried(state, steps, |at, q, mu| self.kick_own(at, q, mu), drift)
+    }
+
+    /// [`advance`](Self::advance) of a part of a field, whose neighbours are moved elsewhere: see [`Slab`](crate::Slab).
+    ///
+    /// After each move of its own sites `exchange` gets the configurations of all sites here, and the result of the move. It hands its own
+    /// sites on, writes those of neighbours, and gives the result that counts. At the start the state has the sites of neighbours as
+    /// they are then.
+    ///
+    /// ```
+    /// # use clebsch::{Clebsch, Field};
+    /// # use nalgebra::Vector1;
+    /// # #[derive(Clebsch, Clone, Debug)]
+    /// # #[clebsch(
+    /// #     action = |a: Translation<1>, x: Vector1| x + a,
+    /// #     cost   = |h, a| a.norm_squared() / (2 * h),
+    /// #     space  = |dx, x, next| (next - x).norm_squared() / (2 * dx.powi(2)),
+    /// # )]
+    /// # struct Strand;
+    /// let grid = Strand.grid([6]).periodic();
+    /// let (upper, lower) = (grid.slab(0..3)?.stepper(0.1)?, grid.slab(3..6)?.stepper(0.1)?);
+    /// // rows 3 to 5 do the same as rows 0 to 2, so that each part knows its neighbours
+    /// let height = |row: usize| Vector1::new((row % 3) as f64);
+    /// let start = [0, 1, 2, 3, 5].map(height);
+    /// let mut part = upper.state(start, [Vector1::zeros(); 5])?;
+    /// upper.advance_exchanging(&mut part, 100, |q, result| {
+    ///     (q[3], q[4]) = (q[0], q[2]);
+    ///     result
+    /// })?;
+    /// let mut whole = grid.stepper(0.1)?.state([0, 1, 2, 3, 4, 5].map(height), [Vector1::zeros(); 6])?;
+    /// # let grid = Strand.grid([6]).periodic().stepper(0.1)?;
+    /// grid.advance(&mut whole, 100)?;
+    /// assert_eq!(part.configuration()[..3], whole.configuration()[..3]);
+    /// # Ok::<(), clebsch::SiteError>(())
+    /// ```
+    ///
+    /// # Errors
+    /// As [`step`](Self::step), and those of `exchange`.
+    pub fn advance_exchanging<Points, Momenta>(
+        &self,
+        state: &mut FieldState<Points, Momenta, S::Time>,
+        steps: u64,
+        mut exchange: impl FnMut(&mut [Q<S>], Result<(), SiteError>) -> Result<(), SiteError>,
+    ) -> Result<(), SiteError>
+    where
+        Points: AsRef<[Q<S>]> + AsMut<[Q<S>]>,
+        Momenta: AsRef<[Mu<S>]> + AsMut<[Mu<S>]>,
+    {
+        let drift = |part: Part<T<S>>, (q, mu): Sites<'_, S>| {
+            let (first, own) = self.own((&mut *q, mu));
+            let result = self.drift(part, first, own, None);
+            exchange(q, result)
+        };
+        self.tried(state, steps, |at, q, mu| self.kick_own(at, q, mu), drift)
+    }
+
+    /// The sites that are moved here, from a number on.
+    fn own<'s>(&self, (q, mu): Sites<'s, S>) -> (usize, Sites<'s, S>) {
+        let own = self.lattice.own();
+        (own.start, (q.get_mut(own.clone()).unwrap_or_default(), mu.get_mut(own).unwrap_or_default()))
+    }
+
+    /// Adds the forces at a time, times `weight`, to the momenta of the sites that are moved here.
+    fn kick_own(&self, at: (T<S>, T<S>), q: &[Q<S>], mu: &mut [Mu<S>]) {
+        let own = self.lattice.own();
+        self.kick(at, q, (own.start, mu.get_mut(own).unwrap_or_default()));
     }
 
     /// One step, in place, during which the input of the forces on each site is that of `inputs`.
@@ -308,8 +378,11 @@ impl<S: FieldSite + Clone, G: Lattice<S>, P: Population> FieldStepper<S, G, P> {
         if let Some(site) = inputs.iter().position(|u| !u.all_finite()) {
             return at(site, Err(Error::NotFinite { name: "the input" }));
         }
-        let drift = |part: Part<T<S>>, sites: Sites<'_, S>| self.drift(part, 0, sites, Some(inputs));
-        self.tried(state, 1, |at, q, mu| self.kick(at, q, (0, mu)), drift)
+        let drift = |part: Part<T<S>>, sites: Sites<'_, S>| {
+            let (first, own) = self.own(sites);
+            self.drift(part, first, own, Some(inputs))
+        };
+        self.tried(state, 1, |at, q, mu| self.kick_own(at, q, mu), drift)
     }
 
     /// One step, in place, with a visit of the configurations before each kick of this weight.
@@ -324,9 +397,13 @@ impl<S: FieldSite + Clone, G: Lattice<S>, P: Population> FieldStepper<S, G, P> {
     {
         let kick = |(t, weight): (T<S>, T<S>), q: &[Q<S>], mu: &mut [Mu<S>]| {
             visit(weight, q);
-            self.kick((t, weight), q, (0, mu));
+            self.kick_own((t, weight), q, mu);
         };
-        self.tried(state, 1, kick, |part, sites| self.drift(part, 0, sites, None))
+        let drift = |part: Part<T<S>>, sites: Sites<'_, S>| {
+            let (first, own) = self.own(sites);
+            self.drift(part, first, own, None)
+        };
+        self.tried(state, 1, kick, drift)
     }
 
     /// Steps made of kicks and drifts of all sites, and a note in the state where one fails.
@@ -335,7 +412,7 @@ impl<S: FieldSite + Clone, G: Lattice<S>, P: Population> FieldStepper<S, G, P> {
         state: &mut FieldState<Points, Momenta, S::Time>,
         steps: u64,
         kick: impl FnMut((T<S>, T<S>), &[Q<S>], &mut [Mu<S>]),
-        drift: impl Fn(Part<T<S>>, Sites<'_, S>) -> Result<(), SiteError>,
+        drift: impl FnMut(Part<T<S>>, Sites<'_, S>) -> Result<(), SiteError>,
     ) -> Result<(), SiteError>
     where
         Points: AsRef<[Q<S>]> + AsMut<[Q<S>]>,
@@ -354,7 +431,7 @@ impl<S: FieldSite + Clone, G: Lattice<S>, P: Population> FieldStepper<S, G, P> {
         state: &mut FieldState<Points, Momenta, S::Time>,
         steps: u64,
         mut kick: impl FnMut((T<S>, T<S>), &[Q<S>], &mut [Mu<S>]),
-        drift: impl Fn(Part<T<S>>, Sites<'_, S>) -> Result<(), SiteError>,
+        mut drift: impl FnMut(Part<T<S>>, Sites<'_, S>) -> Result<(), SiteError>,
     ) -> Result<(), SiteError>
     where
         Points: AsRef<[Q<S>]> + AsMut<[Q<S>]>,
@@ -451,10 +528,40 @@ impl<S: FieldSite + Clone, G: Lattice<S>, P: Population> FieldStepper<S, G, P> {
         Points: AsRef<[Q<S>]>,
         Momenta: AsRef<[Mu<S>]>,
     {
-        Ok(self.kinetic_energy(state)? + self.configured(state.configuration.as_ref()).energy(state.time.now()))
+        Ok(self.total(self.energy_of_rows(state)?))
+    }
+
+    /// The energies of the sites that are moved here, row by row, each with the energies of the edges that start there, in joules.
+    ///
+    /// In a grid the sites of a row have one place in the first direction. [`energy`](Self::energy) is the [`total`](Self::total).
+    ///
+    /// # Errors
+    /// As [`energy`](Self::energy).
+    pub fn energy_of_rows<'s, Points, Momenta>(
+        &'s self,
+        state: &'s FieldState<Points, Momenta, S::Time>,
+    ) -> Result<impl Iterator<Item = T<S>> + 's, SiteError>
+    where
+        Points: AsRef<[Q<S>]>,
+        Momenta: AsRef<[Mu<S>]>,
+    {
+        let ((q, mu), t) = (self.parts(state)?, state.time.now());
+        let field = self.configured(q);
+        Ok(self.rows().map(move |row| self.kinetic_energy_of(row.clone(), t, (q, mu)) + field.energy_of(t, row)))
+    }
+
+    /// The sum of numbers of all rows in their order, with the bits of [`energy`](Self::energy) and of [`conserved`](Self::conserved).
+    pub fn total(&self, of_rows: impl IntoIterator<Item = T<S>>) -> T<S> {
+        summed(of_rows.into_iter())
+    }
+
+    /// The sites that are moved here, row by row.
+    fn rows(&self) -> impl Iterator<Item = Range<usize>> + use<S, G, P> {
+        rows_of(self.lattice.own(), self.lattice.row_length())
     }
 
     /// The kinetic energies of all sites.
+    #[cfg(feature = "alloc")]
     pub(super) fn kinetic_energy<Points, Momenta>(
         &self,
         state: &FieldState<Points, Momenta, S::Time>,
@@ -463,11 +570,17 @@ impl<S: FieldSite + Clone, G: Lattice<S>, P: Population> FieldStepper<S, G, P> {
         Points: AsRef<[Q<S>]>,
         Momenta: AsRef<[Mu<S>]>,
     {
-        let ((q, mu), t) = (self.parts(state)?, state.time.now());
-        let Some(stage) = self.stage(0) else { return Ok(Zero::zero()) };
-        Ok(summed(q.iter().zip(mu).zip(self.all(0, stage)).map(|((q, mu), (system, constants))| {
+        let (sites, t) = (self.parts(state)?, state.time.now());
+        Ok(summed(self.rows().map(|row| self.kinetic_energy_of(row, t, sites))))
+    }
+
+    /// The kinetic energies of some sites.
+    fn kinetic_energy_of(&self, row: Range<usize>, t: T<S>, (q, mu): Parts<'_, S>) -> T<S> {
+        let Some(stage) = self.stage(0) else { return Zero::zero() };
+        let of_row = |start: usize| q.iter().zip(mu).skip(start).take(row.len());
+        summed(of_row(row.start).zip(self.all(row.start, stage)).map(|((q, mu), (system, constants))| {
             <Declared as Method<S>>::kinetic_energy(system, S::Scheme::whole(constants), t, q, mu)
-        })))
+        }))
     }
 
     /// The momenta that no step changes, sums over all sites. A side that is fixed, or a lattice that is not the same
@@ -484,11 +597,25 @@ impl<S: FieldSite + Clone, G: Lattice<S>, P: Population> FieldStepper<S, G, P> {
         Points: AsRef<[Q<S>]>,
         Momenta: AsRef<[Mu<S>]>,
     {
+        Ok(added(self.conserved_of_rows(state)?))
+    }
+
+    /// The momenta that no step changes, sums over the sites that are moved here, row by row as [`energy_of_rows`](Self::energy_of_rows).
+    ///
+    /// # Errors
+    /// As [`conserved`](Self::conserved).
+    pub fn conserved_of_rows<'s, Points, Momenta, const K: usize>(
+        &'s self,
+        state: &'s FieldState<Points, Momenta, S::Time>,
+    ) -> Result<impl Iterator<Item = Conserved<T<S>, K>> + 's, SiteError>
+    where
+        S: Conserves<Conserved = Conserved<T<S>, K>>,
+        Points: AsRef<[Q<S>]>,
+        Momenta: AsRef<[Mu<S>]>,
+    {
         let (q, mu) = self.parts(state)?;
-        let momenta = || q.iter().zip(mu).zip(self.each()).map(|((q, mu), system)| system.conserved(q, mu));
-        let names = momenta().next().map_or([""; K], |first| *first.names());
-        let values = core::array::from_fn(|k| summed(momenta().map(|momentum| momentum[k])));
-        Ok(Conserved::new(names, values))
+        let momentum = |site: usize| Some(self.system(site)?.conserved(q.get(site)?, mu.get(site)?));
+        Ok(self.rows().map(move |row| added(row.filter_map(momentum))))
     }
 
     pub(super) fn parts<'s, Points, Momenta>(
@@ -503,6 +630,18 @@ impl<S: FieldSite + Clone, G: Lattice<S>, P: Population> FieldStepper<S, G, P> {
         self.check_lengths(q, mu)?;
         Ok((q, mu))
     }
+}
+
+/// The sums of momenta.
+fn added<T: Scalar, const K: usize>(momenta: impl Iterator<Item = Conserved<T, K>>) -> Conserved<T, K> {
+    let (mut names, mut sums) = ([""; K], [Sum::none(); K]);
+    for momentum in momenta {
+        names = *momentum.names();
+        for (sum, (_, momentum)) in sums.iter_mut().zip(momentum.iter()) {
+            sum.add(momentum);
+        }
+    }
+    Conserved::new(names, sums.map(|sum| sum.value()))
 }
 
 /// Moves a site by itself, with the input u of its forces.
@@ -588,12 +727,15 @@ where
     {
         use rayon::prelude::*;
         let kick = |at: (T<S>, T<S>), q: &[Q<S>], mu: &mut [Mu<S>]| {
-            let shares = mu.par_chunks_mut(SHARE).enumerate();
-            shares.for_each(|(number, mu)| self.kick(at, q, (number * SHARE, mu)));
+            let own = self.lattice.own();
+            let first = own.start;
+            let shares = mu.get_mut(own).unwrap_or_default().par_chunks_mut(SHARE).enumerate();
+            shares.for_each(|(number, mu)| self.kick(at, q, (first + number * SHARE, mu)));
         };
-        let drift = |part: Part<T<S>>, (q, mu): Sites<'_, S>| {
+        let drift = |part: Part<T<S>>, sites: Sites<'_, S>| {
+            let (first, (q, mu)) = self.own(sites);
             let shares = q.par_chunks_mut(SHARE).zip(mu.par_chunks_mut(SHARE)).enumerate();
-            let errors = shares.map(|(number, sites)| self.drift(part, number * SHARE, sites, None).err());
+            let errors = shares.map(|(number, sites)| self.drift(part, first + number * SHARE, sites, None).err());
             errors.reduce(|| None, Option::or).map_or(Ok(()), Err)
         };
         self.tried(state, steps, kick, drift)

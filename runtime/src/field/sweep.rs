@@ -1,4 +1,4 @@
-//! The forces on all sites of a grid, row by row. The sites of a row follow each other in the last direction.
+//! The forces on all sites of a grid, line by line. The sites of a line follow each other in the last direction.
 
 use super::edges::Edge;
 use super::{Field, Grid, Lattice};
@@ -65,7 +65,7 @@ impl<'s, S: Field<D> + 's, P: Fn(usize) -> &'s S + Copy, const D: usize> Sweep<'
         }
     }
 
-    /// Adds the forces on the sites of a row that starts at a site.
+    /// Adds the forces on the sites of a line from one on.
     fn gather(&self, start: usize, mu: &mut [Mu<S>]) {
         let inner = self.inner(start, mu.len());
         let last = mu.len().saturating_sub(1);
@@ -93,7 +93,7 @@ impl<'s, S: Field<D> + 's, P: Fn(usize) -> &'s S + Copy, const D: usize> Sweep<'
         }
     }
 
-    /// The sites of a row between its ends, and their neighbours in each direction. `None` on a side of the grid, and for a row
+    /// The sites of a line between its ends, and their neighbours in each direction. `None` on a side of the grid, and for a line
     /// without such sites.
     #[inline]
     #[allow(clippy::type_complexity, reason = "three parts of one slice")]
@@ -141,27 +141,33 @@ impl<'s, S: Field<D> + 's, P: Fn(usize) -> &'s S + Copy, const D: usize> Sweep<'
     /// Visits each edge of some sites by its direction and the numbers of its ends, in an order that does not depend on the others.
     #[inline(always)]
     fn each_edge(&self, sites: Range<usize>, mut visit: impl FnMut(usize, [usize; 2])) {
-        let row = self.grid.row();
-        let meets = |start: usize| start < sites.end && sites.start < start + row;
-        for start in (0..self.q.len()).step_by(row.max(1)) {
-            let place = self.grid.split(start);
-            for d in 0..D {
-                if d + 1 < D {
-                    let Some(next) = self.grid.around(start, &place, d)[1] else { continue };
-                    if meets(start) || meets(next) {
-                        let of_them = |j: &usize| sites.contains(&(start + j)) || sites.contains(&(next + j));
-                        (0..row).filter(of_them).for_each(|j| visit(d, [start + j, next + j]));
-                    }
-                    continue;
+        for start in (0..self.q.len()).step_by(self.grid.line().max(1)) {
+            self.each_edge_of_line(start, &sites, &mut visit);
+        }
+    }
+
+    /// Visits the edges of some sites that start in a line, from its first site on.
+    #[inline(always)]
+    fn each_edge_of_line(&self, start: usize, sites: &Range<usize>, visit: &mut impl FnMut(usize, [usize; 2])) {
+        let line = self.grid.line();
+        let meets = |start: usize| start < sites.end && sites.start < start + line;
+        let place = self.grid.split(start);
+        for d in 0..D {
+            if d + 1 < D {
+                let Some(next) = self.grid.around(start, &place, d)[1] else { continue };
+                if meets(start) || meets(next) {
+                    let of_them = |j: &usize| sites.contains(&(start + j)) || sites.contains(&(next + j));
+                    (0..line).filter(of_them).for_each(|j| visit(d, [start + j, next + j]));
                 }
-                let end = (start + row).min(sites.end.saturating_add(1));
-                ((start + 1).max(sites.start)..end).for_each(|site| visit(d, [site - 1, site]));
-                let last = start + row.saturating_sub(1);
-                if let Some(next) = self.grid.around(last, &self.grid.split(last), d)[1]
-                    && (sites.contains(&last) || sites.contains(&next))
-                {
-                    visit(d, [last, next]);
-                }
+                continue;
+            }
+            let end = (start + line).min(sites.end.saturating_add(1));
+            ((start + 1).max(sites.start)..end).for_each(|site| visit(d, [site - 1, site]));
+            let last = start + line.saturating_sub(1);
+            if let Some(next) = self.grid.around(last, &self.grid.split(last), d)[1]
+                && (sites.contains(&last) || sites.contains(&next))
+            {
+                visit(d, [last, next]);
             }
         }
     }
@@ -197,34 +203,40 @@ impl<S: Field<D>, const D: usize> Lattice<S> for Grid<T<S>, D> {
         if !sweep.gathers {
             return sweep.scatter(first, mu);
         }
-        // row by row; the first and the last one need not be complete
+        // line by line; the first and the last one need not be complete
         let (mut start, mut others) = (first, mu);
         while !others.is_empty() {
             let place = self.split(start).last().copied().unwrap_or(0);
-            let length = self.row().saturating_sub(place).clamp(1, others.len());
-            let (row, behind) = others.split_at_mut_checked(length).unwrap_or_default();
-            sweep.gather(start, row);
+            let length = self.line().saturating_sub(place).clamp(1, others.len());
+            let (line, behind) = others.split_at_mut_checked(length).unwrap_or_default();
+            sweep.gather(start, line);
             (start, others) = (start + length, behind);
         }
     }
 
-    fn energy<'s>(&self, site: impl Fn(usize) -> &'s S + Copy, q: &[Q<S>]) -> T<S>
+    fn row_length(&self) -> usize {
+        self.row()
+    }
+
+    fn energy<'s>(&self, site: impl Fn(usize) -> &'s S + Copy, q: &[Q<S>], starts: Range<usize>) -> T<S>
     where
         S: 's,
     {
-        let (mut total, mut part, mut end) = (T::<S>::zero(), T::<S>::zero(), 0);
+        let mut total = T::<S>::zero();
         let sweep = Sweep { site, gathers: false, grid: self, t: Zero::zero(), weight: Zero::zero(), q };
-        // rows are added by themselves: sums of many numbers lose more
-        sweep.each_edge(0..q.len(), |d, [number, next]| {
-            if number >= end {
-                total += part;
-                (part, end) = (Zero::zero(), end + self.row());
-            }
-            if let (Some(q), Some(neighbour)) = (q.get(number), q.get(next)) {
-                part += site(number).edge_energy(d, self.spacings(), q, neighbour);
-            }
-        });
-        total + part
+        let line = self.line().max(1);
+        let first = starts.start - starts.start.checked_rem(line).unwrap_or(0);
+        // lines are added by themselves: sums of many numbers lose more
+        for start in (first..starts.end).step_by(line) {
+            let mut part = T::<S>::zero();
+            sweep.each_edge_of_line(start, &starts, &mut |d, [number, next]| {
+                if let (true, Some(q), Some(neighbour)) = (starts.contains(&number), q.get(number), q.get(next)) {
+                    part += site(number).edge_energy(d, self.spacings(), q, neighbour);
+                }
+            });
+            total += part;
+        }
+        total
     }
 
     fn visit_edges(&self, site: usize, visit: impl FnMut(Edge, usize)) {

@@ -218,6 +218,10 @@ fn parameters() -> Vec<Scene> {
             refused(WaveMap.grid([3, 3]).spacing([0.5, -0.5]).stepper(0.1)),
             &["the spacing in direction 1 is -0.5", "above zero"],
         ),
+        scene(
+            refused(WaveMap.grid([3, 3]).slab(2..5).map(|part| part.lattice().sites())),
+            &["the rows 2..5 of a grid with 3 rows", "none beyond the last"],
+        ),
         Scene {
             error: {
                 let stepper = WaveMap.grid([2, 2]).stepper(1.25).expect("a stepper");

@@ -12,6 +12,7 @@ mod reference;
 mod refused;
 mod relaxation;
 mod residuals;
+mod slabs;
 mod stability;
 mod threads;
 mod waves;

@@ -102,7 +102,7 @@ where
         let chosen: Vec<usize> = (0..lattice.grid().sites()).map(site).collect();
         let none = alloc::vec![SVector::zeros(); chosen.len()];
         let q = chosen.iter().filter_map(|site| self.q.get(*site).copied()).collect();
-        let systems = P::some(&self.systems, &chosen);
+        let systems = P::some(&self.systems, chosen.iter().copied());
         Some(Self { systems, lattice, q, load: none.clone(), motion: none, chosen, places })
     }
 

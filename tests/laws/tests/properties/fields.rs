@@ -444,6 +444,7 @@ proptest! {
         for ((grid, sides), by_hand) in all.into_iter().zip(expected).zip([Grid::free, Grid::fixed, Grid::periodic]) {
             prop_assert_eq!(grid, Grid::new(sizes).sides([sides; 2]));
             prop_assert_eq!(grid, by_hand(Grid::new(sizes)));
+            prop_assert_eq!(grid.all_sides(), &[sides; 2]);
         }
         let stepper = domain.stepper(0.1).expect("a stepper");
         prop_assert_eq!(*stepper.lattice(), Grid::new(sizes));
@@ -579,7 +580,7 @@ proptest! {
             stepper.energy(&state).expect("an energy")
         };
         let sites: f64 = q.iter().map(|q| system.potential(0.0, q)).sum();
-        near(whole(&q), sites + grid.energy(|_| &system, &q), 1e-12);
+        near(whole(&q), sites + grid.energy(|_| &system, &q, 0..q.len()), 1e-12);
         for site in 0..9 {
             let moved = |a: f64| {
                 let mut q = q.clone();
@@ -691,7 +692,80 @@ proptest! {
         prop_assert_eq!(Various::each(&weights, double).expect("values")[3], weights[3] * 2.0 + 3.0);
         prop_assert_eq!(Alike::each(&[weights[0]], double).expect("a value"), [weights[0] * 2.0]);
         prop_assert_eq!((Various::number(3), Alike::number(3)), (3, 0));
-        prop_assert_eq!(Various::some(&weights, &[3, 1]), [weights[3], weights[1]]);
-        prop_assert_eq!(Alike::some(&[weights[0]], &[3, 1]), [weights[0]]);
+        prop_assert_eq!(Various::some(&weights, [3, 1].into_iter()), [weights[3], weights[1]]);
+        prop_assert_eq!(Alike::some(&[weights[0]], [3, 1].into_iter()), [weights[0]]);
+    }
+
+    #[test]
+    fn slabs_have_the_edges_of_the_grid(
+        all in states(12), sides in [side(), side()], rows in 1_usize..5, cut in [any::<prop::sample::Index>(), any::<prop::sample::Index>()],
+    ) {
+        let sizes = [rows, 3];
+        let (cut, sites) = (cut.map(|cut| cut.index(rows)), 3 * rows);
+        let rows = cut[0].min(cut[1])..cut[0].max(cut[1]) + 1;
+        let domain = spins().grid(sizes).sides(sides);
+        let part = domain.slab(rows.clone()).expect("a slab");
+        let slab = part.lattice();
+        prop_assert_eq!((slab.grid(), slab.rows()), (domain.lattice(), rows.clone()));
+        prop_assert_eq!((Lattice::<Spins>::own(slab), Lattice::<Spins>::row_length(slab)), (slab.own(), 3));
+        let number = |site: usize| domain.lattice().index(slab.place(site).expect("a place")).expect("a site");
+        prop_assert_eq!(slab.own().map(number).collect::<Vec<_>>(), (3 * rows.start..3 * rows.end).collect::<Vec<_>>());
+        prop_assert_eq!(slab.place(slab.sites()), None);
+        // rows in the order of the grid, each once
+        let numbers: Vec<usize> = (0..slab.sites()).map(number).collect();
+        prop_assert!(numbers.is_sorted_by(|a, b| a < b));
+        for row in 0..sizes[0] + 1 {
+            let expected = (0..slab.sites()).find(|site| numbers[*site] == 3 * row).map(|site| site..site + 3);
+            prop_assert_eq!(slab.row(row), expected);
+        }
+        let mut there: Vec<usize> = slab.rows().chain(slab.rows_before()).chain(slab.rows_after()).collect();
+        there.sort_unstable();
+        there.dedup();
+        prop_assert_eq!(there.len() * 3, slab.sites());
+        // the edges at each site that is moved here, in the same order from the lower rows on
+        for site in slab.own() {
+            let (mut here, mut expected) = (Vec::new(), Vec::new());
+            Lattice::<Spins>::visit_edges(slab, site, |edge, end| here.push((edge.ends.map(number), end)));
+            Lattice::<Spins>::visit_edges(domain.lattice(), number(site), |edge, end| expected.push((edge.ends, end)));
+            prop_assert_eq!(here, expected);
+        }
+        for site in 0..slab.sites() {
+            let moves = slab.own().contains(&site) && !domain.lattice().is_fixed(number(site));
+            prop_assert_eq!(Lattice::<Spins>::is_fixed(slab, site), !moves);
+        }
+        // sums, row by row
+        let (q, mu) = (&all.0[..sites], &all.1[..sites]);
+        let here = |values: &[Vector3<f64>]| numbers.iter().map(|site| values[*site]).collect::<Vec<_>>();
+        let springs = FreeSpins { stiffness: 0.9, exchange: 0.4 }.grid(sizes).sides(sides);
+        let stepper = springs.clone().stepper(0.05).expect("a stepper");
+        let state = stepper.state(q.to_vec(), mu.to_vec()).expect("a state");
+        let (mut energies, mut momenta) = (Vec::new(), Vec::new());
+        for rows in [0..rows.start, rows.clone(), rows.end..sizes[0]].into_iter().filter(|rows| !rows.is_empty()) {
+            let part = springs.slab(rows).expect("a slab").various(|_| FreeSpins { stiffness: 0.9, exchange: 0.4 });
+            let numbers: Vec<usize> = (0..part.lattice().sites()).map(|site| domain.lattice().index(part.lattice().place(site).expect("a place")).expect("a site")).collect();
+            let stepper = part.stepper(0.05).expect("a stepper");
+            let (q, mu): (Vec<_>, Vec<_>) = numbers.iter().map(|site| (q[*site], mu[*site])).unzip();
+            let state = stepper.state(q, mu).expect("a state");
+            energies.extend(stepper.energy_of_rows(&state).expect("energies"));
+            momenta.extend(stepper.conserved_of_rows(&state).expect("momenta"));
+        }
+        prop_assert_eq!(stepper.total(energies), stepper.energy(&state).expect("an energy"));
+        let expected = stepper.conserved(&state).expect("momenta");
+        for k in 0..3 {
+            prop_assert_eq!(stepper.total(momenta.iter().map(|momenta| momenta[k])), expected[k]);
+        }
+        // a slab whose neighbours do not move
+        let stepper = part.stepper(0.02).expect("a stepper");
+        let (mut alone, mut told) = (stepper.state(here(q), here(mu)).expect("a state"), stepper.state(here(q), here(mu)).expect("a state"));
+        let mut calls = 0;
+        let results = [stepper.advance(&mut alone, 2), stepper.advance_exchanging(&mut told, 2, |_, result| { calls += 1; result })];
+        prop_assert_eq!(&results[0], &results[1]);
+        if results[0].is_ok() {
+            prop_assert_eq!((&alone, calls), (&told, 2));
+        }
+        let stop = SiteError { site: Some(1), error: Error::NotFinite { name: "a row" } };
+        let mut stopped = stepper.state(here(q), here(mu)).expect("a state");
+        prop_assert_eq!(stepper.advance_exchanging(&mut stopped, 2, |_, _| Err(stop)), Err(stop));
+        prop_assert_eq!(stepper.advance(&mut stopped, 1), Err(stop));
     }
 }

@@ -55,7 +55,7 @@ pub const PROPERTIES: &[(&str, &[Property])] = &[
     ]),
     ("tests/laws/tests/properties/fields.rs", &[
         ("grids_number_their_sites",              &["Grid::new", "Grid::sizes", "Grid::sites", "Grid::index", "Grid::place", "Grid::spacing", "Grid::spacings", "Lattice::sites", "Lattice::check"]),
-        ("sides_fix_their_sites",                 &["Grid::sides", "Grid::free", "Grid::fixed", "Grid::periodic", "Grid::is_fixed", "Domain::sides", "Domain::free", "Domain::fixed", "Domain::periodic", "Domain::lattice", "Lattice::has_fixed", "Lattice::is_fixed", "FieldStepper::lattice"]),
+        ("sides_fix_their_sites",                 &["Grid::sides", "Grid::all_sides", "Grid::free", "Grid::fixed", "Grid::periodic", "Grid::is_fixed", "Domain::sides", "Domain::free", "Domain::fixed", "Domain::periodic", "Domain::lattice", "Lattice::has_fixed", "Lattice::is_fixed", "FieldStepper::lattice"]),
         ("forces_of_edges_are_slopes",            &["Field::edge_energy", "Field::edge_forces", "FieldSite::force_on_site", "Field::force_inside"]),
         ("changes_of_forces_are_slopes",          &["Field::edge_forces_along", "FieldSite::force_on_site_along", "FieldSite::momentum_of_velocity", "Lattice::visit_edges", "Lattice::forces", "Lattice::forces_along"]),
         ("stable_steps_are_below_all_frequencies", &["Domain::system", "Domain::stable_step", "FieldStepper::stable_step", "FieldStepper::check_stable", "FieldStepper::suggest_step_size"]),
@@ -70,6 +70,7 @@ pub const PROPERTIES: &[(&str, &[Property])] = &[
         ("kicks_are_slopes_of_the_energy",        &["Lattice::kick", "Lattice::force", "Lattice::share", "Lattice::energy", "FieldStepper::energy", "Domain::spacing", "Domain::stepper"]),
         ("fields_run_back",                       &["FieldStepper::step", "FieldStepper::advance", "FieldStepper::step_with", "FieldStepper::state", "FieldStepper::step_size", "FieldState::configuration", "FieldState::momentum", "FieldState::steps", "FieldState::time", "FieldState::into_storage", "Field::grid"]),
         ("saved_fields_resume_bit_for_bit",       &["FieldStepper::resume"]),
+        ("slabs_have_the_edges_of_the_grid",      &["Domain::slab", "Slab::grid", "Slab::rows", "Slab::sites", "Slab::own", "Slab::place", "Slab::row", "Slab::rows_before", "Slab::rows_after", "Lattice::own", "Lattice::row_length", "FieldStepper::advance_exchanging", "FieldStepper::energy_of_rows", "FieldStepper::conserved_of_rows", "FieldStepper::total"]),
         ("total_momenta_stay",                    &["FieldStepper::conserved", "FieldStepper::par_advance", "FieldStepper::system", "Domain::various", "Population::each", "Population::number", "Population::some"]),
     ]),
     ("tests/laws/tests/properties/derivatives.rs", &[
