@@ -141,33 +141,27 @@ impl<'s, S: Field<D> + 's, P: Fn(usize) -> &'s S + Copy, const D: usize> Sweep<'
     /// Visits each edge of some sites by its direction and the numbers of its ends, in an order that does not depend on the others.
     #[inline(always)]
     fn each_edge(&self, sites: Range<usize>, mut visit: impl FnMut(usize, [usize; 2])) {
-        for start in (0..self.q.len()).step_by(self.grid.line().max(1)) {
-            self.each_edge_of_line(start, &sites, &mut visit);
-        }
-    }
-
-    /// Visits the edges of some sites that start in a line, from its first site on.
-    #[inline(always)]
-    fn each_edge_of_line(&self, start: usize, sites: &Range<usize>, visit: &mut impl FnMut(usize, [usize; 2])) {
         let line = self.grid.line();
         let meets = |start: usize| start < sites.end && sites.start < start + line;
-        let place = self.grid.split(start);
-        for d in 0..D {
-            if d + 1 < D {
-                let Some(next) = self.grid.around(start, &place, d)[1] else { continue };
-                if meets(start) || meets(next) {
-                    let of_them = |j: &usize| sites.contains(&(start + j)) || sites.contains(&(next + j));
-                    (0..line).filter(of_them).for_each(|j| visit(d, [start + j, next + j]));
+        for start in (0..self.q.len()).step_by(line.max(1)) {
+            let place = self.grid.split(start);
+            for d in 0..D {
+                if d + 1 < D {
+                    let Some(next) = self.grid.around(start, &place, d)[1] else { continue };
+                    if meets(start) || meets(next) {
+                        let of_them = |j: &usize| sites.contains(&(start + j)) || sites.contains(&(next + j));
+                        (0..line).filter(of_them).for_each(|j| visit(d, [start + j, next + j]));
+                    }
+                    continue;
                 }
-                continue;
-            }
-            let end = (start + line).min(sites.end.saturating_add(1));
-            ((start + 1).max(sites.start)..end).for_each(|site| visit(d, [site - 1, site]));
-            let last = start + line.saturating_sub(1);
-            if let Some(next) = self.grid.around(last, &self.grid.split(last), d)[1]
-                && (sites.contains(&last) || sites.contains(&next))
-            {
-                visit(d, [last, next]);
+                let end = (start + line).min(sites.end.saturating_add(1));
+                ((start + 1).max(sites.start)..end).for_each(|site| visit(d, [site - 1, site]));
+                let last = start + line.saturating_sub(1);
+                if let Some(next) = self.grid.around(last, &self.grid.split(last), d)[1]
+                    && (sites.contains(&last) || sites.contains(&next))
+                {
+                    visit(d, [last, next]);
+                }
             }
         }
     }
@@ -222,19 +216,28 @@ impl<S: Field<D>, const D: usize> Lattice<S> for Grid<T<S>, D> {
     where
         S: 's,
     {
-        let mut total = T::<S>::zero();
-        let sweep = Sweep { site, gathers: false, grid: self, t: Zero::zero(), weight: Zero::zero(), q };
-        let line = self.line().max(1);
-        let first = starts.start - starts.start.checked_rem(line).unwrap_or(0);
+        let (mut total, mut start, along) = (T::<S>::zero(), starts.start, D.saturating_sub(1));
         // lines are added by themselves: sums of many numbers lose more
-        for start in (first..starts.end).step_by(line) {
-            let mut part = T::<S>::zero();
-            sweep.each_edge_of_line(start, &starts, &mut |d, [number, next]| {
-                if let (true, Some(q), Some(neighbour)) = (starts.contains(&number), q.get(number), q.get(next)) {
+        while start < starts.end {
+            let (place, mut part) = (self.split(start), T::<S>::zero());
+            let to_end = self.line().saturating_sub(place.last().copied().unwrap_or(0)).max(1);
+            let end = starts.end.min(start + to_end);
+            let mut add = |d: usize, [number, next]: [usize; 2]| {
+                if let (Some(q), Some(neighbour)) = (q.get(number), q.get(next)) {
                     part += site(number).edge_energy(d, self.spacings(), q, neighbour);
                 }
-            });
+            };
+            for d in 0..along {
+                if let Some(next) = self.around(start, &place, d)[1] {
+                    (start..end).zip(next..).for_each(|(number, next)| add(d, [number, next]));
+                }
+            }
+            (start + 1..end).for_each(|next| add(along, [next - 1, next]));
+            if let Some(next) = self.around(end - 1, &self.split(end - 1), along)[1] {
+                add(along, [end - 1, next]);
+            }
             total += part;
+            start = end;
         }
         total
     }
