@@ -5,12 +5,12 @@
 mod fields;
 
 use clebsch::{
-    Clebsch, Conserved, Conserves, Domain, Field, Grid, MovingField, Population, SavedField, Side, Sides, Space,
+    Clebsch, Conserved, Conserves, Domain, Field, Grid, MovingField, Population, Real, SavedField, Side, Sides, Space,
 };
-use fields::{Beads, Crystal, Rod, WaveMap, spin};
+use fields::{Beads, Crystal, Rod, Strand, WaveMap, spin};
 use mpi::topology::SimpleCommunicator;
-use mpi::traits::{Communicator, Root};
-use nalgebra::{Matrix4, Rotation3, Vector2, Vector3, Vector4, Vector6};
+use mpi::traits::{Communicator, Equivalence, Root};
+use nalgebra::{Matrix4, Rotation3, Vector1, Vector2, Vector3, Vector4, Vector6};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 use std::error::Error;
@@ -18,25 +18,26 @@ use std::error::Error;
 /// The steps before the states are saved and read back, and those after it.
 const STEPS: [u64; 2] = [23, 20];
 
-/// Whether all numbers have the same bits.
-fn are_same<V: Space<f64>>(a: &[V], b: &[V]) -> bool {
-    let same = |a: f64, b: f64| f64::from(u8::from(a.to_bits() != b.to_bits()));
-    a.len() == b.len() && a.iter().zip(b).all(|(a, b)| a.zip_map(b, same).sum() == 0.0)
+/// Whether all numbers have the same bits. Those of `f32` are compared as `f64`, which has a place for each of them.
+fn are_same<T: Real, V: Space<T>>(a: &[V], b: &[V]) -> bool {
+    let differ = |a: T, b: T| if a.to_f64().to_bits() == b.to_f64().to_bits() { T::zero() } else { T::one() };
+    a.len() == b.len() && a.iter().zip(b).all(|(a, b)| a.zip_map(b, differ).sum() == T::zero())
 }
 
 type Q<S> = <S as Clebsch>::Configuration;
 type Mu<S> = <S as Clebsch>::Momentum;
 
 /// Steps a field on all ranks and on rank 0 alone.
-fn compare<S, P, const D: usize, const K: usize>(
+fn compare<S, T, P, const D: usize, const K: usize>(
     world: &SimpleCommunicator,
     name: &str,
-    field: &Domain<S, Grid<f64, D>, P>,
-    h: f64,
+    field: &Domain<S, Grid<T, D>, P>,
+    h: T,
     start: impl Fn(usize) -> (Q<S>, Mu<S>),
 ) -> Result<(), Box<dyn Error>>
 where
-    S: Field<D> + MovingField + Clebsch<Scalar = f64> + Conserves<Conserved = Conserved<f64, K>> + Clone,
+    S: Field<D> + MovingField + Clebsch<Scalar = T> + Conserves<Conserved = Conserved<T, K>> + Clone,
+    T: Real + Equivalence,
     Q<S>: Serialize + DeserializeOwned,
     Mu<S>: Serialize + DeserializeOwned,
     S::Time: Serialize + DeserializeOwned,
@@ -116,5 +117,8 @@ fn main() -> Result<(), Box<dyn Error>> {
         let axis = Vector3::new(x.sin(), 0.5 * x.cos(), 0.3);
         (Rotation3::new(axis).into_inner(), Vector3::new(0.1, (0.6 * x).sin() * 0.2, -0.1))
     };
-    compare(&world, "rotations in three directions", &block, 0.05, turn)
+    compare(&world, "rotations in three directions", &block, 0.05, turn)?;
+
+    let height = |site: usize| (Vector1::new((1.7 * site as f32).sin()), Vector1::new(0.1));
+    compare(&world, "a string in f32, order 8", &Strand.grid([50]).fixed(), 0.1, height)
 }

@@ -21,7 +21,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let world = universe.world();
     let sheet = WaveMap.grid([1024, 256]).spacing([0.1, 0.1]).periodic();
 
-    let stepper = clebsch_mpi::slab(&world, &sheet)?.stepper(0.05)?;
+    let stepper = clebsch_mpi::slab(&world, &sheet)?.stepper(0.02)?;
     let mut state = stepper.state(|[i, j]| {
         let tilt = 0.3 * (i as f64 * 0.05).sin() * (j as f64 * 0.1).cos();
         (Vector3::new(tilt.sin(), 0.0, tilt.cos()), Vector3::zeros())

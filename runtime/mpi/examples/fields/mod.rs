@@ -68,6 +68,17 @@ pub struct Beads {
 )]
 pub struct Crystal;
 
+/// A string, its displacement x. Steps of order 8 in single precision.
+#[derive(Clebsch, Clone, Debug)]
+#[clebsch(
+    action = |a: Translation<1>, x: Vector1| x + a,
+    cost   = |h, a| a.norm_squared() / (2 * h),
+    space  = |dx, x, next| (next - x).norm_squared() / (2 * dx.powi(2)),
+    order  = 8,
+    scalar = f32,
+)]
+pub struct Strand;
+
 /// A unit vector by the number of its site, and a momentum across it.
 pub fn spin(site: usize) -> (Vector3<f64>, Vector3<f64>) {
     let x = site as f64;
