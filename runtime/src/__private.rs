@@ -23,7 +23,7 @@ pub use crate::energy::{
     VelocityEquation, kinetic_energy, kinetic_energy_at, kinetic_energy_uniform, legendre_fenchel,
 };
 pub use crate::exponential::{exponential, phi, phi_times};
-pub use crate::field::{ConnectedField, Field, FieldSite, MovingField, StaticField};
+pub use crate::field::{ConnectedField, Field, FieldSite, MovingField, StaticField, drifted, is_finite};
 pub use crate::free_rotation::{
     FreeRotation, KeptRotation, free_momentum, gibbs_vector_of_matrix, gibbs_vector_of_quaternion,
 };
@@ -41,7 +41,7 @@ pub use crate::matrices::{Blocks, axial, determinant, embedded, hat, matrix_of, 
 pub use crate::matrices::{skew, skew_components, skew_outer, skew_times};
 pub use crate::opaque::check_slope;
 pub use crate::orbit::{
-    largest, length_defect, of_length_one, of_length_one_with_rest, orientation_defect, orthogonal,
+    largest, length_defect, near_length_one, of_length_one, of_length_one_with_rest, orientation_defect, orthogonal,
     orthogonal_with_rest, orthogonality_defect, orthonormality_defect, projector, projector_defect,
     projector_with_rest, symmetric, symmetric_with_rest, symmetry_defect,
 };

@@ -57,7 +57,7 @@ pub use stepper::{FieldState, FieldStepper};
 
 use crate::parts::{Mu, Parts, Q, T};
 use crate::space::plus;
-use crate::{Clebsch, Space};
+use crate::{Clebsch, Mask, Scalar, Space};
 
 /// A site of a field by itself. `#[derive(Clebsch)]` implements it where there is the key `space`.
 ///
@@ -101,6 +101,26 @@ pub trait FieldSite: Clebsch {
     #[inline]
     fn force_on_site_along(&self, _t: T<Self>, _q: &Q<Self>, _motion: &Mu<Self>) -> Mu<Self> {
         Space::origin()
+    }
+
+    /// q after a drift that is a formula of q and N, and does not change N: NaN where there is none. Rounding is not yet taken off it.
+    /// `None` where a drift is more, as provided.
+    #[doc(hidden)]
+    #[inline(always)]
+    fn drifted(&self, _c: &Self::Constants, _q: &Q<Self>, _mu: &Mu<Self>) -> Option<Q<Self>> {
+        None
+    }
+
+    /// Whether rounding moves q off its space.
+    #[doc(hidden)]
+    const MENDS: bool = false;
+
+    /// q of such a drift without the rounding that has moved it off its space, and whether it is a configuration. q itself where it is
+    /// finite, as provided.
+    #[doc(hidden)]
+    #[inline(always)]
+    fn mended(q: Q<Self>) -> (Q<Self>, bool) {
+        (q, is_finite(&q))
     }
 
     /// q after a small motion by η, q + η_Q(q) to first order in η.
@@ -335,4 +355,17 @@ pub trait Field<const D: usize>: FieldSite {
     {
         Ok(Domain::new(self.clone(), Mesh::new(vertices, faces)?))
     }
+}
+
+/// q moved by the group element with the coordinates x.
+#[inline(always)]
+pub fn drifted<S: Parts>(system: &S, q: &Q<S>, x: &S::Coordinates) -> Q<S> {
+    system.advance(q, &system.motion(x, || system.increment(x)))
+}
+
+/// Whether the sum of all numbers is finite: then each of them is.
+#[inline(always)]
+pub fn is_finite<T: Scalar>(q: &impl Space<T>) -> bool {
+    let sum = q.sum();
+    (sum * T::zero()).equals(T::zero()).all()
 }

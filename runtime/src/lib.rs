@@ -129,7 +129,7 @@
 
 #[cfg(feature = "alloc")]
 extern crate alloc;
-#[cfg(any(feature = "std", test))]
+#[cfg(any(feature = "std", feature = "rayon", test))]
 extern crate std;
 
 // first, as its page shows methods in the order of modules

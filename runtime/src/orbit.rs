@@ -186,6 +186,14 @@ pub fn of_length_one<T: Scalar, const N: usize>(q: SVector<T, N>) -> SVector<T, 
     q.map(|x| T::select(is_off, x + x * longer, x))
 }
 
+/// The same without a branch, for a q that a rotation has moved. Behind it is whether |q|² is off one by less than 1/1024.
+#[inline(always)]
+pub fn near_length_one<T: Scalar, const N: usize>(q: SVector<T, N>) -> (SVector<T, N>, bool) {
+    let missing = short_of_one(&q);
+    let longer = T::select(is_off_length_one(missing), missing * T::from_ratio(1, 2), T::zero());
+    (q.map(|x| x + x * longer), missing.abs().below(T::from_f64(LARGEST_DEFECT)).all())
+}
+
 /// λ with |q + λq| = 1, from 1 − |q|². NaN in lanes where |q|² is off one by more than [`LARGEST_DEFECT`].
 #[inline(always)]
 pub(crate) fn longer<T: Scalar>(missing: T) -> T {

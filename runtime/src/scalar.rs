@@ -252,7 +252,7 @@ macro_rules! one_number {
 
 /// A floating point type, whose functions are those of `std`, or of `libm` by the name that stands behind.
 macro_rules! floating_point {
-    ($scalar:ident; $($method:ident $(($argument:ident))? $libm:ident),*) => {
+    ($scalar:ident, $sqrt:ident; $($method:ident $(($argument:ident))? $libm:ident),*) => {
         impl Scalar for $scalar {
             $crate::one_number!();
 
@@ -279,6 +279,14 @@ macro_rules! floating_point {
             fn abs(self) -> Self {
                 $scalar::abs(self)
             }
+            #[inline]
+            fn sqrt(self) -> Self {
+                // the same number: the optimiser sees into this root, and takes those of two sites at once
+                #[cfg(any(feature = "std", feature = "rayon"))]
+                { <$scalar>::sqrt(self) }
+                #[cfg(not(any(feature = "std", feature = "rayon")))]
+                { libm::$sqrt(self) }
+            }
             $(
                 #[inline]
                 fn $method(self $(, $argument: Self)?) -> Self {
@@ -292,9 +300,9 @@ macro_rules! floating_point {
     };
 }
 
-floating_point!(f64; sqrt sqrt, sin sin, cos cos, tan tan, asin asin, acos acos, atan atan,
+floating_point!(f64, sqrt; sin sin, cos cos, tan tan, asin asin, acos acos, atan atan,
                 sinh sinh, cosh cosh, tanh tanh, exp exp, ln log, powf(exponent) pow);
-floating_point!(f32; sqrt sqrtf, sin sinf, cos cosf, tan tanf, asin asinf, acos acosf, atan atanf,
+floating_point!(f32, sqrtf; sin sinf, cos cosf, tan tanf, asin asinf, acos acosf, atan atanf,
                 sinh sinhf, cosh coshf, tanh tanhf, exp expf, ln logf, powf(exponent) powf);
 
 #[cfg(test)]

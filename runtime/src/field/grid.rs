@@ -166,14 +166,29 @@ impl<T: Scalar, const D: usize> Grid<T, D> {
 
     /// Whether a site does not move.
     pub fn is_fixed(&self, index: usize) -> bool {
-        let place = self.split(index);
+        self.fixes(&self.split(index))
+    }
+
+    /// Whether the site at a place does not move.
+    #[inline]
+    pub(super) fn fixes(&self, place: &[usize; D]) -> bool {
         (0..D).any(|d| self.sides[d].fixes(place[d], self.sizes[d]))
     }
 
-    /// Whether the sites at a place in a direction are on a fixed side.
+    /// The place of the first site of the next line.
     #[inline]
-    pub(super) fn is_on_fixed_side(&self, direction: usize, place: usize) -> bool {
-        self.sides[direction].fixes(place, self.sizes[direction])
+    pub(super) fn next_line(&self, place: &mut [usize; D]) {
+        let mut places = place.iter_mut().zip(&self.sizes).rev();
+        if let Some((last, _)) = places.next() {
+            *last = 0;
+        }
+        for (place, &size) in places {
+            *place += 1;
+            if *place < size {
+                return;
+            }
+            *place = 0;
+        }
     }
 
     /// The number of sites that stand next to each other.

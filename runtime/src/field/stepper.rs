@@ -492,13 +492,35 @@ impl<S: FieldSite + Clone, G: Lattice<S>, P: Population> FieldStepper<S, G, P> {
         let Some(stage) = self.stage(number) else { return Ok(()) };
         let (has_fixed, none) = (self.lattice.has_fixed(), U::<S>::origin());
         match self.all(first, stage).next() {
-            // the loop that most fields have, without a question about each site
+            // the loops that most fields have, without a question about each site
             Some((system, constants)) if P::ARE_ALIKE && !has_fixed && inputs.is_none() => {
+                let at = At::new(system, constants, t);
+                let alone = S::Scheme::whole(constants);
+                let drifts_alone =
+                    q.first().zip(mu.first()).is_some_and(|(q, mu)| system.drifted(alone, q, mu).is_some());
                 // few at a time, which are still near when they are checked
                 for (number, (q, mu)) in q.chunks_mut(FEW).zip(mu.chunks_mut(FEW)).enumerate() {
                     let first = first + number * FEW;
+                    if drifts_alone {
+                        // without a branch for each site, so that some are moved side by side
+                        for (q, mu) in q.iter_mut().zip(&*mu) {
+                            *q = system.drifted(alone, q, mu).unwrap_or(*q);
+                        }
+                        let mut is_finite = S::MENDS || are_finite(q);
+                        if S::MENDS {
+                            for q in &mut *q {
+                                let is_found;
+                                (*q, is_found) = S::mended(*q);
+                                is_finite &= is_found;
+                            }
+                        }
+                        if !is_finite {
+                            return Err(failed::<S>(at, first, (q, mu)));
+                        }
+                        continue;
+                    }
                     for (i, (q, mu)) in (first..).zip(q.iter_mut().zip(&mut *mu)) {
-                        drift_of_site(At::new(system, constants, t), (q, mu), &none).map_err(|error| (i, error))?;
+                        drift_of_site(at, (q, mu), &none).map_err(|error| (i, error))?;
                     }
                     check_finite_sites(first, (q, mu), q)?;
                 }
@@ -645,7 +667,7 @@ fn added<T: Scalar, const K: usize>(momenta: impl Iterator<Item = Conserved<T, K
 }
 
 /// Moves a site by itself, with the input u of its forces.
-#[inline(always)]
+#[inline]
 fn drift_of_site<S: Clebsch>(
     at: At<'_, S, Declared, Constants<S>>,
     (q, mu): (&mut Q<S>, &mut Mu<S>),
@@ -657,6 +679,22 @@ fn drift_of_site<S: Clebsch>(
     }
     (*q, *mu) = (next, momentum);
     Ok(())
+}
+
+/// The error of the first site that has moved to no configuration. Its momentum is that before the move.
+#[cold]
+fn failed<S: FieldSite>(
+    at: At<'_, S, Declared, Constants<S>>,
+    first: usize,
+    (q, mu): (&[Q<S>], &[Mu<S>]),
+) -> SiteError {
+    let error = Error::NotFinite { name: "the state after a step" };
+    for (site, (q, mu)) in (first..).zip(q.iter().zip(mu)) {
+        if !S::mended(*q).1 {
+            return (site, moved::<S>(at, (q, mu), &U::<S>::origin()).err().unwrap_or(error)).into();
+        }
+    }
+    error.into()
 }
 
 /// The sites that are moved before they are checked.

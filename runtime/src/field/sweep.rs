@@ -14,6 +14,9 @@ fn pushed<S: Field<D>, const D: usize>(mu: &Mu<S>, force: &Mu<S>, weight: T<S>) 
     mu.zip_map(force, |mu, force| mu + weight * force)
 }
 
+/// The neighbours before and after some sites in each direction.
+type Around<'q, S, const D: usize> = ([&'q [Q<S>]; D], [&'q [Q<S>]; D]);
+
 /// A field on a grid at a time.
 struct Sweep<'a, S: Field<D>, P, const D: usize> {
     /// The parameters of a site.
@@ -27,16 +30,15 @@ struct Sweep<'a, S: Field<D>, P, const D: usize> {
 }
 
 impl<'s, S: Field<D> + 's, P: Fn(usize) -> &'s S + Copy, const D: usize> Sweep<'_, S, P, D> {
-    /// The force on one site, wherever it is.
-    fn force_at(&self, index: usize) -> Mu<S> {
+    /// The force on the site at a place, wherever it is.
+    fn force_at(&self, index: usize, place: &[usize; D]) -> Mu<S> {
         let (system, spacing) = ((self.site)(index), self.grid.spacings());
         let Some(q) = self.q.get(index) else { return Space::origin() };
-        let place = self.grid.split(index);
         let (mut before, mut after) = ([q; D], [q; D]);
         let (mut is_inside, mut neighbours) = (self.gathers, [[None; 2]; D]);
         for d in 0..D {
             let there = |site: usize| Some((site, self.q.get(site)?));
-            let around = self.grid.around(index, &place, d).map(|site| site.and_then(there));
+            let around = self.grid.around(index, place, d).map(|site| site.and_then(there));
             match around {
                 [Some((_, first)), Some((_, last))] => (before[d], after[d]) = (first, last),
                 _ => is_inside = false,
@@ -58,63 +60,89 @@ impl<'s, S: Field<D> + 's, P: Fn(usize) -> &'s S + Copy, const D: usize> Sweep<'
         force
     }
 
-    /// Adds the force on one site, if it moves.
-    fn push_at(&self, index: usize, mu: &mut Mu<S>) {
-        if !self.grid.is_fixed(index) {
-            *mu = pushed::<S, D>(mu, &self.force_at(index), self.weight);
+    /// Adds the forces on sites of a line that follow each other. The first one is at a place.
+    fn push_each(&self, start: usize, mut place: [usize; D], mu: &mut [Mu<S>]) {
+        for (index, mu) in (start..).zip(mu) {
+            if !self.grid.fixes(&place) {
+                *mu = pushed::<S, D>(mu, &self.force_at(index, &place), self.weight);
+            }
+            if let Some(last) = place.last_mut() {
+                *last += 1;
+            }
         }
     }
 
-    /// Adds the forces on the sites of a line from one on.
-    fn gather(&self, start: usize, mu: &mut [Mu<S>]) {
-        let inner = self.inner(start, mu.len());
-        let last = mu.len().saturating_sub(1);
-        let Some((own, before, after)) = inner else {
-            mu.iter_mut().enumerate().for_each(|(j, mu)| self.push_at(start + j, mu));
-            return;
+    /// Adds the forces on sites of a line that follow each other. The first one is at a place.
+    fn gather(&self, start: usize, place: [usize; D], mu: &mut [Mu<S>]) {
+        let along = place.last().copied().unwrap_or(0);
+        // the sites without those at the ends of the line
+        let first = usize::from(along == 0);
+        let count = mu.len().saturating_sub(first + usize::from(along + mu.len() >= self.grid.line()));
+        let Some((own, around)) = self.inside(start + first, &place, count) else {
+            return self.push_each(start, place, mu);
         };
-        if let Some(mu) = mu.first_mut() {
-            self.push_at(start, mu);
+        let Some((ahead, others)) = mu.split_at_mut_checked(first) else { return };
+        let Some((between, behind)) = others.split_at_mut_checked(own.len()) else { return };
+        self.push_each(start, place, ahead);
+        self.push_between((self.site)(start), between, own, around);
+        let mut end = place;
+        if let Some(along) = end.last_mut() {
+            *along += first + count;
         }
-        let (system, spacing) = ((self.site)(start), self.grid.spacings());
-        let between = mu.get_mut(1..last).unwrap_or_default();
-        for (k, (mu, q)) in between.iter_mut().zip(own).enumerate() {
-            let (mut left, mut right) = ([q; D], [q; D]);
-            for d in 0..D {
-                let (Some(before), Some(after)) = (before[d].get(k), after[d].get(k)) else { break };
-                (left[d], right[d]) = (before, after);
+        self.push_each(start + first + count, end, behind);
+    }
+
+    /// Adds the forces on sites of a line between their neighbours.
+    #[inline(always)]
+    fn push_between(&self, system: &S, mu: &mut [Mu<S>], own: &[Q<S>], (before, after): Around<'_, S, D>) {
+        // copies: the optimiser does not see that no momentum is a part of the grid, and would divide by the spacings at each site
+        let (spacing, t, weight) = (*self.grid.spacings(), self.t, self.weight);
+        let push = |mu: &mut Mu<S>, q: &Q<S>, around: &[(&Q<S>, &Q<S>)]| {
+            let (mut before, mut after) = ([q; D], [q; D]);
+            for ((before, after), around) in before.iter_mut().zip(&mut after).zip(around) {
+                (*before, *after) = *around;
             }
-            *mu = pushed::<S, D>(mu, &system.force_inside(self.t, spacing, q, &left, &right), self.weight);
-        }
-        if last > 0
-            && let Some(mu) = mu.get_mut(last)
-        {
-            self.push_at(start + last, mu);
+            *mu = pushed::<S, D>(mu, &system.force_inside(t, &spacing, q, &before, &after), weight);
+        };
+        let sites = mu.iter_mut().zip(own);
+        // One zip for each number of directions. An index in a loop over directions is checked at each site, and no two sites are
+        // then pushed side by side.
+        match (before.as_slice(), after.as_slice()) {
+            ([b], [a]) => sites.zip(b.iter().zip(*a)).for_each(|((mu, q), x)| push(mu, q, &[x])),
+            ([b, c], [a, d]) => {
+                let around = b.iter().zip(*a).zip(c.iter().zip(*d));
+                sites.zip(around).for_each(|((mu, q), (x, y))| push(mu, q, &[x, y]));
+            }
+            ([b, c, e], [a, d, f]) => {
+                let around = b.iter().zip(*a).zip(c.iter().zip(*d)).zip(e.iter().zip(*f));
+                sites.zip(around).for_each(|((mu, q), ((x, y), z))| push(mu, q, &[x, y, z]));
+            }
+            _ => {
+                for (k, (mu, q)) in sites.enumerate() {
+                    let mut around = [(q, q); D];
+                    for d in 0..D {
+                        let (Some(before), Some(after)) = (before[d].get(k), after[d].get(k)) else { break };
+                        around[d] = (before, after);
+                    }
+                    push(mu, q, &around);
+                }
+            }
         }
     }
 
-    /// The sites of a line between its ends, and their neighbours in each direction. `None` on a side of the grid, and for a line
-    /// without such sites.
+    /// So many sites of a line from one on between its ends, and their neighbours. In the other directions their place is that of
+    /// `place`. `None` on a side of the grid, and for no sites.
     #[inline]
-    #[allow(clippy::type_complexity, reason = "three parts of one slice")]
-    fn inner(&self, start: usize, length: usize) -> Option<(&[Q<S>], [&[Q<S>]; D], [&[Q<S>]; D])> {
-        let count = length.checked_sub(2).filter(|count| *count > 0)?;
+    fn inside(&self, start: usize, place: &[usize; D], count: usize) -> Option<(&[Q<S>], Around<'_, S, D>)> {
         let part = |first: usize| self.q.get(first..first.checked_add(count)?);
-        let own = part(start + 1)?;
+        let own = part(start).filter(|own| !own.is_empty())?;
         let (mut before, mut after) = ([own; D], [own; D]);
-        let place = self.grid.split(start);
         for d in 0..D {
-            if d + 1 == D {
-                (before[d], after[d]) = (part(start)?, part(start + 2)?);
-                continue;
-            }
-            if self.grid.is_on_fixed_side(d, place[d]) {
-                return None;
-            }
-            let [first, last] = self.grid.around(start, &place, d);
-            (before[d], after[d]) = (part(first? + 1)?, part(last? + 1)?);
+            let [first, last] =
+                if d + 1 < D { self.grid.around(start, place, d) } else { [start.checked_sub(1), Some(start + 1)] };
+            (before[d], after[d]) = (part(first?)?, part(last?)?);
         }
-        Some((own, before, after))
+        Some((own, (before, after)))
     }
 
     /// Adds the forces of all edges of the sites from one on, one edge after the other.
@@ -198,13 +226,14 @@ impl<S: Field<D>, const D: usize> Lattice<S> for Grid<T<S>, D> {
             return sweep.scatter(first, mu);
         }
         // line by line; the first and the last one need not be complete
-        let (mut start, mut others) = (first, mu);
+        let (mut start, mut place, mut others) = (first, self.split(first), mu);
         while !others.is_empty() {
-            let place = self.split(start).last().copied().unwrap_or(0);
-            let length = self.line().saturating_sub(place).clamp(1, others.len());
+            let along = place.last().copied().unwrap_or(0);
+            let length = self.line().saturating_sub(along).clamp(1, others.len());
             let (line, behind) = others.split_at_mut_checked(length).unwrap_or_default();
-            sweep.gather(start, line);
+            sweep.gather(start, place, line);
             (start, others) = (start + length, behind);
+            self.next_line(&mut place);
         }
     }
 

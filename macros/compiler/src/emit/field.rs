@@ -8,7 +8,9 @@ use super::function::Body;
 use super::functions::{CONNECTION, FIELD, FIELD_SITE};
 use super::scope::size;
 use super::{Emitter, flag};
-use crate::derive::Id;
+use crate::derive::{Id, Solution};
+use crate::lower::{Solve, Step};
+use crate::model::LeafSpace;
 
 impl Emitter<'_, '_> {
     /// The implementations of `FieldSite` and of `Field`, where there are edges.
@@ -83,7 +85,9 @@ impl Emitter<'_, '_> {
         let words = |word: &str| (word == "PartsOf").then(|| quote!(<#system as #parts>));
         let of_site = self.written(FIELD_SITE, &scope, &words);
         let order = quote!(const ORDER_OF_FIELD: ::core::primitive::u32 = #order;);
-        let site = self.target.derived(Some(quote!(runtime::FieldSite)), quote!(#has_potential #order #of_site));
+        let drifted = self.drifted();
+        let site =
+            self.target.derived(Some(quote!(runtime::FieldSite)), quote!(#has_potential #order #of_site #drifted));
         let edges = self.target.derived(Some(quote!(runtime::Field<#directions>)), quote!(#gathers #functions));
         let marker = if field.is_static { quote!(runtime::StaticField) } else { quote!(runtime::MovingField) };
         let marker = self.target.derived(Some(marker), TokenStream::new());
@@ -94,5 +98,63 @@ impl Emitter<'_, '_> {
             self.target.derived(Some(quote!(runtime::ConnectedField)), element)
         });
         quote!(#site #edges #marker #connection)
+    }
+
+    /// The momentum equation of a field whose drift moves q alone, by a formula of the momentum alone.
+    pub(super) fn drifts_alone(&self) -> Option<&Solve> {
+        let is_field = self.formulas.field.as_ref().is_some_and(|field| !field.is_static);
+        let [Step { solves, .. }] = &self.program.steps[..] else { return None };
+        let [solve] = &solves[..] else { return None };
+        let is_formula = matches!(solve.solution, Solution::ClosedForm | Solution::Explicit);
+        let are_all = |some: &[usize]| some.iter().copied().eq(0..self.dimension);
+        let is_alone = is_formula && are_all(&solve.components) && are_all(&solve.momenta) && !solve.moves;
+        let others = [
+            Id::StartKick(0),
+            Id::EndKick(0),
+            Id::RestKick(0),
+            Id::StartForce(0),
+            Id::MovingForce(0),
+            Id::EndForce(0),
+            Id::MomentumAfter(0),
+        ];
+        let moves_alone = !others.into_iter().any(|id| self.program.find(id).is_some());
+        (is_field && is_alone && moves_alone && !solve.reads_input && self.is_short()).then_some(solve)
+    }
+
+    /// The drift of such a site.
+    fn drifted(&self) -> Option<TokenStream> {
+        let solve = self.drifts_alone()?;
+        let (equation, configuration) = (self.equation_name(solve), quote!(runtime::Option<Q>));
+        let method = match solve.solution {
+            Solution::Explicit => quote!(explicit),
+            _ => quote!(closed_form_or_nan),
+        };
+        let is_unit = matches!(&self.model.configurations[..], [leaf] if leaf.space == LeafSpace::Unit && leaf.accessor.is_whole());
+        let mended = if is_unit {
+            Some(quote!(runtime::near_length_one(q)))
+        } else {
+            self.on_space().map(|on_space| {
+                quote! {
+                    let (q, rest) = (q, ());
+                    let (q, ()) = #on_space;
+                    (q, runtime::is_finite(&q))
+                }
+            })
+        };
+        let mended = mended.map(|mended| {
+            let mends = flag("MENDS", true);
+            quote! {
+                #mends
+                #[inline(always)]
+                fn mended(q: Q) -> (Q, ::core::primitive::bool) { #mended }
+            }
+        });
+        Some(quote! {
+            #[inline(always)]
+            fn drifted(&self, c: &C, q: &Q, mu: &Mu) -> #configuration {
+                runtime::Some(runtime::drifted(self, q, &#equation::#method(&#equation(self, c), mu)))
+            }
+            #mended
+        })
     }
 }

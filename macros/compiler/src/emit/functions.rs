@@ -306,6 +306,8 @@ functions! {
             let x = { Locals Value0 };
             runtime::below_right_angle(x, { ByReference SineSquared })
         }
+        /// The same without a branch. Where there is none, the root of 1 − |a|² is NaN.
+        fn closed_form_or_nan(&self, mu: &Momenta) -> Vector { Id::ClosedForm(0, 0) => } = { Locals Value0 }
         /// The solution, coordinate after coordinate.
         fn explicit(&self, mu: &Momenta Given) -> Vector { Id::Explicit(0, 0) => Id::Solution(0, 0), Id::Predictor(0, 0) }
         /// Dρ and −ρ(0).

@@ -63,7 +63,7 @@ impl Emitter<'_, '_> {
     }
 
     /// Whether the steps of a single substep are so short that they are inlined wherever they are called.
-    fn is_short(&self) -> bool {
+    pub(super) fn is_short(&self) -> bool {
         let formulas = &self.formulas;
         let is_single = formulas.stepped == 1 && formulas.stages().is_none() && formulas.collocation.is_none();
         is_single && self.program.cost_of_moves(0).total() <= SHORT_STEP
@@ -131,7 +131,7 @@ impl Emitter<'_, '_> {
     }
 
     /// Takes the rounding of many moves off rotations, unit vectors and unit quaternions.
-    fn on_space(&self) -> Option<TokenStream> {
+    pub(super) fn on_space(&self) -> Option<TokenStream> {
         if self.program.turns_in_plane() {
             return None;
         }

@@ -1,6 +1,7 @@
 //! Fields: grids, the forces of edges, and steps of all sites.
 
 use crate::arbitrary::{cases, vector};
+use clebsch::__private as private;
 use clebsch::{
     Alike, CellComplex, Clebsch, Clock, ConnectedField, Error, Field, FieldSite, Grid, Lattice, Mesh, Population,
     SavedField, Side, Sides, SiteError, Various,
@@ -402,6 +403,31 @@ proptest! {
         let moved = spins().moved_by(&q, &(motion * size));
         near((moved - turned(&q, &(motion * size))).amax(), 0.0, 1e-7 * (1.0 + motion.norm_squared()));
         near(moved.norm(), 1.0, 1e-14);
+    }
+
+    /// Where nothing but q drifts, it turns about N by θ with sin θ = h|N|, without a step around it.
+    #[test]
+    fn drifts_alone_turn_unit_vectors((q, mu) in site(), h in 0.0_f64..3.0, defect in -1e-4_f64..1e-4) {
+        let free = FreeSpins { stiffness: 0.8, exchange: 0.4 };
+        let constants = free.constants(h).expect("a step");
+        let moved = free.drifted(&constants, &q, &mu).expect("a drift of q alone");
+        let sine = h * mu.norm();
+        let turn = Rotation3::from_scaled_axis(mu * if sine > 0.0 { sine.asin() / mu.norm() } else { 0.0 });
+        near((moved - turn * q).amax(), 0.0, 1e-14);
+        near((moved - private::drifted(&free, &q, &(mu * h))).amax(), 0.0, 1e-15);
+        let beyond = free.drifted(&constants, &q, &(mu / sine * 1.01)).expect("a drift");
+        prop_assert!(sine == 0.0 || !FreeSpins::mended(beyond).1);
+        let (mended, is_there) = FreeSpins::mended(moved * (1.0 + defect));
+        prop_assert!(is_there && (mended.norm() - 1.0).abs() < 2.0 * defect * defect + 4.0 * f64::EPSILON);
+        prop_assert_eq!((mended, is_there), private::near_length_one(moved * (1.0 + defect)));
+        prop_assert!(!FreeSpins::mended(moved * 1.1).1);
+        // an input acts during the drift
+        let forced = spins();
+        prop_assert_eq!(forced.drifted(&forced.constants(h).expect("a step"), &q, &mu), None);
+        for broken in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
+            let sites = [Vector3::new(q.x, broken, q.z), Vector3::new(broken, -broken, q.z)];
+            prop_assert!(private::is_finite(&q) && !sites.iter().any(private::is_finite));
+        }
     }
 
     #[test]

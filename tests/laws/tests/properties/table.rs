@@ -65,6 +65,7 @@ pub const PROPERTIES: &[(&str, &[Property])] = &[
         ("connections_are_those_of_configurations", &["ConnectedField::edge_element", "CellComplex::edge_numbers", "CellComplex::number", "CellComplex::visit_faces", "CellComplex::edge_between", "Domain::edge_numbers", "Domain::edge_between", "Domain::edge_elements", "Domain::curvature", "Domain::flatness", "Domain::holonomy", "Domain::reconstruct", "Domain::edge_momenta", "Domain::forces_of_edges", "Domain::connection", "ConnectionStepper::domain", "ConnectionStepper::state", "ConnectionStepper::step", "ConnectionStepper::advance", "ConnectionStepper::energy", "ConnectionState::elements", "ConnectionState::momentum", "ConnectionState::steps"]),
         ("harmonic_functions_pair_to_zero",       &["Domain::multisymplectic"]),
         ("degrees_are_integers",                  &["Grid::degree", "Mesh::degree"]),
+        ("drifts_alone_turn_unit_vectors",        &["FieldSite::drifted", "FieldSite::mended", "drifted", "is_finite", "near_length_one"]),
         ("small_motions_move_sites",              &["FieldSite::moved_by"]),
         ("residuals_are_rounding_errors",         &["FieldStepper::step_with_residuals"]),
         ("kicks_are_slopes_of_the_energy",        &["Lattice::kick", "Lattice::force", "Lattice::share", "Lattice::energy", "FieldStepper::energy", "Domain::spacing", "Domain::stepper"]),
