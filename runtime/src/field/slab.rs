@@ -12,6 +12,8 @@ use core::ops::Range;
 /// Around its own rows a slab has those of neighbours, so far as forces [reach](Field::REACH). All rows stand in the order of the grid.
 /// The sites of neighbours do not move here, as on a fixed side. [`FieldStepper::advance_exchanging`](super::FieldStepper::advance_exchanging) has them written.
 ///
+/// So [`Domain::stable_step`] of a slab is that between fixed sides. With an exchange take that of the grid, or of a smaller one.
+///
 /// Made by [`Domain::slab`].
 ///
 /// ```
