@@ -23,7 +23,7 @@ use timing::{Run, Time, interleaved};
 /// The step size, and the spacing of sites.
 const H: f64 = 0.05;
 const SPACING: f64 = 0.1;
-/// Rounds of so many steps start anew.
+/// Motions are compared after so many steps.
 const STEPS: u64 = 50;
 /// 8ε, from which on |q|² is off.
 const OFF: f64 = 8.0 * f64::EPSILON;
@@ -130,18 +130,13 @@ fn string_by_hand(h: f64, weight: f64, steps: u64, x: &mut [f64], mu: &mut [f64]
     }
 }
 
-/// Rounds of steps that start anew.
-fn rounds<'a, V: Clone + 'a>(start: V, step: impl FnMut(&mut V, u64) + 'a) -> Run<'a> {
-    let step = RefCell::new(step);
+/// Steps that go on from where the last ones ended: a start anew would take as long as some steps of many sites.
+fn going_on<'a, V: 'a>(start: V, step: impl FnMut(&mut V, u64) + 'a) -> Run<'a> {
+    let all = RefCell::new((start, step));
     Box::new(move |steps| {
-        let mut left = steps;
-        while left > 0 {
-            let now = left.min(STEPS);
-            let mut state = start.clone();
-            (step.borrow_mut())(&mut state, now);
-            black_box(&state);
-            left -= now;
-        }
+        let (state, step) = &mut *all.borrow_mut();
+        step(state, steps);
+        black_box(state);
     })
 }
 
@@ -196,8 +191,8 @@ fn waves() -> Result<(), SiteError> {
         stepper.advance(&mut check.0, STEPS)?;
         sheet.steps(STEPS, &mut check.1.0, &mut check.1.1);
         assert_near(check.0.configuration(), &check.1.0);
-        let ours = rounds(start, |state, steps| stepper.advance(state, steps).expect("steps"));
-        let hand = rounds((q, mu), |(q, mu), steps| sheet.steps(steps, q, mu));
+        let ours = going_on(start, |state, steps| stepper.advance(state, steps).expect("steps"));
+        let hand = going_on((q, mu), |(q, mu), steps| sheet.steps(steps, q, mu));
         print("waves of unit vectors", n * n, &Memory(24, 24, false), &interleaved(&[ours, hand]));
     }
     Ok(())
@@ -215,9 +210,9 @@ fn strings() -> Result<(), SiteError> {
         let heights = |i: usize| (std::f64::consts::TAU * i as f64 / n as f64).sin();
         let start =
             stepper.state((0..n).map(|i| Vector1::new(heights(i))).collect::<Vec<_>>(), vec![Vector1::zeros(); n])?;
-        let ours = rounds(start, |state, steps| stepper.advance(state, steps).expect("steps"));
+        let ours = going_on(start, |state, steps| stepper.advance(state, steps).expect("steps"));
         let plain: (Vec<f64>, Vec<f64>) = ((0..n).map(heights).collect(), vec![0.0; n]);
-        let hand = rounds(plain, |(x, mu), steps| string_by_hand(h, h / (dx * dx), steps, x, mu));
+        let hand = going_on(plain, |(x, mu), steps| string_by_hand(h, h / (dx * dx), steps, x, mu));
         print("string", n, &Memory(8, 8, false), &interleaved(&[ours, hand]));
     }
     Ok(())
@@ -271,8 +266,8 @@ fn rods() -> Result<(), SiteError> {
             let ours: Vectors = check.0.configuration().iter().map(of).collect();
             assert_near(&ours, &check.1.iter().map(of_section).collect::<Vectors>());
         }
-        let ours = rounds(start, |state, steps| stepper.advance(state, steps).expect("steps"));
-        let hand = rounds(sections, |rod, steps| by_hand.steps(steps, rod));
+        let ours = going_on(start, |state, steps| stepper.advance(state, steps).expect("steps"));
+        let hand = going_on(sections, |rod, steps| by_hand.steps(steps, rod));
         print("rod", n, &Memory(128, 48, true), &interleaved(&[ours, hand]));
     }
     Ok(())
@@ -303,7 +298,7 @@ fn numpy(must_run: bool) -> Result<(), SiteError> {
         let mut check = start.clone();
         stepper.advance(&mut check, STEPS)?;
         assert_near(check.configuration(), &theirs);
-        let ours = rounds(start, |state, steps| stepper.advance(state, steps).expect("steps"));
+        let ours = going_on(start, |state, steps| stepper.advance(state, steps).expect("steps"));
         let ours = interleaved(&[ours])[0].least / (n * n) as f64;
         println!("{:<24} {:>8} {ours:>10.2} {time:>10.2} {:>8.2}", "waves of unit vectors", n * n, ours / time);
     }
