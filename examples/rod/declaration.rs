@@ -1,7 +1,7 @@
 //! The declaration, and the flying rod of Simo and Vu-Quoc.
 
 use crate::beam::{Beam, ENDS};
-use clebsch::{Clebsch, Domain, Field, FieldStepper, Grid, Various};
+use clebsch::{Clebsch, Domain, Field, FieldState, FieldStepper, Grid, MidpointStepper, Various};
 use clebsch_examples::integrate::FieldOf;
 use nalgebra::{Matrix3, Matrix4, SVector, Vector3, Vector4, Vector6};
 
@@ -20,6 +20,7 @@ use nalgebra::{Matrix3, Matrix4, SVector, Vector3, Vector4, Vector6};
         let push = q.rotation().transpose() * load.fixed_rows::<3>(3);
         vector![moment.x, moment.y, moment.z, push.x, push.y, push.z]
     },
+    emit   = [midpoint],
 )]
 pub struct Rod {
     /// Principal second moments and mass of a section, kg·m² and kg.
@@ -62,6 +63,14 @@ impl Beam {
         self.domain(edges).stepper(h)
     }
 
+    /// Implicit steps of a rod with so many edges.
+    ///
+    /// # Errors
+    /// Those of a stepper.
+    pub fn implicit(&self, edges: usize, h: f64) -> Result<MidpointStepper<Rod, Various>, clebsch::Error> {
+        self.domain(edges).midpoint(h)
+    }
+
     /// A step that is stable for small strains, s.
     ///
     /// # Errors
@@ -90,7 +99,7 @@ pub fn centre(q: &Matrix4<f64>) -> Vector3<f64> {
 }
 
 /// Total momentum and total angular momentum about the origin.
-pub fn momenta(state: &Sections) -> [Vector3<f64>; 2] {
+pub fn momenta<Time>(state: &FieldState<Vec<Matrix4<f64>>, Vec<SVector<f64, 6>>, Time>) -> [Vector3<f64>; 2] {
     let mut sum = [Vector3::zeros(); 2];
     for (q, mu) in state.configuration().iter().zip(state.momentum()) {
         let turn = q.fixed_view::<3, 3>(0, 0);

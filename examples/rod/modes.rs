@@ -14,7 +14,7 @@ const EDGES: [usize; 4] = [10, 20, 40, 80];
 /// Of the differences: their error is the fourth power.
 const SIZE: f64 = 1e-3;
 
-fn thin() -> Beam {
+pub fn thin() -> Beam {
     let area = THICKNESS * THICKNESS;
     let moment = area * area / 12.0;
     let shear = area / 2.6;
@@ -22,7 +22,7 @@ fn thin() -> Beam {
 }
 
 /// The roots of cos β cosh β = 1, by Newton's method.
-fn euler_bernoulli(mode: usize) -> f64 {
+pub fn euler_bernoulli(mode: usize) -> f64 {
     let mut beta = (mode as f64 + 0.5) * std::f64::consts::PI;
     for _ in 0..20 {
         // cos β − 1/cosh β has no large numbers
@@ -76,7 +76,7 @@ fn below(beam: &Beam, edges: usize, block: &SMatrix<f64, 4, 4>, square: f64) -> 
 }
 
 /// Frequencies of the first three modes that bend the rod, by bisection; the shift and the turn of the rod are before them.
-fn frequencies(beam: &Beam, edges: usize, near: [f64; 3]) -> [f64; 3] {
+pub fn frequencies(beam: &Beam, edges: usize, near: [f64; 3]) -> [f64; 3] {
     let block = stiffness(beam, edges);
     std::array::from_fn(|mode| {
         let (mut low, mut high) = (0.0, 4.0 * near[mode].powi(2));

@@ -23,7 +23,7 @@ pub use crate::energy::{
     VelocityEquation, kinetic_energy, kinetic_energy_at, kinetic_energy_uniform, legendre_fenchel,
 };
 pub use crate::exponential::{exponential, phi, phi_times};
-pub use crate::field::{ConnectedField, Field, FieldSite, MovingField, StaticField, drifted, is_finite};
+pub use crate::field::{ConnectedField, Field, FieldSite, MidpointSite, MovingField, StaticField, drifted, is_finite};
 pub use crate::free_rotation::{
     FreeRotation, KeptRotation, free_momentum, gibbs_vector_of_matrix, gibbs_vector_of_quaternion,
 };
@@ -36,7 +36,7 @@ pub use crate::joints::{
     put_places,
 };
 pub use crate::linear::{matrix, solve_dense, solve_symmetric};
-pub use crate::logarithm::logarithm;
+pub use crate::logarithm::{logarithm, motion_logarithm};
 pub use crate::matrices::{Blocks, axial, determinant, embedded, hat, matrix_of, shifted};
 pub use crate::matrices::{skew, skew_components, skew_outer, skew_times};
 pub use crate::opaque::check_slope;

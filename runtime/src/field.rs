@@ -23,6 +23,8 @@ mod lattice;
 #[cfg(feature = "alloc")]
 mod mesh;
 #[cfg(feature = "alloc")]
+mod midpoint;
+#[cfg(feature = "alloc")]
 mod multigrid;
 mod multisymplectic;
 mod relaxation;
@@ -45,6 +47,8 @@ pub use lattice::Lattice;
 #[cfg(feature = "alloc")]
 pub use mesh::Mesh;
 #[cfg(feature = "alloc")]
+pub use midpoint::{MidpointState, MidpointStepper};
+#[cfg(feature = "alloc")]
 pub use multigrid::Multigrid;
 pub use relaxation::{Relaxation, Relaxed};
 #[cfg(feature = "serde")]
@@ -55,9 +59,10 @@ pub use sites::{Alike, Population};
 pub use slab::Slab;
 pub use stepper::{FieldState, FieldStepper};
 
-use crate::parts::{Mu, Parts, Q, T};
+use crate::parts::{F, Mu, Parts, Q, T, U};
 use crate::space::plus;
 use crate::{Clebsch, Mask, Scalar, Space};
+use nalgebra::{SMatrix, SVector};
 
 /// A site of a field by itself. `#[derive(Clebsch)]` implements it where there is the key `space`.
 ///
@@ -192,6 +197,67 @@ pub trait StaticField: FieldSite {}
 pub trait ConnectedField: FieldSite + Parts + Clebsch<Configuration = <Self as Clebsch>::Element> {
     /// The group element W with Φ_W(q) = next: q⁻¹·next for a right action, next·q⁻¹ for a left one.
     fn edge_element(&self, q: &Q<Self>, next: &Q<Self>) -> Q<Self>;
+}
+
+/// A site of a field with implicit steps. `#[derive(Clebsch)]` implements it with `emit = [midpoint]`.
+///
+/// ```
+/// use clebsch::{Clebsch, MidpointSite};
+/// use nalgebra::Vector1;
+///
+/// /// A string on springs, its displacement x.
+/// #[derive(Clebsch, Clone, Debug)]
+/// #[clebsch(
+///     action = |a: Translation<1>, x: Vector1| x + a,
+///     cost   = |h, a| self.mass * a.norm_squared() / (2 * h),
+///     space  = |dx, x, next| (next - x).norm_squared() / (2 * dx.powi(2)),
+///     emit   = [midpoint],
+/// )]
+/// struct Strand { mass: f64 }
+///
+/// // G is half of the step, and s is what the momentum lacks for a step of 2G
+/// let (half, momentum) = (Strand::half_step(&Vector1::new(0.1)), Vector1::new(1.0));
+/// let (sum, slope) = Strand { mass: 3.0 }.midpoint_equation(0.5, 0.0, &half, &momentum);
+/// assert_eq!(half, Vector1::new(0.2));
+/// assert!((sum.x - 2.0 * (3.0 * 0.4 / 0.5 - 1.0)).abs() < 1e-15);
+/// assert_eq!(slope.x, 2.0 * 3.0 * 2.0 / 0.5);
+/// ```
+#[diagnostic::on_unimplemented(message = "`{Self}` has no implicit steps", note = "write `emit = [midpoint]`")]
+pub trait MidpointSite<const M: usize>:
+    FieldSite + Parts + Clebsch<Momentum = SVector<<Self as Clebsch>::Scalar, M>>
+{
+    /// The group element G of half of a step by its Cayley coordinates: (I − Z)⁻¹(I + Z), and 2z of a translation.
+    fn half_step(x: &Mu<Self>) -> F<Self>;
+
+    /// The change of these coordinates by a small motion of the midpoint Φ_G(q).
+    fn half_step_motion(x: &Mu<Self>, motion: &Mu<Self>) -> Mu<Self>;
+
+    /// The left side s + C s of the equation of a step by F = G² from the momentum N, in the units of momenta. Behind it are its
+    /// derivatives by small motions of the midpoint.
+    fn midpoint_equation(
+        &self,
+        h: T<Self>,
+        t: T<Self>,
+        f: &F<Self>,
+        mu: &Mu<Self>,
+    ) -> (Mu<Self>, SMatrix<T<Self>, M, M>);
+
+    /// The force of the key `force` where the midpoint is at `q` and the half step has the coordinates `x`. Behind it are its derivatives
+    /// by small motions of the midpoint. `None` if there is none. The velocity is that of half of a step, 4x/h.
+    #[inline]
+    fn midpoint_force(
+        &self,
+        _h: T<Self>,
+        _t: T<Self>,
+        _q: &Q<Self>,
+        _x: &Mu<Self>,
+        _u: &U<Self>,
+    ) -> Option<(Mu<Self>, SMatrix<T<Self>, M, M>)> {
+        None
+    }
+
+    /// C μ, the momentum μ carried along half of a step: Ad*_G μ for a right action, Ad*_{G⁻¹} μ for a left one.
+    fn half_carried(f: &F<Self>, mu: &Mu<Self>) -> Mu<Self>;
 }
 
 /// A site of a field with neighbours in D directions of space. `#[derive(Clebsch)]` implements it where there is the key `space`.

@@ -60,6 +60,7 @@
 //! | step a field, the same site at each place of a grid or a mesh | the key `space`; [`Field::grid`] gives a [`Domain`], whose [`FieldStepper`] steps a [`FieldState`] |
 //! | step some rows of a field, the others elsewhere | [`Domain::slab`] gives a [`Slab`]; [`FieldStepper::advance_exchanging`] |
 //! | choose a stable step of a field | [`Domain::stable_step`] and [`FieldStepper::suggest_step_size`] |
+//! | step a stiff field along a line with long implicit steps | `emit = [midpoint]`; [`MidpointSite`], `Domain::midpoint` |
 //! | step the elements of edges in place of configurations | `emit = [connection]`; [`ConnectedField`], `Domain::connection` |
 //! | find where a field without a cost rests | [`Domain::relax`]; [`Relaxation`] and [`Relaxed`], `Multigrid` on grids |
 //!
@@ -208,11 +209,13 @@ pub use error::Error;
 #[cfg(feature = "serde")]
 pub use field::SavedField;
 pub use field::{
-    Alike, ConnectedField, Domain, Field, FieldSite, FieldState, FieldStepper, Grid, Lattice, MovingField, Population,
-    Relaxation, Relaxed, Side, Sides, Slab, StaticField,
+    Alike, ConnectedField, Domain, Field, FieldSite, FieldState, FieldStepper, Grid, Lattice, MidpointSite,
+    MovingField, Population, Relaxation, Relaxed, Side, Sides, Slab, StaticField,
 };
 #[cfg(feature = "alloc")]
-pub use field::{CellComplex, ConnectionState, ConnectionStepper, Mesh, Multigrid, Various};
+pub use field::{
+    CellComplex, ConnectionState, ConnectionStepper, Mesh, MidpointState, MidpointStepper, Multigrid, Various,
+};
 #[cfg(feature = "lanes")]
 pub use lanes::{F32x8, F32x8Mask, F64x4, F64x4Mask, F64x8, F64x8Mask};
 pub use method::{Declared, Method};

@@ -75,7 +75,7 @@ impl Number for f64 {
         }
     }
     fn analytic(function: Analytic, argument: &Matrix<f64>) -> Matrix<f64> {
-        if function == Analytic::Logarithm {
+        if matches!(function, Analytic::Logarithm | Analytic::MotionLogarithm) {
             return Matrix::from_fn(argument.shape, |_| f64::NAN);
         }
         // the series themselves: this is for matrices of moderate size in tests

@@ -58,6 +58,8 @@ pub enum Analytic {
     Phi,
     /// The principal logarithm.
     Logarithm,
+    /// The same of a rotation or a rigid motion in the plane or in space.
+    MotionLogarithm,
 }
 
 /// An operation on one expression.

@@ -58,7 +58,7 @@ impl<'g> Expr<'g> {
             // of A with A² = 0
             (Analytic::Exponential, _) if (self * self).is_zero() => identity + self,
             (Analytic::Phi, _) if (self * self).is_zero() => identity + self / 2,
-            (Analytic::Logarithm, _) if self.is_identity() => graph.zero(self.shape()),
+            (Analytic::Logarithm | Analytic::MotionLogarithm, _) if self.is_identity() => graph.zero(self.shape()),
             (Analytic::Logarithm, ExprNode::Of(Operation::Analytic(Analytic::Exponential), inner)) => {
                 graph.expr(*inner)
             }

@@ -140,7 +140,7 @@ impl<'g> Printer<'g> {
             Operation::Determinant => ("det", "\\det"),
             Operation::Analytic(Analytic::Exponential) => ("exp", "\\exp"),
             Operation::Analytic(Analytic::Phi) => ("φ", "\\varphi"),
-            Operation::Analytic(Analytic::Logarithm) => ("log", "\\log"),
+            Operation::Analytic(Analytic::Logarithm | Analytic::MotionLogarithm) => ("log", "\\log"),
             Operation::DiagonalMatrix => ("diag", "\\operatorname{diag}"),
             Operation::Diagonal => ("diagonal", "\\operatorname{diagonal}"),
         };

@@ -201,6 +201,9 @@ pub mod emit {
 
     /// The trait `ConnectedField`: the group elements of the edges of a field, stepped without configurations.
     pub mod connection {}
+
+    /// The trait `MidpointSite`: implicit steps of a field along a line, stable at any step size.
+    pub mod midpoint {}
 }
 
 /// The scalar type: `f64`, `f32` or a type parameter of the struct. Fields and spaces that name a scalar decide it otherwise.

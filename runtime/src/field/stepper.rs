@@ -244,10 +244,22 @@ impl<S: FieldSite + Clone, G: Lattice<S>, P: Population> FieldStepper<S, G, P> {
         (0..self.lattice.sites()).map_while(|i| systems.get(P::number(i)))
     }
 
-    fn check_lengths(&self, q: &[Q<S>], mu: &[Mu<S>]) -> Result<(), SiteError> {
+    pub(super) fn check_lengths(&self, q: &[Q<S>], mu: &[Mu<S>]) -> Result<(), SiteError> {
         let sites = self.lattice.sites();
         match [q.len(), mu.len()].into_iter().find(|&found| found != sites) {
             Some(found) => Err(Error::NumberOfSites { found, sites }.into()),
+            None => Ok(()),
+        }
+    }
+
+    /// There is an input for each site, and all are finite.
+    pub(super) fn check_inputs(&self, inputs: &[U<S>]) -> Result<(), SiteError> {
+        let (found, sites) = (inputs.len(), self.lattice.sites());
+        if found != sites {
+            return Err(Error::NumberOfSites { found, sites }.into());
+        }
+        match inputs.iter().position(|u| !u.all_finite()) {
+            Some(site) => at(site, Err(Error::NotFinite { name: "the input" })),
             None => Ok(()),
         }
     }
@@ -371,13 +383,7 @@ impl<S: FieldSite + Clone, G: Lattice<S>, P: Population> FieldStepper<S, G, P> {
         Points: AsRef<[Q<S>]> + AsMut<[Q<S>]>,
         Momenta: AsRef<[Mu<S>]> + AsMut<[Mu<S>]>,
     {
-        let (found, sites) = (inputs.len(), self.lattice.sites());
-        if found != sites {
-            return Err(Error::NumberOfSites { found, sites }.into());
-        }
-        if let Some(site) = inputs.iter().position(|u| !u.all_finite()) {
-            return at(site, Err(Error::NotFinite { name: "the input" }));
-        }
+        self.check_inputs(inputs)?;
         let drift = |part: Part<T<S>>, sites: Sites<'_, S>| {
             let (first, own) = self.own(sites);
             self.drift(part, first, own, Some(inputs))

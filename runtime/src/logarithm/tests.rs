@@ -1,6 +1,6 @@
 //! Against values of 60 digits (mpmath), and the exponential.
 
-use super::logarithm;
+use super::{logarithm, motion_logarithm};
 use crate::exponential::exponential;
 use nalgebra::{Matrix2, Matrix3, Matrix4, Rotation3, Vector3};
 use proptest::prelude::*;
@@ -81,7 +81,51 @@ fn single_precision_is_exact_to_single_precision() {
     assert!((found - Matrix2::new(0.0, -1.0, 1.0, 0.0) * core::f32::consts::FRAC_PI_2).amax() < 4e-7);
 }
 
+/// A motion as a matrix of its algebra: a turn vector and a shift.
+fn algebra(turn: Vector3<f64>, shift: Vector3<f64>) -> Matrix4<f64> {
+    let mut matrix = turn.cross_matrix().to_homogeneous();
+    matrix.fixed_view_mut::<3, 1>(0, 3).copy_from(&shift);
+    matrix[(3, 3)] = 0.0;
+    matrix
+}
+
+/// Every angle up to half a turn, where the general logarithm has lost half of its digits or has no value.
+#[test]
+fn motions_by_any_angle_are_undone() {
+    let (shift, half) = (Vector3::new(0.3, -1.2, 0.7), core::f64::consts::PI);
+    for axis in [Vector3::new(2.0, -1.0, 2.0) / 3.0, Vector3::z(), Vector3::new(-0.6, 0.0, 0.8), -Vector3::x()] {
+        for angle in [0.0, 1e-300, 1e-160, 1e-9, 1e-3, 0.5, 1.57, 1.58, 2.0, 2.2, 3.0, half - 1e-4, half - 1e-9] {
+            let (turn, motion) = (axis * angle, algebra(axis * angle, shift));
+            let found = motion_logarithm(&exponential(&motion));
+            assert!((found - motion).amax() < 1e-14, "{angle} about {axis}: {}", found - motion);
+            let found = motion_logarithm(Rotation3::from_scaled_axis(turn).matrix());
+            assert!((found - turn.cross_matrix()).amax() < 1e-14, "{angle} about {axis}: {found}");
+            let plane = Matrix2::new(0.0, -angle, angle, 0.0);
+            assert!((motion_logarithm(&exponential(&plane)) - plane).amax() < 1e-15);
+            let flat = Matrix3::new(0.0, angle, 0.3, -angle, 0.0, -1.2, 0.0, 0.0, 0.0);
+            let found = motion_logarithm(&exponential(&flat));
+            assert!((found - flat).amax() < 1e-14, "{angle} in the plane: {found}");
+        }
+    }
+    // half a turn: one of the two logarithms
+    for axis in [Vector3::x(), Vector3::y(), Vector3::z()] {
+        let turn = Rotation3::from_scaled_axis(axis * half);
+        let found = motion_logarithm(turn.matrix());
+        assert!((exponential(&found) - turn.matrix()).amax() < 1e-15);
+        assert!((found.norm() - half * f64::sqrt(2.0)).abs() < 1e-15);
+    }
+    assert!(motion_logarithm(&Matrix4::from_diagonal_element(1.0)) == Matrix4::zeros());
+    assert!(motion_logarithm(&Matrix4::<f64>::from_element(0.3))[(0, 0)].is_nan());
+    assert!(motion_logarithm(&(Matrix3::identity() * f64::NAN))[(0, 0)].is_nan());
+}
+
 proptest! {
+    #[test]
+    fn motions_are_those_of_the_general_logarithm(turn in prop::array::uniform3(-1.7_f64..1.7), shift in prop::array::uniform3(-9.0_f64..9.0)) {
+        let motion = exponential(&algebra(turn.into(), shift.into()));
+        prop_assert!((motion_logarithm(&motion) - logarithm(&motion)).amax() < 1e-12);
+    }
+
     #[test]
     fn logarithms_undo_exponentials(entries in prop::array::uniform9(-0.9_f64..0.9)) {
         let matrix = Matrix3::from_row_slice(&entries);

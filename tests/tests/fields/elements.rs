@@ -52,6 +52,46 @@ struct PlaneBeam {
     reference: Vector3<f64>,
 }
 
+/// A rod in space and one in the plane, with the strains of the logarithm.
+#[derive(Clebsch, Clone, Debug)]
+#[clebsch(
+    action = |F: SE<3>, q: SE<3>| q * F,
+    cost   = |h, F| ((F - I) * Matrix4::from_diagonal(&self.section) * (F - I).transpose()).trace() / (2 * h),
+    space  = |ds, W| (W.log() / ds - self.reference).dot(&self.stiffness.component_mul(&(W.log() / ds - self.reference))) * ds / 2,
+)]
+struct Bent {
+    section: nalgebra::Vector4<f64>,
+    stiffness: SVector<f64, 6>,
+    reference: SVector<f64, 6>,
+}
+
+#[derive(Clebsch, Clone, Debug)]
+#[clebsch(
+    action     = |F: SE<2>, q: SE<2>| q * F,
+    lagrangian = |xi| xi.norm_squared() / 2,
+    space      = |ds, W| (W.log() / ds - self.reference).norm_squared() * ds / 2,
+)]
+struct BentInPlane {
+    reference: Vector3<f64>,
+}
+
+/// Rotations from the left, and a pair, both of whose elements have their logarithms.
+#[derive(Clebsch, Clone, Debug)]
+#[clebsch(
+    action = |F: SO<3>, R: SO<3>| F * R,
+    cost   = |h, F| (F - I).norm_squared() / (4 * h),
+    space  = |dx, W| (W.log().norm_squared() + 0.3 * W.log().x.powi(4) + 0.1 * W.cayley().y) / (2 * dx),
+)]
+struct LeftLogarithm;
+
+#[derive(Clebsch, Clone, Debug)]
+#[clebsch(
+    action = |(F, a): (SO<3>, Translation<2>), (R, x): (SO<3>, Vector2)| (R * F, x + a),
+    cost   = |h, F, a| (F - I).norm_squared() / (4 * h) + a.norm_squared() / (2 * h),
+    space  = |dx, (W, b)| (W.log().norm_squared() + b.log().norm_squared() * W.log().x + b.norm_squared()) / (2 * dx),
+)]
+struct LogarithmPair;
+
 /// A body and a point, tied to their neighbours.
 #[derive(Clebsch, Clone, Debug)]
 #[clebsch(
@@ -118,6 +158,21 @@ where
             let expected = -slope / (2.0 * size);
             assert!((force[k] - expected).abs() < 1e-7 * (1.0 + force.amax()), "{k}: {} {expected}", force[k]);
         }
+        // and their changes are slopes of the forces
+        let unit = SVector::<f64, M>::from_fn(|i, _| if i == k { 1.0 } else { 0.0 });
+        let none = SVector::zeros();
+        let forces = |a: f64, b: f64| {
+            system.edge_forces(0, &spacing, &system.act(&small(k, a), q[0]), &system.act(&small(k, b), q[1]))
+        };
+        for (a, b) in [(size, 0.0), (0.0, size)] {
+            let (up, down) = (forces(a, b), forces(-a, -b));
+            let motions = if b == 0.0 { (unit, none) } else { (none, unit) };
+            let found = system.edge_forces_along(0, &spacing, q[0], q[1], &motions.0, &motions.1);
+            for (found, (up, down)) in [(found.0, (up.0, down.0)), (found.1, (up.1, down.1))] {
+                let expected = (up - down) / (2.0 * size);
+                assert!((found - expected).amax() < 1e-6 * (1.0 + expected.amax()), "{k}: {found} {expected}");
+            }
+        }
     }
 }
 
@@ -138,12 +193,28 @@ fn forces_of_elements_are_slopes() {
         check(&rod, [&pose(s), &pose(n)], |k, size| {
             if k < 3 { rotation(k, size).to_homogeneous() } else { Matrix4::new_translation(&axis(k - 3, size)) }
         });
+        let bent = Bent { section: rod.section, stiffness: rod.stiffness, reference: rod.reference };
+        check(&bent, [&pose(s), &pose(n)], |k, size| {
+            if k < 3 { rotation(k, size).to_homogeneous() } else { Matrix4::new_translation(&axis(k - 3, size)) }
+        });
+        check(&LeftLogarithm, [&turn(s), &turn(n)], rotation);
+        check(&LogarithmPair, [&(turn(s), Vector2::new(s, 0.3)), &(turn(n), Vector2::new(n, -0.4))], |k, size| {
+            let turn = rotation(k.min(2), if k < 3 { size } else { 0.0 });
+            (turn, if k < 3 { Vector2::zeros() } else { Vector2::ith(k - 3, size) })
+        });
         let plane = |seed: f64| {
             let mut pose = nalgebra::Rotation2::new(seed).to_homogeneous();
             (pose[(0, 2)], pose[(1, 2)]) = (seed.cos(), 0.4 * seed);
             pose
         };
         check(&PlaneBeam { reference: Vector3::new(0.2, 1.0, -0.1) }, [&plane(s), &plane(n)], |k, size| {
+            let mut small = nalgebra::Rotation2::new(if k == 0 { size } else { 0.0 }).to_homogeneous();
+            if k > 0 {
+                small[(k - 1, 2)] = size;
+            }
+            small
+        });
+        check(&BentInPlane { reference: Vector3::new(0.2, 1.0, -0.1) }, [&plane(s), &plane(n)], |k, size| {
             let mut small = nalgebra::Rotation2::new(if k == 0 { size } else { 0.0 }).to_homogeneous();
             if k > 0 {
                 small[(k - 1, 2)] = size;

@@ -7,6 +7,7 @@ mod connections;
 mod elements;
 mod grids;
 mod meshes;
+mod midpoint;
 mod multisymplectic;
 mod reference;
 mod refused;

@@ -204,6 +204,22 @@ catalogue! {
     EdgeElement = listed("element of an edge", Hot);
     /// Its Cayley coordinates.
     EdgeCoordinates = unlisted("Cayley coordinates of an edge", Hot);
+    /// Its logarithm.
+    EdgeLogarithm = unlisted("logarithm of an edge", Hot);
+    /// The element G of half of an implicit step.
+    HalfStep = unlisted("half of a step", Hot).by(LieGroupMethods);
+    /// The Cayley coordinates of G².
+    HalfStepDoubled = unlisted("Cayley coordinates of an implicit step", Hot);
+    /// The logarithm of G².
+    HalfStepLogarithm = unlisted("logarithm of an implicit step", Hot);
+    /// (1 + Ad*)(T* ∂K(G²) − N), and its change by motions of the midpoint.
+    MidpointEquation = listed("midpoint equation", Hot).by(DiscreteMechanics);
+    /// C N of an implicit step, a momentum carried along G.
+    HalfCarried = unlisted("momentum along half of a step", Hot).by(MechanicsAndSymmetry);
+    /// The force at the midpoint, with its change by motions of it.
+    MidpointForce = unlisted("force at the midpoint", Hot);
+    /// The change of the coordinates of G by a motion of the midpoint.
+    HalfStepMotion = unlisted("motion of the midpoint", Hot).by(LieGroupMethods);
     /// −J(q, ∂V) of a site of a field.
     SiteForce = listed("force on a site", Hot).by(ClebschOptimalControl);
     /// Its change by a small motion of the site.

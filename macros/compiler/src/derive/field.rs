@@ -6,8 +6,11 @@
 use clebsch_symbolic::{Elements, Expr, Group, IntoElements, IntoList, Property, Role, Shape, indexed, work};
 
 use super::formula::shorter;
+use super::midpoint::{self, MidpointFormulas};
 use super::power::{SiteTerm, of_terms};
+use super::symbols::logarithm;
 use super::{SystemFormulas, cayley, trivialisation};
+use crate::diagnostic::Diagnostics;
 use crate::model::{EdgeEnergy, Factor, FieldEnergies, Mechanics, Side, System, Term};
 
 /// The work to expand a force for code that may be shorter, at most.
@@ -27,6 +30,8 @@ pub struct FieldFormulas<'g> {
     /// The neighbour in direction d stands at the place 1 + 2d, and the site whose neighbour it is at 2 + 2d. `None` where an
     /// edge is of a group element.
     pub force_inside: Option<Vec<Expr<'g>>>,
+    /// Those of implicit steps, where they are asked for.
+    pub midpoint: Option<MidpointFormulas<'g>>,
 }
 
 /// The formulas of an edge.
@@ -43,11 +48,21 @@ pub struct EdgeFormulas<'g> {
     pub element: Vec<Expr<'g>>,
     /// Its Cayley coordinates for each factor, a function of it; empty where none is read.
     pub coordinates: Vec<Expr<'g>>,
+    /// The coordinates of its logarithm for each factor, in the same way.
+    pub logarithm: Vec<Expr<'g>>,
 }
 
 /// The formulas of the field of a model; `None` if it is none.
-pub(super) fn of<'g>(model: &Mechanics<'g>, system: &SystemFormulas<'g>) -> Option<FieldFormulas<'g>> {
-    let field = model.field.as_ref()?;
+///
+/// # Errors
+/// Those of implicit steps.
+pub(super) fn of<'g>(
+    model: &Mechanics<'g>,
+    system: &SystemFormulas<'g>,
+    cost: Expr<'g>,
+    force: Option<&[Expr<'g>]>,
+) -> Result<Option<FieldFormulas<'g>>, Diagnostics> {
+    let Some(field) = model.field.as_ref() else { return Ok(None) };
     let force_of_site = field.potential.and_then(|potential| system.impulse(potential)).unwrap_or_default();
     let there = |edge: &EdgeEnergy<'g>, end: usize| -> Vec<Expr<'g>> {
         indexed(model.configurations.len(), |leaf| leaf_of_edge(model, edge, end, leaf))
@@ -59,12 +74,13 @@ pub(super) fn of<'g>(model: &Mechanics<'g>, system: &SystemFormulas<'g>) -> Opti
         let [on_site, on_neighbour] = [0, 1].map(|end| push(system, &there(edge, end), gradient(model, edge, end)));
         let moves = [0, 1].into_iter().flat_map(|end| moves(system, &there(edge, end), end)).into_list();
         let along = [&on_site, &on_neighbour].map(|force| force.each(|part| part.differential(&moves)));
-        let (element, coordinates) = (Vec::new(), Vec::new());
-        EdgeFormulas { energy: edge.value, on_site, on_neighbour, along, element, coordinates }
+        let (element, coordinates, logarithm) = (Vec::new(), Vec::new(), Vec::new());
+        EdgeFormulas { energy: edge.value, on_site, on_neighbour, along, element, coordinates, logarithm }
     });
     let force_of_site = force_of_site.into_each(|force| -force);
     let moves = moves(system, &model.configurations.each(|leaf| leaf.symbol), 0);
-    Some(FieldFormulas {
+    Ok(Some(FieldFormulas {
+        midpoint: midpoint::of(model, system, cost, force)?,
         is_static: field.is_static,
         edges,
         force_of_site_along: force_of_site.each(|force| force.differential(&moves)),
@@ -74,24 +90,33 @@ pub(super) fn of<'g>(model: &Mechanics<'g>, system: &SystemFormulas<'g>) -> Opti
             .iter()
             .all(|edge| edge.element.is_empty())
             .then(|| force_inside(model, system, field)),
-    })
+    }))
 }
 
 /// The formulas of an edge whose energy is a function κ(F) of a group element. Its forces are the two trivialisations of ∂κ. For a
 /// right action they are T*_id R_F ∂κ and −T*_id L_F ∂κ.
 fn of_element<'g>(model: &Mechanics<'g>, edge: &EdgeEnergy<'g>) -> EdgeFormulas<'g> {
     let (before, after) = trivialisation::of_all(model, edge.value);
-    let on_site = trivialisation::components(model, &before);
-    let on_neighbour = trivialisation::components(model, &after).into_each(|force| -force);
-    let reads = |k: usize| edge.value.depends_on(cayley::symbol(model, k));
-    let coordinates = if (0..model.factors.len()).any(reads) { coordinates(model) } else { Vec::new() };
+    let on_site = trivialisation::closed_components(model, &before);
+    let on_neighbour = trivialisation::closed_components(model, &after).into_each(|force| -force);
+    let factors = 0..model.factors.len();
+    let reads =
+        |symbol: fn(&System<'g>, usize) -> Expr<'g>| factors.clone().any(|k| edge.value.depends_on(symbol(model, k)));
+    let coordinates = if reads(cayley::symbol) { coordinates(model) } else { Vec::new() };
+    let logarithm = if reads(logarithm) { logarithms(model) } else { Vec::new() };
     let moves = (0..model.factors.len()).flat_map(|k| moves_of_element(model, k)).into_list();
     let along = [&on_site, &on_neighbour].map(|force| force.each(|part| part.differential(&moves)));
-    EdgeFormulas { energy: edge.value, on_site, on_neighbour, along, element: edge.element.clone(), coordinates }
+    let element = edge.element.clone();
+    EdgeFormulas { energy: edge.value, on_site, on_neighbour, along, element, coordinates, logarithm }
+}
+
+/// The coordinates of log F of each factor.
+pub(super) fn logarithms<'g>(model: &Mechanics<'g>) -> Vec<Expr<'g>> {
+    model.factors.each(|factor| factor.group.closed_logarithm(factor.symbol))
 }
 
 /// The coordinates of a small motion of an end of an edge, for a factor.
-fn motion<'g>(model: &System<'g>, end: usize, k: usize) -> Expr<'g> {
+pub(super) fn motion<'g>(model: &System<'g>, end: usize, k: usize) -> Expr<'g> {
     let name = if end == 0 { "η" } else { "η⁺" };
     let shape = Shape::vector(model.factors[k].group.dimension());
     model.graph.symbol(name, shape, Role::Motion(end, k), Property::General)
@@ -105,7 +130,7 @@ fn moves<'g>(system: &SystemFormulas<'g>, q: &[Expr<'g>], end: usize) -> Vec<(Ex
     q.iter().copied().zip(moved.into_each(|moved| moved.substitute(&places))).into_list()
 }
 
-/// The changes of the element of an edge and of its Cayley coordinates by small motions of both ends. For a right action
+/// The changes of the element of an edge, of its Cayley coordinates and of its logarithm by small motions of both ends. For a right action
 /// F = q⁻¹q⁺ changes by Fη⁺ − ηF, for a left one F = q⁺q⁻¹ by η⁺F − Fη.
 fn moves_of_element<'g>(model: &Mechanics<'g>, k: usize) -> Vec<(Expr<'g>, Expr<'g>)> {
     let Factor { symbol: f, group, side, .. } = &model.factors[k];
@@ -113,7 +138,7 @@ fn moves_of_element<'g>(model: &Mechanics<'g>, k: usize) -> Vec<(Expr<'g>, Expr<
     let [own, next] = [0, 1].map(|end| motion(model, end, k));
     if group.is_translation() {
         let change = next - own;
-        return vec![(*f, change), (cayley::symbol(model, k), change / 2)];
+        return vec![(*f, change), (cayley::symbol(model, k), change / 2), (logarithm(model, k), change)];
     }
     let by = |motion: Expr<'g>, from_left: bool| {
         if from_left { group.wedge(motion) * *f } else { *f * group.wedge(motion) }
@@ -122,11 +147,15 @@ fn moves_of_element<'g>(model: &Mechanics<'g>, k: usize) -> Vec<(Expr<'g>, Expr<
     let of_end = |motion: Expr<'g>, from_left: bool| cayley::motion(model, k, motion, from_left);
     let coordinates =
         of_end(next, is_left).zip(of_end(own, !is_left)).map(|((z, after), (_, before))| (z, after - before));
-    [change].into_iter().chain(coordinates).into_list()
+    // δF = ηF moves log F by dexp_y⁻¹ η, and δF = Fη by dexp_{−y}⁻¹ η
+    let y = logarithm(model, k);
+    let slope = |from_left: bool| group.logarithm_slope(if from_left { y } else { -y });
+    let logarithm = slope(is_left).zip(slope(!is_left)).map(|(after, before)| (y, after * next - before * own));
+    [change].into_iter().chain(coordinates).chain(logarithm).into_list()
 }
 
 /// (F − I)(F + I)⁻¹ of each factor, in coordinates.
-fn coordinates<'g>(model: &Mechanics<'g>) -> Vec<Expr<'g>> {
+pub(super) fn coordinates<'g>(model: &Mechanics<'g>) -> Vec<Expr<'g>> {
     let graph = model.graph;
     let of_factor = |(k, factor): (usize, &Factor<'g>)| {
         let f = factor.symbol;
@@ -220,7 +249,10 @@ pub(super) fn terms<'g>(model: &Mechanics<'g>) -> Vec<SiteTerm<'g>> {
             model.factors.iter().map(|factor| factor.symbol).zip(edge.element.iter().copied()).into_list();
         let mut value = edge.value;
         if !elements.is_empty() {
-            let known = (0..model.factors.len()).map(|k| cayley::symbol(model, k)).zip(coordinates(model));
+            let known = coordinates(model).into_iter().enumerate().flat_map(|(k, z)| {
+                let y = (logarithm(model, k), stand_in(&model.factors[k], z));
+                [(cayley::symbol(model, k), z), y]
+            });
             value = value.substitute(&known.into_list()).substitute(&elements);
         }
         value.substitute(&names.into_list())
@@ -231,6 +263,15 @@ pub(super) fn terms<'g>(model: &Mechanics<'g>) -> Vec<SiteTerm<'g>> {
     let values = site.into_iter().chain(field.edges.iter().map(at));
     let terms: Vec<Term<'g>> = values.map(|value| Term { ranges: Vec::new(), value }).into_list();
     of_terms(model, 2, &terms)
+}
+
+/// A vector in place of log F that turns with F as it does: Cayley coordinates z times a number of the class of F. It has
+/// no other relation to z. So an energy of it has the symmetries of that of log F.
+fn stand_in<'g>(Factor { symbol: f, group, .. }: &Factor<'g>, z: Expr<'g>) -> Expr<'g> {
+    if group.is_translation() || group == &Group::UnitQuaternions {
+        return 2 * z;
+    }
+    (f.trace() + f.graph().integer(7)) * z
 }
 
 /// Vectors of several parts, expanded: their code may be shorter. `None` where that takes too much work.

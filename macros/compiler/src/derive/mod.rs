@@ -30,6 +30,7 @@ mod joints;
 mod latex;
 mod letters;
 mod matrices;
+mod midpoint;
 mod moves;
 mod naming;
 mod power;
@@ -75,6 +76,7 @@ pub use formulas::{Formulas, MechanicsFormulas, SteeredFormulas};
 pub use isotropy::Vertical;
 pub use joints::{JointFormulas, JointRows};
 pub use matrices::MatrixForm;
+pub use midpoint::MidpointFormulas;
 pub use power::{Home, SiteTerm, Stencil, stencil};
 use rows::MOST_LISTED;
 pub use splitting::Splitting;
@@ -109,12 +111,12 @@ fn mechanics(mut model: Mechanics<'_>) -> Result<MechanicsFormulas<'_>, Diagnost
     // symmetries and Legendre transforms are those of the declared cost
     let declared = if declared == cost { lagrangian } else { discrete_lagrangian::separate(&model, declared) };
     substep::check_unmoved(&model, &lagrangian)?;
-    let field = field::of(&model, &system);
+    let covector = force::covector(&model, &system);
+    let field = field::of(&model, &system, cost.kinetic, covector.as_deref())?;
     let potential_energy = match &model.field {
         Some(field) => field.potential.unwrap_or_else(|| model.graph.integer(0)),
         None => energy::potential(&model, &declared)?,
     };
-    let covector = force::covector(&model, &system);
     let pushes = (potential_energy, covector.as_deref());
     let constraint = ConstraintFormulas::of(&model, &system, (&energy, inertia), pushes)?;
     let joints = joints::of(&model, &system, (&energy, inertia), pushes)?;

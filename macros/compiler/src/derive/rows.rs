@@ -7,6 +7,7 @@ mod steps;
 use clebsch_symbolic::{Elements, Expr, IntoList, Property, Role, indexed};
 
 use super::constraint::coordinates_of_motion;
+use super::midpoint::MidpointFormulas;
 use super::moves::inverse_by;
 use super::{Formula, FormulaTable, Id, JointRows, MechanicsFormulas, SteeredFormulas, SystemFormulas};
 use crate::model::{EdgeEnergy, LeafSpace, Motion};
@@ -243,7 +244,8 @@ impl<'g> MechanicsFormulas<'g> {
     }
 
     /// The energies and the forces of a field.
-    fn rows_of_field(&self, Names { q, f, xi, .. }: &Names) -> Vec<Formula<'g>> {
+    fn rows_of_field(&self, names: &Names) -> Vec<Formula<'g>> {
+        let Names { q, f, xi, .. } = names;
         let Some((field, declared)) = self.field.as_ref().zip(self.model.field.as_ref()) else { return Vec::new() };
         let (mut energies, mut forces, mut changes) = (Vec::new(), Vec::new(), Vec::new());
         for (number, (edge, EdgeEnergy { names: [own, next], .. })) in
@@ -263,6 +265,10 @@ impl<'g> MechanicsFormulas<'g> {
             energies.push(Formula::new(Id::EdgeElement, f, edge.element.clone()));
             energies.push(Formula::new(Id::EdgeCoordinates, "z", edge.coordinates.clone()));
         }
+        if let Some(edge) = field.edges.iter().find(|edge| !edge.logarithm.is_empty()) {
+            energies.push(Formula::new(Id::EdgeLogarithm, "y", edge.logarithm.clone()));
+        }
+        energies.extend(field.midpoint.iter().flat_map(|midpoint| rows_of_midpoint(midpoint, names)));
         energies.push(Formula::shorter(Id::SiteForce, format!("f({q})"), field.force_of_site.clone()));
         energies.push(Formula::new(Id::SiteForceAlong, "δf", field.force_of_site_along.clone()));
         let momentum = self.symbols.slope(self.energy.general.unwrap_or(self.energy.kinetic + self.energy.gyroscopic));
@@ -293,6 +299,24 @@ impl<'g> MechanicsFormulas<'g> {
         rows.push(Formula::new(Id::ConservedMomenta, "conserved", values));
         rows
     }
+}
+
+/// The equation of an implicit step, and the momentum after it.
+fn rows_of_midpoint<'g>(midpoint: &MidpointFormulas<'g>, Names { q, mu, .. }: &Names) -> Vec<Formula<'g>> {
+    let half = Formula::new(Id::HalfStep, "G(z)", midpoint.element.clone())
+        .in_words("(I − z^)⁻¹(I + z^)".into(), r"(I - \hat z)^{-1}(I + \hat z)".into());
+    let equation = Formula::new(Id::MidpointEquation, format!("h f(Φ_G({q}))"), midpoint.residual.clone()).in_words(
+        format!("s + C·s with s = T*∂K(G²) − {mu}, C = Ad* along G, {mu}⁺ = C·(C·{mu} + h f)"),
+        format!(
+            r"s + C\,s \text{{ with }} s = T^*\partial K(G^2) - {mu},\quad C = \mathrm{{Ad}}^* \text{{ along }} G,\quad {mu}^+ = C\,(C\,{mu} + h f)"
+        ),
+    );
+    let motion = Formula::new(Id::HalfStepMotion, "δz^", midpoint.motion.clone())
+        .in_words("½ (I ± z^)·η^·(I ∓ z^)".into(), r"\tfrac12 (I \pm \hat z)\,\hat\eta\,(I \mp \hat z)".into());
+    let carried = Formula::new(Id::HalfCarried, format!("C {mu}"), midpoint.carried.clone());
+    let force = midpoint.force.as_ref();
+    let force = force.map(|(force, _)| Formula::new(Id::MidpointForce, format!("f({q}, 4z/h)"), force.clone()));
+    [half, equation, motion, carried].into_iter().chain(force).into_list()
 }
 
 fn tuple(names: impl Iterator<Item = String>) -> String {

@@ -13,6 +13,8 @@ pub(super) struct Covector<'g> {
     pub array: Expr<'g>,
     /// dexp_y^T of the components that come from log F, and dexp_y itself: `None` where K does not depend on log F.
     pub logarithmic: Option<(Expr<'g>, Expr<'g>)>,
+    /// log F, or −log F: the argument of this dexp.
+    pub along: Expr<'g>,
     /// The components that come from Cayley coordinates; `None` where K does not depend on them.
     pub rational: Option<Rational<'g>>,
 }
@@ -36,6 +38,18 @@ impl<'g> Covector<'g> {
             .rational
             .map_or(plain, |rational| plain + rational.map.substitute(&[(rational.letter, rational.gradient)]));
         self.logarithmic.map_or(plain, |(gradient, slope)| plain + slope.transpose().inverse() * gradient)
+    }
+
+    /// The components where dexp_y⁻¹ has a formula.
+    pub fn closed_components(&self, group: Group) -> Expr<'g> {
+        let logarithmic =
+            self.logarithmic.and_then(|(gradient, _)| Some((gradient, group.logarithm_slope(self.along)?)));
+        match logarithmic {
+            Some((gradient, slope)) => {
+                Covector { logarithmic: None, ..*self }.components(group) + slope.transpose() * gradient
+            }
+            None => self.components(group),
+        }
     }
 }
 
@@ -63,9 +77,14 @@ fn of_factor<'g>(model: &System<'g>, kinetic: Expr<'g>, k: usize) -> (Covector<'
         let map = || letter.dot(moved).gradient(xi).expand();
         kinetic.depends_on(z).then(|| Rational { map: map(), letter, gradient: kinetic.gradient(z) })
     };
-    let left = Covector { array: left, logarithmic: along(y, -1), rational: rational(false) };
-    let right = Covector { array: right, logarithmic: along(y, 1), rational: rational(true) };
+    let left = Covector { array: left, logarithmic: along(y, -1), along: -y, rational: rational(false) };
+    let right = Covector { array: right, logarithmic: along(y, 1), along: y, rational: rational(true) };
     if factor.side == Side::Left { (left, right) } else { (right, left) }
+}
+
+/// The components of the covectors of all factors, by formulas for dexp⁻¹.
+pub(super) fn closed_components<'g>(model: &System<'g>, covectors: &[Covector<'g>]) -> Vec<Expr<'g>> {
+    model.factors.iter().zip(covectors).map(|(factor, covector)| covector.closed_components(factor.group)).into_list()
 }
 
 pub(super) fn components<'g>(model: &System<'g>, covectors: &[Covector<'g>]) -> Vec<Expr<'g>> {

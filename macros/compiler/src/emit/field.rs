@@ -4,9 +4,10 @@ use clebsch_symbolic::IntoList;
 use proc_macro2::TokenStream;
 use quote::{format_ident, quote};
 
-use super::function::Body;
-use super::functions::{CONNECTION, FIELD, FIELD_SITE};
-use super::scope::size;
+use super::function::{Body, no_words};
+use super::functions::{CONNECTION, FIELD, FIELD_SITE, MIDPOINT};
+use super::scope::{Scope, size};
+use super::system::matrix_of_kernel;
 use super::{Emitter, flag};
 use crate::derive::{Id, Solution};
 use crate::lower::{Solve, Step};
@@ -33,7 +34,11 @@ impl Emitter<'_, '_> {
                 let coordinates = scope.body(kernel);
                 quote!(let x: &Mu = &{ #coordinates };)
             });
-            quote!(let f: &F = &{ #locals #element }; #coordinates)
+            let logarithm = self.program.find(Id::EdgeLogarithm).map(|kernel| {
+                let coordinates = scope.body(kernel);
+                quote!(let y: &Mu = &{ #coordinates };)
+            });
+            quote!(let f: &F = &{ #locals #element }; #coordinates #logarithm)
         });
         // one arm for each direction
         let of_edges = |id: fn(usize) -> Id, value: &dyn Fn(usize) -> TokenStream| {
@@ -97,7 +102,27 @@ impl Emitter<'_, '_> {
             });
             self.target.derived(Some(quote!(runtime::ConnectedField)), element)
         });
-        quote!(#site #edges #marker #connection)
+        let midpoint = field.midpoint.is_some().then(|| self.midpoint(&scope));
+        quote!(#site #edges #marker #connection #midpoint)
+    }
+
+    /// The implementation of `MidpointSite`.
+    fn midpoint(&self, scope: &Scope<'_, '_>) -> TokenStream {
+        // an equation reads G, and the Cayley coordinates or the logarithm of G²
+        let read = |id: Id, name: &str| {
+            let (name, coordinates) = (format_ident!("{name}"), scope.body(self.program.find(id)?));
+            Some(quote!(let #name: &Mu = &{ #coordinates };))
+        };
+        let doubled = [read(Id::HalfStepDoubled, "x"), read(Id::HalfStepLogarithm, "y")];
+        let doubled: TokenStream = doubled.into_iter().flatten().collect();
+        let functions = self.functions(MIDPOINT, (0, 0), &no_words, |function, kernel| {
+            function.written(scope, kernel, &|word| match word {
+                "Doubled" => Some(doubled.clone()),
+                _ => matrix_of_kernel(scope, kernel?, word),
+            })
+        });
+        let dimension = size(self.dimension);
+        self.target.derived(Some(quote!(runtime::MidpointSite<#dimension>)), functions)
     }
 
     /// The momentum equation of a field whose drift moves q alone, by a formula of the momentum alone.

@@ -207,6 +207,24 @@ functions! {
         fn edge_element(&self, q: &Q, next: &Q) -> F { Id::EdgeElement }
     }
 
+    /// `MidpointSite`: implicit steps.
+    MIDPOINT(true) {
+        /// The element G of half of a step by its Cayley coordinates.
+        fn half_step(x: &Mu) -> F { Id::HalfStep }
+        /// The change of these coordinates by a motion of the midpoint.
+        fn half_step_motion(x: &Mu, motion: &Mu) -> Mu { Id::HalfStepMotion }
+        /// The left side of the equation of a step, and its derivatives by motions of the midpoint.
+        fn midpoint_equation(&self, h: T, t: T, f: &F, mu: &Mu) -> (Mu, Square) { Id::MidpointEquation } = {
+            Doubled Locals (Value0, Matrix1)
+        }
+        /// The declared force at the midpoint, and its derivatives by motions of it.
+        fn midpoint_force(&self, h: T, t: T, q: &Q, x: &Mu, u: &U) -> Option<(Mu, Square)> { Id::MidpointForce } = {
+            Locals runtime::Some((Value0, Matrix1))
+        }
+        /// The momentum carried along half of a step.
+        fn half_carried(f: &F, mu: &Mu) -> Mu { Id::HalfCarried }
+    }
+
     /// `VelocityEquation`, of a Lagrangian that is not quadratic.
     VELOCITY(false) {
         /// The Lagrangian of a velocity, its gradient and its Hessian.

@@ -108,9 +108,8 @@ impl Scope<'_, '_> {
             Role::MomentumMatrix(k) => factor("m", k),
             Role::Momentum(k) => Place::Vector("mu", &self.momenta, self.model.offset(k)),
             Role::Chart(block) => Place::Vector("x", &self.coordinates, self.symbols.blocks[block].offset),
-            Role::Algebra(k) | Role::Logarithm(k) | Role::Cayley(k) => {
-                Place::Vector("x", &self.coordinates, self.model.offset(k))
-            }
+            Role::Algebra(k) | Role::Cayley(k) => Place::Vector("x", &self.coordinates, self.model.offset(k)),
+            Role::Logarithm(k) => Place::Vector("y", &self.coordinates, self.model.offset(k)),
             Role::Motion(0, k) => Place::Vector("motion", &self.coordinates, self.model.offset(k)),
             Role::Motion(_, k) => Place::Vector("next_motion", &self.coordinates, self.model.offset(k)),
             Role::Direction(block) => Place::Vector("delta", &self.coordinates, self.symbols.blocks[block].offset),

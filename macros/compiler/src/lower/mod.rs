@@ -26,14 +26,14 @@ mod variation;
 use clebsch_symbolic::work::{self, Exhausted};
 use clebsch_symbolic::{Elements, Expr, IntoList};
 
-use crate::derive::{self, Formulas, Id, MechanicsFormulas, SteeredFormulas, Stencil};
+use crate::derive::{self, Formulas, Id, MatrixForm, MechanicsFormulas, MidpointFormulas, SteeredFormulas, Stencil};
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::model::features::Feature;
 use crate::model::{Isotropy, System};
 
 use entries::{Grid, Scalar};
 use kernel::{Hoisted, Hoisting};
-use made::{Maker, entries, entry_by_entry, plain, stack};
+use made::{Maker, entries, entry_by_entry, of_matrices, plain, stack};
 use scalar::{Rate, ScalarNode, Scalars};
 
 pub use code::{Code, Kernel, MatrixOperation, Whole, is_in_brackets};
@@ -217,11 +217,34 @@ impl<'g> Maker<'_, 'g> {
         if let Some(edge) = field.edges.iter().find(|edge| !edge.coordinates.is_empty()) {
             self.add(Id::EdgeCoordinates, |scalars, _| stack(scalars, &edge.coordinates, Hoisting::Nothing));
         }
+        if let Some(edge) = field.edges.iter().find(|edge| !edge.logarithm.is_empty()) {
+            self.add(Id::EdgeLogarithm, |scalars, _| stack(scalars, &edge.logarithm, Hoisting::Nothing));
+        }
+        if let Some(midpoint) = &field.midpoint {
+            self.midpoint(midpoint);
+        }
         let site = [(Id::SiteForce, &field.force_of_site), (Id::SiteForceAlong, &field.force_of_site_along)];
         let inside = field.force_inside.as_ref().map(|force| (Id::ForceInside, force));
         for (id, force) in site.into_iter().chain(inside).filter(|(_, force)| !force.is_empty()) {
             self.shorter(id, &[force]);
         }
+    }
+
+    /// The implicit steps of a field.
+    fn midpoint(&mut self, midpoint: &MidpointFormulas<'g>) {
+        self.add(Id::HalfStep, |scalars, _| plain(scalars, &midpoint.element));
+        let read = [(Id::HalfStepDoubled, &midpoint.coordinates), (Id::HalfStepLogarithm, &midpoint.logarithm)];
+        for (id, value) in read.into_iter().filter(|(_, value)| !value.is_empty()) {
+            self.add(id, |scalars, _| stack(scalars, value, Hoisting::Nothing));
+        }
+        let equation = [MatrixForm::Columns(vec![midpoint.residual.clone()]), midpoint.slope.clone()];
+        self.add(Id::MidpointEquation, |scalars, _| of_matrices(scalars, &equation, Hoisting::Nothing));
+        if let Some((force, slope)) = &midpoint.force {
+            let force = [MatrixForm::Columns(vec![force.clone()]), slope.clone()];
+            self.add(Id::MidpointForce, |scalars, _| of_matrices(scalars, &force, Hoisting::Nothing));
+        }
+        self.add(Id::HalfCarried, |scalars, _| stack(scalars, &midpoint.carried, Hoisting::Nothing));
+        self.add(Id::HalfStepMotion, |scalars, _| stack(scalars, &midpoint.motion, Hoisting::Nothing));
     }
 
     /// The kernel of vectors, each of several parts: as they are or expanded, whichever takes fewer operations.

@@ -166,6 +166,7 @@ impl fmt::Display for Callee {
             Callee::Analytic(Analytic::Exponential) => f.write_str("exponential"),
             Callee::Analytic(Analytic::Phi) => f.write_str("phi"),
             Callee::Analytic(Analytic::Logarithm) => f.write_str("logarithm"),
+            Callee::Analytic(Analytic::MotionLogarithm) => f.write_str("motion_logarithm"),
             Callee::PhiTimes => f.write_str("phi_times"),
             Callee::Inverse => f.write_str("inverse"),
             Callee::Value(name) => f.write_str(name),

@@ -254,6 +254,7 @@ impl MechanicsProgram<'_> {
         let of_sites = [
             ("element_of_edge", Id::EdgeElement),
             ("coordinates_of_edge", Id::EdgeCoordinates),
+            ("logarithm_of_edge", Id::EdgeLogarithm),
             ("force_on_site", Id::SiteForce),
             ("force_inside", Id::ForceInside),
         ];

@@ -127,7 +127,7 @@ impl<'g> ActedSystem<'_, '_, 'g> {
         let reads = |k: usize| {
             symbols
                 .iter()
-                .any(|symbol| matches!(symbol.role(), Some(Role::Element(own) | Role::Cayley(own)) if own == k))
+                .any(|symbol| matches!(symbol.role(), Some(Role::Element(own) | Role::Cayley(own) | Role::Logarithm(own)) if own == k))
         };
         if !(0..self.factors.len()).any(reads) {
             refuse!(diagnostics, tail(&closure.body), "the energy of an edge does not depend on `{}`", pattern.spell();
@@ -206,11 +206,12 @@ impl<'g> ActedSystem<'_, '_, 'g> {
 
 /// Reports features that a field cannot have yet. Powers report that they are none.
 pub(super) fn check(declaration: &Declaration, diagnostics: &Diagnostics) {
-    let connection = features::declared(declaration, Feature::Connection);
+    let words = [(Feature::Connection, "connection"), (Feature::Midpoint, "midpoint")];
+    let emitted = words.map(|(feature, word)| (feature, word, features::declared(declaration, feature)));
     let Some(closure) = declaration.spaces.first() else {
-        if connection.is_some() {
-            report!(diagnostics, declaration.ident.span(), "`emit = [connection]` is for fields, and this is one system";
-                help "write `space = |dx, W| …` with the element W from a site to its neighbour, or leave out the word `connection`");
+        for (feature, word, _) in emitted.iter().filter(|(.., found)| found.is_some()) {
+            report!(diagnostics, declaration.ident.span(), "{} is for fields, and this is one system", feature.words();
+                help "write `space = |dx, W| …` with the element W from a site to its neighbour, or leave out the word `{word}`");
         }
         return;
     };
@@ -224,14 +225,14 @@ pub(super) fn check(declaration: &Declaration, diagnostics: &Diagnostics) {
             help "write `|{}| …`", second.pattern.spell();
             note "nothing moves it in time: `relax` finds where it rests");
     }
-    let connected = connection.map(|found| (Feature::Connection, found));
+    let emitted = emitted.into_iter().filter_map(|(feature, _, found)| Some((feature, found?)));
     let of_ends = |closure: &&Closure| closure.arguments.len() > ENDS.len();
     let ends = declaration.spaces.iter().find(of_ends).map(|closure| Found::at(closure.head));
     let found = |feature| match feature {
         Feature::EndsOfEdges => ends.clone(),
         _ => features::declared(declaration, feature),
     };
-    for feature in [field].into_iter().chain(resting).chain(connected) {
+    for feature in [field].into_iter().chain(resting).chain(emitted) {
         diagnostics.extend(features::refusals_of(feature, found));
     }
 }

@@ -55,6 +55,7 @@ fn place(keys: &Keys, of_steps: &Keys, feature: Feature) -> Option<Span> {
         Feature::Boundary => emitted(emit.boundary),
         Feature::Momentum => emitted(emit.momentum),
         Feature::Connection => emitted(emit.connection),
+        Feature::Midpoint => emitted(emit.midpoint),
         // it discretises the velocity of a constraint too
         Feature::Discretization if keys.lists.contains_key("constraint") => None,
         Feature::Discretization => dials.discretization.as_ref().map(|discretization| discretization.span),

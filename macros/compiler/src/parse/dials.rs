@@ -232,6 +232,8 @@ pub struct Emit {
     pub momentum: bool,
     /// The elements of the edges of a field alone, without configurations.
     pub connection: bool,
+    /// The implicit midpoint steps of a field along a line.
+    pub midpoint: bool,
 }
 
 /// A word of `emit`.
@@ -244,13 +246,14 @@ pub(super) struct Emitted {
 
 /// The words of `emit`: where each is noted, and the items that it adds.
 #[rustfmt::skip]
-pub(super) const EMITTED: [(&str, Emitted); 6] = [
+pub(super) const EMITTED: [(&str, Emitted); 7] = [
     ("generated", Emitted { part: |emit| &mut emit.generated, about: "The constant `GENERATED`, the generated code as text; needs the feature `generated`." }),
     ("latex",     Emitted { part: |emit| &mut emit.latex,     about: "The constant `DERIVATION_LATEX`, the formulas in LaTeX." }),
     ("tangent",   Emitted { part: |emit| &mut emit.tangent,   about: "The methods `step_tangent` and `step_sensitivity`, the derivatives of a step." }),
     ("boundary",  Emitted { part: |emit| &mut emit.boundary,  about: "The method `boundary()`, the path of least action between two configurations." }),
     ("momentum",  Emitted { part: |emit| &mut emit.momentum,  about: "Steps of the momentum alone: the configuration is `()`." }),
     ("connection", Emitted { part: |emit| &mut emit.connection, about: "The trait `ConnectedField`: the group elements of the edges of a field, stepped without configurations." }),
+    ("midpoint",  Emitted { part: |emit| &mut emit.midpoint,  about: "The trait `MidpointSite`: implicit steps of a field along a line, stable at any step size." }),
 ];
 
 /// The words of `emit`, each with its meaning.

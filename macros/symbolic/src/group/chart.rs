@@ -333,6 +333,16 @@ impl Group {
         }
     }
 
+    /// The same by a closed form, where the group has one: of rotations and rigid motions in the plane and in space.
+    pub fn closed_logarithm(self, f: Expr<'_>) -> Expr<'_> {
+        match self {
+            Group::SpecialOrthogonal(2 | 3) | Group::SpecialEuclidean(2 | 3) => {
+                self.projected_coordinates(f.analytic(Analytic::MotionLogarithm))
+            }
+            _ => self.logarithm(f),
+        }
+    }
+
     /// The matrix of ad_ξ in the basis of the algebra.
     pub fn ad<'g>(self, xi: Expr<'g>) -> Expr<'g> {
         let graph = xi.graph();
@@ -380,6 +390,37 @@ impl Group {
             } else {
                 ad.analytic(Analytic::Phi)
             }
+        })
+    }
+
+    /// dexp_ξ⁻¹ where it is a polynomial in ad_ξ. It is 1 − ½ ad + c ad² where ad³ = −s ad. On SE(3), where ad (ad² + s)² = 0, it is
+    /// 1 − ½ ad + (c − s c′) ad² − c′ ad⁴. Both have c(s) = (c₃ − 2c₄)/(2c₂) = (1 − ½θ cot ½θ)/θ² by Stumpff functions, s = θ². `None` for other
+    /// groups.
+    pub fn logarithm_slope(self, xi: Expr<'_>) -> Option<Expr<'_>> {
+        let graph = xi.graph();
+        let (ad, one) = (self.ad(xi), graph.identity(self.dimension()));
+        let square = ad * ad;
+        if identity::vanishes(ad) {
+            return Some(one);
+        }
+        if identity::vanishes(square) {
+            return Some(one - ad / 2);
+        }
+        let trace = -square.trace();
+        let is_simple = identity::vanishes(square * ad + trace / 2 * ad);
+        let s = if is_simple { trace / 2 } else { trace / 4 };
+        let stumpff = |k: u8| s.function(Function::Stumpff(k));
+        let (c2, numerator) = (stumpff(2), stumpff(3) - 2 * stumpff(4));
+        let c = numerator / (2 * c2);
+        if is_simple {
+            return Some(one - ad / 2 + c * square);
+        }
+        let shifted = square + s * one;
+        identity::vanishes(ad * (shifted * shifted)).then(|| {
+            // c₂′ = c₄ − ½c₃, and the numerator changes by ½(5c₅ − c₄ − 8c₆)
+            let change = 5 * stumpff(5) - stumpff(4) - 8 * stumpff(6);
+            let slope = (change * c2 + numerator * numerator) / (4 * (c2 * c2));
+            one - ad / 2 + (c - s * slope) * square - slope * (square * square)
         })
     }
 

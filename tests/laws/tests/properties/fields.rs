@@ -3,10 +3,10 @@
 use crate::arbitrary::{cases, vector};
 use clebsch::__private as private;
 use clebsch::{
-    Alike, CellComplex, Clebsch, Clock, ConnectedField, Error, Field, FieldSite, Grid, Lattice, Mesh, Population,
-    SavedField, Side, Sides, SiteError, Various,
+    Alike, CellComplex, Clebsch, Clock, ConnectedField, Error, Field, FieldSite, FieldState, Grid, Lattice, Mesh,
+    MidpointSite, Population, SavedField, Side, Sides, SiteError, Various,
 };
-use nalgebra::{Matrix3, Rotation3, SVector, Vector1, Vector3};
+use nalgebra::{Matrix3, Rotation3, SVector, Vector1, Vector2, Vector3};
 use proptest::prelude::*;
 
 /// Spins with springs between them in two directions, in a field that grows with the time.
@@ -98,6 +98,21 @@ pub struct Needles {
 )]
 pub struct Vanes {
     pub field: Vector3<f64>,
+}
+
+/// Bodies in a row with springs of their turns and places between them, in a field that grows with the time.
+#[derive(Clebsch, Clone, Debug)]
+#[clebsch(
+    action    = |(F, a): (SO<3>, Translation<2>), (R, x): (SO<3>, Vector2)| (R * F, x + a),
+    cost      = |h, F, a| (F - I).norm_squared() / (4 * h) + self.mass * a.norm_squared() / (2 * h),
+    potential = |t, (R, x)| self.weight * (1 + t) * R[(2, 2)] * x.x,
+    space     = |dx, (W, b)| (W.log().norm_squared() + b.norm_squared() + W.log().x * b.y) / (2 * dx),
+    force     = |(R, x), (omega, v), u: Vector1| (u.x * x.y * omega, vector![u.x * R[(0, 1)] * v.y, 0]),
+    emit      = [midpoint],
+)]
+pub struct Row {
+    pub mass: f64,
+    pub weight: f64,
 }
 
 /// Rotations with springs between them, in two directions.
@@ -659,6 +674,78 @@ proptest! {
             // momenta of random sites may be too large for the step
             Err(SiteError { error: Error::Unsolvable { .. } | Error::StepTooLong { .. }, .. }) | Ok(()) => {}
             Err(error) => prop_assert!(false, "{error}"),
+        }
+    }
+
+    #[test]
+    fn implicit_steps_are_those_of_their_parts(
+        turns in prop::collection::vec(vector::<3>(1.0), 4),
+        places in prop::collection::vec(vector::<2>(1.0), 4),
+        momenta in prop::collection::vec(vector::<5>(0.3), 4),
+        half in vector::<5>(0.4),
+        motion in vector::<5>(1.0),
+        sides in side(),
+        mass in 0.5_f64..2.0,
+    ) {
+        let (row, h) = (Row { mass, weight: 0.2 }, 0.1);
+        // a motion of the midpoint by differences: the configuration Φ_G(q), and the equation
+        let act = |half: &SVector<f64, 5>, q: &(Matrix3<f64>, Vector2<f64>)| row.act(&Row::half_step(half), q);
+        let start = (Rotation3::new(turns[0]).into_inner(), places[0]);
+        let along = |size: f64| half + Row::half_step_motion(&half, &motion) * size;
+        let [(a, x), (b, y)] = [1e-6, -1e-6].map(|size| act(&along(size), &start));
+        let (turn, place) = act(&half, &start);
+        let turned = turn * motion.fixed_rows::<3>(0).into_owned().cross_matrix();
+        near(((a - b) / 2e-6 - turned).amax(), 0.0, 1e-8);
+        near(((x - y) / 2e-6 - motion.fixed_rows::<2>(3)).amax(), 0.0, 1e-8);
+        near((place - places[0] - half.fixed_rows::<2>(3) * 2.0).amax(), 0.0, 1e-14);
+        let equation = |half: &SVector<f64, 5>| row.midpoint_equation(h, 0.0, &Row::half_step(half), &momenta[0]);
+        let (sum, slope) = equation(&half);
+        let found = (equation(&along(1e-6)).0 - equation(&along(-1e-6)).0) / 2e-6;
+        near((found - slope * motion).amax(), 0.0, 1e-6 * (1.0 + slope.amax()));
+        let push = |half: &SVector<f64, 5>, u: f64| row.midpoint_force(h, 0.0, &act(half, &start), half, &Vector1::new(u));
+        let none = push(&half, 0.0).expect("a force");
+        prop_assert_eq!((none.0.amax(), none.1.amax()), (0.0, 0.0));
+        let [(up, _), (down, _), (_, slope)] = [along(1e-6), along(-1e-6), half].map(|half| push(&half, 1.0).expect("a force"));
+        near(((up - down) / 2e-6 - slope * motion).amax(), 0.0, 1e-6 * (1.0 + slope.amax()));
+        // without forces the momentum before the step is the Legendre transform of F = G², and that after it the next one
+        let step = row.act(&Row::half_step(&half), &(Row::half_step(&half).0, Vector2::zeros()));
+        let step = (step.0, half.fixed_rows::<2>(3) * 4.0);
+        let before = row.legendre(h, 0.0, &start, &step);
+        near(row.midpoint_equation(h, 0.0, &Row::half_step(&half), &before).0.amax(), 0.0, 1e-12);
+        let carried = |mu| Row::half_carried(&Row::half_step(&half), mu);
+        let after = carried(&carried(&before));
+        near((after - row.legendre_next(h, 0.0, &start, &step)).amax(), 0.0, 1e-12);
+        prop_assert!(sum.iter().all(|entry| entry.is_finite()));
+        // steps back undo steps
+        let pushes = [Vector1::new(0.1); 4];
+        let q: Vec<_> = turns.iter().zip(&places).map(|(turn, place)| (Rotation3::new(*turn).into_inner(), *place)).collect();
+        let domain = row.grid([4]).spacing([0.5]).sides([sides]);
+        let (forth, back) = (domain.clone().midpoint(h).expect("a stepper"), domain.midpoint(-h).expect("a stepper"));
+        prop_assert_eq!((forth.step_size(), forth.lattice().sites()), (h, 4));
+        prop_assert_eq!(forth.system(3).map(|row| row.mass), Some(mass));
+        let mut state = forth.state(q.clone(), momenta.clone()).expect("a state");
+        let first = (state.configuration().clone(), state.momentum().clone());
+        let conserved = |state: &FieldState<_, _, _>| forth.conserved(state).map(|momenta| momenta.iter().map(|(_, value)| value).sum::<f64>());
+        let before = conserved(&state).expect("momenta");
+        forth.advance(&mut state, 2).expect("a step");
+        forth.step(&mut state).expect("a step");
+        prop_assert!((1..20).contains(&state.iterations()));
+        let mut pushed = state.clone();
+        forth.step_with(&mut pushed, &pushes).expect("a step");
+        prop_assert!(pushed.momentum() != state.momentum());
+        back.step_with(&mut pushed, &pushes).expect("a step");
+        for (found, expected) in pushed.momentum().iter().zip(state.momentum()) {
+            near((found - expected).amax(), 0.0, 1e-11);
+        }
+        prop_assert!(forth.energy(&state).is_ok_and(f64::is_finite));
+        if !(0..4).any(|site| forth.lattice().is_fixed(site)) {
+            near(conserved(&state).expect("momenta"), before, 1e-12);
+        }
+        back.advance(&mut state, 3).expect("a step");
+        let (q, mu) = state.into_storage();
+        for (i, (q, expected)) in q.iter().zip(&first.0).enumerate() {
+            near((q.0 - expected.0).amax().max((q.1 - expected.1).amax()), 0.0, 1e-11);
+            near((mu[i] - first.1[i]).amax(), 0.0, 1e-11);
         }
     }
 

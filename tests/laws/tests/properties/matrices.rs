@@ -138,6 +138,7 @@ proptest! {
         // the condition number near π is 1/(π − θ), here at most 7
         assert_near(&found, &hat(&(axis * angle)), 40.0 * NEAR, "log");
         assert_near(&private::exponential(&found), &turn, 40.0 * NEAR, "exp log");
+        assert_near(&private::motion_logarithm(&turn), &hat(&(axis * angle)), NEAR, "log of a motion");
     }
 
     /// cos and sin, cosh and sinh, and c_k = 1/k! − s c_{k+2}.

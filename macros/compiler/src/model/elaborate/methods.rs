@@ -60,7 +60,8 @@ impl<'g> Elaborator<'_, '_, 'g> {
         let (method, name) = (&call.method, call.method.to_string());
         let is_logarithm = LOGARITHMS.contains(&name.as_str());
         let is_square = a.shape().is_square() && !a.shape().is_scalar();
-        if !(is_square || is_quaternion) || !(is_logarithm || name == "exp") {
+        let is_of_edge = self.key == "space" && name == "log" && matches!(a.role(), Some(Role::Element(_)));
+        if is_of_edge || !(is_square || is_quaternion) || !(is_logarithm || name == "exp") {
             return None;
         }
         let (text, is) = (parenthesized(&call.receiver), receiver.describe());
@@ -75,6 +76,10 @@ impl<'g> Elaborator<'_, '_, 'g> {
             error
                 .help("write a `lagrangian` with `discretization = exponential`, as in `lagrangian = |xi| xi.norm_squared() / 2`")
                 .note("its step is F = exp(h*xi), so it is a function of the logarithm of F")
+        } else if self.key == "space" {
+            error.help("write the energy of the element of an edge, `|dx, W| …` with `W.log()`").note(
+                "the element moves a site to its neighbour: it is near the identity where both are near each other",
+            )
         } else {
             error
                 .help(format!("write a function that is smooth everywhere, as in `({text} - I).norm_squared()`"))

@@ -76,7 +76,7 @@ const fn part(sizes: usize, starts: [bool; 2], shape: fn(Shape, &[usize]) -> Sha
 
 /// All methods: the number of arguments, the receiver, and the value.
 #[rustfmt::skip]
-pub(super) const METHODS: [(&str, usize, Rule, &str); 40] = [
+pub(super) const METHODS: [(&str, usize, Rule, &str); 41] = [
     ("transpose",      0, Rule::Any(|a| a.transpose()), "Aᵀ"),
     ("norm_squared",   0, Rule::Any(|a| a.norm_squared()), "tr(AᵀA), the sum of the squares of all entries"),
     ("norm",           0, Rule::Special("a vector or matrix that is no scalar", |this, call, a| this.norm(call, a)), "√tr(AᵀA); it has no derivative at 0"),
@@ -100,6 +100,7 @@ pub(super) const METHODS: [(&str, usize, Rule, &str); 40] = [
     ("translation",    0, Rule::Special("an element of `SE`, `Sim` or `Aff`", |this, call, a| this.translation(call, a)), "the shift a of (A a; 0 1)"),
     ("matrix",         0, Rule::Special("the velocity of one factor", |this, call, a| this.velocity_matrix(call, a)), "its element of the Lie algebra"),
     ("cayley",         0, Rule::Special("the element of an edge", |this, call, a| this.cayley(call, a)), "the strain ξ of an edge with F = (I − ξ/2)⁻¹(I + ξ/2), in `space`"),
+    ("log",            0, Rule::Special("the element of an edge", |this, call, a| this.log(call, a)), "the strain ξ of an edge with F = exp ξ, in `space`"),
     ("map",            1, Rule::Map, "`x.map(|i| …)`, an array"),
     ("sum",            0, Rule::Sum, "the sum of an array"),
     ("sqrt",           0, Rule::OfScalar(|this, call, a| this.sqrt(call, a)), "√x"),

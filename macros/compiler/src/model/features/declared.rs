@@ -24,6 +24,7 @@ pub(crate) fn declared(declaration: &Declaration, feature: Feature) -> Option<Fo
         Feature::Boundary => emitted(dials.emit.boundary),
         Feature::Momentum => emitted(dials.emit.momentum),
         Feature::Connection => emitted(dials.emit.connection),
+        Feature::Midpoint => emitted(dials.emit.midpoint),
         Feature::Matrices => {
             let code = dials.code.as_ref().filter(|code| code.value == CodeForm::Matrices);
             code.map(|code| Found::at(code.span))
