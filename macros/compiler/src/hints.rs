@@ -85,7 +85,7 @@ impl Found {
 
     fn value(&mut self, key: &Ident, value: &[TokenTree]) {
         let words: Vec<Ident> = match value {
-            [TokenTree::Ident(word)] => vec![word.clone()],
+            [word @ TokenTree::Ident(_)] => ident(word).into_iter().collect(),
             [TokenTree::Group(list)] => list.stream().into_iter().filter_map(|word| ident(&word)).collect(),
             _ => Vec::new(),
         };

@@ -40,4 +40,5 @@ fn the_runtime_may_have_another_name() {
 #[test]
 fn keywords_have_no_paths() {
     assert_eq!(paths("#[clebsch(struct, fn = 1, emit = [self, _], crate = 5 + 3)] struct Body;"), ["emit"]);
+    assert_eq!(paths("#[clebsch(order = 2, emit = struct)] struct Body;"), ["order", "emit"]);
 }
