@@ -3,9 +3,11 @@
 use crate::Error;
 use crate::numbers::count;
 use crate::ranks::{Failure, Halo, LONGEST, Ranks};
+#[cfg(feature = "serde")]
+use clebsch::Scalar;
 use clebsch::{
-    Alike, Clebsch, Conserved, Conserves, Field, FieldState, FieldStepper, MovingField, Population, Real, Scalar,
-    SiteError, Slab, Space,
+    Alike, Clebsch, Conserved, Conserves, Field, FieldState, FieldStepper, MovingField, Population, Real, SiteError,
+    Slab, Space,
 };
 use mpi::traits::Equivalence;
 
