@@ -182,8 +182,8 @@ where
     /// So many steps, in place. A step that fails leaves the state as it was before this step.
     ///
     /// # Errors
-    /// * [`Error::NotConverged`] for a step that Newton's method does not find, with the site of the largest correction. A smaller
-    ///   step is found more easily.
+    /// * [`Error::NotConverged`] for a step that Newton's method does not find, with the site of the largest correction. Its residual is
+    ///   the size of this correction, in radians and metres. A smaller step is found more easily.
     /// * [`Error::NotFinite`] for a step after which the state or the time is not finite.
     /// * [`Error::NumberOfSites`] for the state of another field.
     pub fn advance<Points, Momenta>(
