@@ -87,8 +87,9 @@ pub struct MidpointState<S: Clebsch, Points, Momenta, const M: usize> {
 /// The storage of the solver.
 #[derive(Clone, Debug)]
 struct Work<S: Clebsch, const M: usize> {
-    /// The Cayley coordinates of the last half steps, at which the next solve starts.
+    /// The Cayley coordinates of the half steps.
     halves: Vec<SVector<T<S>, M>>,
+    /// Those that are tried; behind a step the momenta.
     tried: Vec<SVector<T<S>, M>>,
     midpoints: Vec<Q<S>>,
     correction: Vec<SVector<T<S>, M>>,
