@@ -81,6 +81,13 @@ errors! {
             /// The sites, N.
             sites: usize,
         } => "the storage has {found} entries where there are {sites} sites: give one entry for each site";
+        /// There is no site with this number.
+        NoSite {
+            /// The number, counted from 0.
+            site: usize,
+            /// The sites, N.
+            sites: usize,
+        } => "there is no site {site} among {sites}: they are counted from 0, so give a number below {sites}";
         /// A grid has no site in some direction, or more than can be numbered.
         EmptyGrid {
             /// The direction, from 0 on.

@@ -41,6 +41,8 @@
 //! | step one system in several ways | [`Clebsch::stepper_by`] and [`Method`]; [`Stepper::state_of`] takes a state over from one to another |
 //! | step a state in place | the trait [`Drive`], one set of words for all that has a state of its own |
 //! | step a large state in place, on the heap if you like | [`Stepper::integrator`]; [`Integrator`], in a `Box` |
+//! | hit a body, or correct its place | [`Stepper::kick`], [`Stepper::with_configuration`] |
+//! | make a step of another size | [`Stepper::step_for`], [`Stepper::with_step_size`] |
 //! | choose the step size for an error | [`Stepper::suggest_step_size`] |
 //! | know the quantities that no step changes | [`Stepper::conserved`], which exists where conserved momenta were found; [`Conserved`] |
 //! | step the momentum without its configuration | `emit = [momentum]`: a [`Clebsch::Configuration`] of `()` |

@@ -64,7 +64,7 @@ mod unstepped;
 
 use crate::fields::copy;
 use crate::parts::{Mu, Q};
-use crate::space::larger;
+use crate::space::{larger, plus};
 use crate::{Clebsch, Clock, Declared, Error, Mask, Method, Scalar, Space, Time};
 use core::fmt::Debug;
 use core::marker::PhantomData;
@@ -177,9 +177,20 @@ pub trait Scheme<S: Clebsch, M: Method<S> = Declared>: Sized {
     /// The data that the first step from q takes, at the time of q.
     fn left(at: AtOf<'_, S, Self, M>, q: &Q<S>, mu: &Mu<S>) -> Self::Left;
 
-    /// The same for steps that continue others of another size: data that does not depend on the size stays.
+    /// The same for steps that continue others of another size, or from another q: data that does not depend on these stays.
     fn left_after(at: AtOf<'_, S, Self, M>, q: &Q<S>, mu: &Mu<S>, _left: &Self::Left) -> Self::Left {
         Self::left(at, q, mu)
+    }
+
+    /// The stored form of the momentum after an impulse at q, and the data that the next step takes. Data that does not
+    /// depend on the momentum stays.
+    fn kicked(
+        _at: AtOf<'_, S, Self, M>,
+        q: &Q<S>,
+        (held, left): (&Self::Held, &Self::Left),
+        impulse: &Mu<S>,
+    ) -> (Self::Held, Self::Left) {
+        (Self::held(q, &plus(&Self::momentum(q, held), impulse)), *left)
     }
 
     /// `left` as it was read, checked against [`left`](Self::left) of the same time, q and μ. Lanes that differ by more

@@ -4,8 +4,10 @@
 mod stepping;
 
 mod formulas;
+mod impulses;
 mod reactions;
 mod refusal;
+mod sizes;
 mod staggered;
 pub(crate) mod step_size;
 mod symmetric;

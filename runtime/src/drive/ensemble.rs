@@ -4,7 +4,7 @@ mod chunk;
 
 use super::Drive;
 use crate::fields::debug_fields;
-use crate::{Body, Clebsch, Clock, Conserved, Conserves, Declared, Error, Method, Scalar, State, Stepper, Time};
+use crate::{Body, Clebsch, Clock, Conserved, Conserves, Declared, Error, Method, Scalar, Space, State, Stepper, Time};
 use alloc::vec::Vec;
 use chunk::Chunk;
 use core::convert::Infallible;
@@ -187,6 +187,34 @@ impl<S: Clebsch, M: Method<S>> Ensemble<S, M> {
         let state = chunk::alone(stepper, &(q, mu))?;
         let (number, lane) = (body / S::Scalar::LANES, body % S::Scalar::LANES);
         self.chunks.get_mut(number).ok_or(error)?.put(lane, state);
+        Ok(())
+    }
+
+    /// Adds an impulse Δμ to the momentum of a body, as [`Stepper::kick`] does; one that had failed goes on with it.
+    ///
+    /// ```
+    /// # use clebsch::Clebsch;
+    /// # #[derive(Clebsch, Clone, Debug)]
+    /// # #[clebsch(action = |a: Translation<1>, x: Vector1| x + a, cost = |h, a| self.mass * a.norm_squared() / (2 * h))]
+    /// # struct Particle { mass: f64 }
+    /// # use nalgebra::Vector1;
+    /// let starts = [(Vector1::zeros(), Vector1::new(2.0)); 3];
+    /// let mut particles = Particle { mass: 2.0 }.into_stepper(0.5)?.ensemble(starts)?;
+    /// particles.kick(1, Vector1::new(-4.0))?;
+    /// particles.step();
+    /// let places: Vec<f64> = particles.bodies().map(|(x, _)| x.x).collect();
+    /// assert_eq!(places, [0.5, -0.5, 0.5]);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
+    /// # Errors
+    /// Those of [`Stepper::kick`], and [`Error::NoBody`]. The body stays as it was.
+    pub fn kick(&mut self, body: usize, impulse: <S::Momentum as Space<S::Scalar>>::Lane) -> Result<(), Error> {
+        let error = Error::NoBody { body, bodies: self.bodies };
+        let (stepper, chunk, lane) = self.at(body).ok_or(error)?;
+        let alone = chunk::in_all_lanes(chunk.state_of(lane), lane);
+        let kicked = stepper.kick(&alone, S::Momentum::side_by_side(|_| impulse))?;
+        self.chunks.get_mut(body / S::Scalar::LANES).ok_or(error)?.put(lane, kicked);
         Ok(())
     }
 

@@ -69,6 +69,25 @@ impl<S: Clebsch, M: Method<S>> Integrator<S, M> {
         *(if self.is_second { second } else { first }) = state;
     }
 
+    /// Adds an impulse Δμ to the momentum, as [`Stepper::kick`] does.
+    ///
+    /// # Errors
+    /// Those of [`Stepper::kick`]. After an error the state is unchanged.
+    pub fn kick(&mut self, impulse: S::Momentum) -> Result<(), Error> {
+        self.set_state(self.stepper.kick(self.state(), impulse)?);
+        Ok(())
+    }
+
+    /// One step of the size `duration`, as [`Stepper::step_for`] makes it.
+    ///
+    /// # Errors
+    /// Those of [`Stepper::step_for`]. After an error the state is unchanged.
+    pub fn step_for(&mut self, duration: S::Scalar) -> Result<(), Error> {
+        self.set_state(self.stepper.step_for(self.state(), duration)?);
+        self.steps = self.steps.saturating_add(1);
+        Ok(())
+    }
+
     getters! {
         /// The system with its step size.
         ref stepper: Stepper<S, M>;

@@ -2,9 +2,11 @@
 
 use super::Drive;
 use crate::fields::getters;
+use crate::parameters::check_finite;
 use crate::power::{Point, Power, SiteMomentum};
 use crate::scheme::{At, AtSite, InStorage, JoinedInStorage, Scheme, Stored};
-use crate::stepper::check_on_orbit;
+use crate::space::plus;
+use crate::stepper::{check_on_orbit, check_violation};
 use crate::{Clebsch, Clock, Conserves, Error, Scalar, Space, Stepper, Time};
 use core::fmt::{self, Display, Formatter};
 use core::iter::once;
@@ -385,7 +387,7 @@ impl<P: Clebsch> Stepper<P> {
         let mut sites = Sites { stepper: self, time: Time::at(Zero::zero()), steps: 0, storage, room, factored: None };
         prepare(&mut sites)?;
         sites.check()?;
-        sites.kick()?;
+        sites.start_kick()?;
         Ok(sites)
     }
 
@@ -423,7 +425,7 @@ where
     }
 
     /// The kick at the configuration, for the steps that start there.
-    fn kick(&mut self) -> Result<(), SiteError> {
+    fn start_kick(&mut self) -> Result<(), SiteError> {
         let SiteStorage { configuration: q, more_points: [_, gradient], more_momenta: [next, kick, _], .. } =
             &mut self.storage;
         let (q, mu) = (array_mut(q.as_mut())?, array_mut(next.as_mut())?);
@@ -536,6 +538,51 @@ where
         P: Conserves,
     {
         Ok(self.stepper.system().conserved(array(self.configuration())?, array(self.momentum())?))
+    }
+}
+
+/// Where the sites have no joints.
+impl<P, Points, Momenta, const N: usize> Sites<P, Points, Momenta, N>
+where
+    P: Power<N>,
+    Points: AsRef<[Point<P, N>]> + AsMut<[Point<P, N>]>,
+    Momenta: AsRef<[SiteMomentum<P, N>]> + AsMut<[SiteMomentum<P, N>]>,
+{
+    /// Adds an impulse Δμ to the momentum of a site, as [`Stepper::kick`] does.
+    ///
+    /// ```
+    /// # use clebsch::{Clebsch, SiteStorage};
+    /// # use nalgebra::Vector1;
+    /// # #[derive(Clebsch, Clone, Debug)]
+    /// # #[clebsch(
+    /// #     action    = |a: [Translation<1>; N], x: [Vector1; N]| (0..N).map(|i| x[i] + a[i]),
+    /// #     cost      = |h, a| (0..N).map(|i| a[i].norm_squared() / (2 * h)).sum(),
+    /// #     potential = |x| (0..N).map(|i| (x[(i + 1) % N] - x[i]).norm_squared() / 2).sum(),
+    /// # )]
+    /// # struct Ring<const N: usize>;
+    /// let (places, momenta) = (vec![Vector1::zeros(); 8], vec![Vector1::zeros(); 8]);
+    /// let mut ring = Ring::<8>.into_stepper(0.1)?.sites(SiteStorage::of(places, momenta))?;
+    /// ring.kick(3, Vector1::new(2.0))?;
+    /// ring.step()?;
+    /// assert_eq!(ring.configuration()[3].x, 0.2);
+    /// # Ok::<(), clebsch::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// [`Error::NoSite`], [`Error::NotFinite`] and [`Error::OutsideMomentumSpace`] as for
+    /// [`Stepper::kick`]. The state is unchanged.
+    pub fn kick(&mut self, site: usize, impulse: SiteMomentum<P, N>) -> Result<(), SiteError> {
+        let at_site = |error| SiteError { site: Some(site), error };
+        let q = self.storage.configuration.as_ref().get(site);
+        let mu = self.storage.momentum.as_mut().get_mut(site);
+        let (Some(q), Some(mu)) = (q, mu) else { return Err(at_site(Error::NoSite { site, sites: N })) };
+        check_finite("the impulse", &impulse).map_err(at_site)?;
+        let defect = self.stepper.system().site(site).isotropy_defect(q, &impulse);
+        check_violation(defect, &impulse).map_err(at_site)?;
+        let kicked = plus(mu, &impulse);
+        check_finite("the momentum after the kick", &kicked).map_err(at_site)?;
+        *mu = kicked;
+        Ok(())
     }
 }
 

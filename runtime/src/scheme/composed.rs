@@ -101,6 +101,11 @@ impl<S: Clebsch, M: Method<S>, I: Scheme<S, M>, Z: Sizes<K>, const K: usize> Sch
         I::left_after(At::new(at.system, at.constants.first(), at.t), q, mu, left)
     }
 
+    #[inline]
+    fn kicked(at: AtOf<'_, S, Self, M>, q: &Q<S>, state: (&I::Held, &I::Left), impulse: &Mu<S>) -> (I::Held, I::Left) {
+        I::kicked(At::new(at.system, at.constants.first(), at.t), q, state, impulse)
+    }
+
     fn resumed(at: AtOf<'_, S, Self, M>, q: &Q<S>, mu: &Mu<S>, left: &I::Left) -> I::Left {
         I::resumed(At::new(at.system, at.constants.first(), at.t), q, mu, left)
     }

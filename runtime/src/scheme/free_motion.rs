@@ -22,6 +22,11 @@ impl<S: FreeMotion<M>, M: Method<S>> Carry<S, M> for Kept {
         at.system.kept(at.constants, mu)
     }
 
+    #[inline]
+    fn kicked(at: At<'_, S, M>, q: &Q<S>, mu: &Mu<S>, _: &S::Kept) -> S::Kept {
+        Self::first(at, q, mu)
+    }
+
     /// Steps are compared, not constants: those of the start of a motion may be another choice for the same motion.
     fn resumed(at: At<'_, S, M>, q: &Q<S>, mu: &Mu<S>, kept: &S::Kept) -> S::Kept {
         let anew = Self::first(at, q, mu);

@@ -67,7 +67,16 @@ impl<S: Substep<0, M>, M: Method<S>, P: Sequence<S, M>> Scheme<S, M> for InSeque
     #[inline]
     fn left_after(at: At<'_, S, M>, q: &Q<S>, mu: &Mu<S>, left: &Self::Left) -> Self::Left {
         let (_, rests) = parted::<S, M, P::Carry>(left);
+        // rounding errors of another q or N may be larger than the last place of these
+        let rests = (S::Sums::resumed(q, rests.0), S::Sums::resumed(mu, rests.1));
         S::Sums::joined(P::Carry::first(at, q, mu), rests)
+    }
+
+    #[inline]
+    fn kicked(at: At<'_, S, M>, q: &Q<S>, (mu, left): (&Mu<S>, &Self::Left), push: &Mu<S>) -> (Mu<S>, Self::Left) {
+        let (impulse, mut rests) = parted::<S, M, P::Carry>(left);
+        let mu = S::Sums::sum(mu, &mut rests.1, push);
+        (mu, S::Sums::joined(P::Carry::kicked(at, q, &mu, impulse), rests))
     }
 
     fn resumed(at: At<'_, S, M>, q: &Q<S>, mu: &Mu<S>, left: &Self::Left) -> Self::Left {
@@ -148,6 +157,12 @@ pub trait Carry<S: Parts<M>, M: Method<S>> {
 
     /// The impulse that the first step takes.
     fn first(at: At<'_, S, M>, q: &Q<S>, mu: &Mu<S>) -> Self::Impulse;
+
+    /// The data after a push at q, which made the momentum μ: unchanged where it does not depend on μ.
+    #[inline]
+    fn kicked(_at: At<'_, S, M>, _q: &Q<S>, _mu: &Mu<S>, impulse: &Self::Impulse) -> Self::Impulse {
+        *impulse
+    }
 
     /// The impulse as it was read, in the lanes where it agrees with [`first`](Self::first). That one in the other lanes.
     fn resumed(at: At<'_, S, M>, q: &Q<S>, mu: &Mu<S>, impulse: &Self::Impulse) -> Self::Impulse {

@@ -2,6 +2,7 @@
 //! that succeeds.
 
 use super::{Stepper, check_on_orbit, first_without, whole_or_lane};
+use crate::parts::{T, U};
 use crate::scheme::{At, AtOf, Constants, Held, Left, Scheme};
 use crate::{Clebsch, Error, Mask, Method, Scalar, Space, State, Time};
 use num_traits::Zero;
@@ -49,8 +50,15 @@ impl<S: Clebsch, M: Method<S>> Stepper<S, M> {
     #[cold]
     #[inline(never)]
     pub(crate) fn refusal(&self, state: &State<S, M>, u: &S::Input, lane: usize, error: Error) -> Error {
+        self.refusal_of(self.h, state, u, lane, error)
+    }
+
+    /// The same of a step of the size h.
+    #[cold]
+    #[inline(never)]
+    pub(super) fn refusal_of(&self, h: T<S>, state: &State<S, M>, u: &U<S>, lane: usize, error: Error) -> Error {
         let State { time, configuration, held, left, .. } = state;
-        self.explained(lane, error, |constants| {
+        self.explained(h, lane, error, |constants| {
             let at = At::new(&self.system, constants, time.now());
             let left = M::Scheme::left_after(at, configuration, &state.momentum(), left);
             let (q, mu, _) = M::Scheme::step(at, (configuration, held, &left), u)?;
@@ -74,20 +82,28 @@ impl<S: Clebsch, M: Method<S>> Stepper<S, M> {
                 Err(whole_or_lane::<S::Scalar>(lane, Error::NotFinite { name: name(&value, lane) }))
             }
             Err(_) if S::Scalar::LANES > 1 => Err(Error::InLane { lane: 0 }),
-            Err(error) => Err(self
-                .explained(0, error, |constants| Ok(compute(At::new(&self.system, constants, t))?.finite().lane(0)))),
+            Err(error) => Err(self.explained(self.h, 0, error, |constants| {
+                Ok(compute(At::new(&self.system, constants, t))?.finite().lane(0))
+            })),
         }
     }
 
-    /// The error with the longest step that can be solved, where it is too long, by trying others with their constants.
+    /// The error of a step of the size h. Where that is too long, others are tried with their constants, and the error
+    /// has the longest that can be solved.
     #[cold]
     #[inline(never)]
-    fn explained(&self, lane: usize, error: Error, stepped: impl Fn(&Constants<S, M>) -> Result<bool, Error>) -> Error {
+    fn explained(
+        &self,
+        h: T<S>,
+        lane: usize,
+        error: Error,
+        stepped: impl Fn(&Constants<S, M>) -> Result<bool, Error>,
+    ) -> Error {
         match error {
             // the one that was given is finite
             error if error == MOMENTUM => Error::NotFinite { name: "the momentum after the kick" },
             Error::Unsolvable { solvable_fraction, .. } => {
-                let h = self.h.lane(lane).to_f64();
+                let h = h.lane(lane).to_f64();
                 if M::IS_FREE_MOTION || size_of::<Constants<S, M>>() > CONSTANTS * S::Scalar::LANES {
                     let solvable_step = M::IS_FREE_MOTION.then_some(h * solvable_fraction);
                     return Error::Unsolvable { solvable_fraction, step_size: Some(h), solvable_step };

@@ -274,6 +274,8 @@ fn states() -> Vec<Scene> {
     let sphere = pendulum().stepper(0.1).expect("a pendulum");
     let bodies = [(r, mu), (r, mu)];
     let mut ensemble = stepper.clone().ensemble(bodies).expect("two tops");
+    let spins = SiteStorage::of([Vector3::x(); 4], [Vector3::z(); 4]);
+    let mut chain = ring().into_stepper(0.1).expect("a ring").sites(spins).expect("its sites");
     let damped = DampedBody { inertia: Matrix3::identity(), damping: 0.1 }.into_stepper(0.1).expect("a body");
     let covector = damped.cotangent_state(r, r).expect("a state");
     let sleigh = ChaplyginSleigh { mass: 1.5, inertia: 0.4, offset: 0.6 }.into_stepper(0.1).expect("a sleigh");
@@ -325,6 +327,10 @@ fn states() -> Vec<Scene> {
         scene(
             refused(sphere.state(Vector3::y(), Vector3::new(1.0, 0.25, 0.5))),
             &["a component of 2.500e-1", "start by `Stepper::project` or compute it by `momentum_map`"],
+        ),
+        scene(
+            refused(chain.kick(4, Vector3::zeros()).map_err(Error::from)),
+            &["no site 4 among 4", "give a number below 4"],
         ),
         scene(refused(ensemble.set_body(2, (r, mu))), &["no body 2 in an ensemble of 2", "give a number below 2"]),
         scene(refused(damped.step_symmetric(&covector)), &["no step in (q, p)", "step in (q, N), by `Stepper::step`"]),

@@ -151,3 +151,20 @@ impl<S: Clebsch, M: Method<S>> Chunk<State<S, M>> {
 pub fn alone<S: Clebsch, M: Method<S>>(stepper: &Stepper<S, M>, (q, mu): &Body<S>) -> Result<State<S, M>, Error> {
     stepper.state(S::Configuration::side_by_side(|_| *q), S::Momentum::side_by_side(|_| *mu))
 }
+
+/// A state with the body of one lane in all lanes.
+pub fn in_all_lanes<S: Clebsch, M: Method<S>>(state: &State<S, M>, lane: usize) -> State<S, M> {
+    let now = Scalar::lane(state.time.now(), lane);
+    State {
+        time: Time::at(S::Scalar::from_lanes(|_| now)),
+        configuration: repeated(&state.configuration, lane),
+        held: repeated(&state.held, lane),
+        left: repeated(&state.left, lane),
+        h: repeated(&state.h, lane),
+    }
+}
+
+/// One lane of a value in all lanes.
+fn repeated<T: Scalar, V: Space<T>>(value: &V, lane: usize) -> V {
+    V::side_by_side(|_| value.lane(lane))
+}

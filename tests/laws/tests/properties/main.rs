@@ -10,6 +10,7 @@ mod ensembles;
 mod equations;
 mod fields;
 mod formulas;
+mod impulses;
 mod joints;
 mod matrices;
 mod mentions;

@@ -90,6 +90,13 @@ pub const PROPERTIES: &[(&str, &[Property])] = &[
         ("bodies_have_their_own_parameters",   &["Ensemble::with_parameters"]),
         ("bodies_have_times",                  &["Ensemble::time"]),
     ]),
+    ("tests/laws/tests/properties/impulses.rs", &[
+        ("kicks_add_to_momenta",         &["Stepper::kick", "Scheme::kicked"]),
+        ("constraints_answer_kicks",     &["Stepper::kick"]),
+        ("states_move_to_other_places",  &["Stepper::with_configuration"]),
+        ("steps_of_other_sizes_agree",   &["Stepper::step_for", "Stepper::step_for_with", "Stepper::with_step_size"]),
+        ("drivers_are_kicked",           &["Integrator::kick", "Integrator::step_for", "Ensemble::kick", "Sites::kick"]),
+    ]),
     ("tests/laws/tests/properties/equations.rs", &[
         ("equations_are_solved_to_rounding",       &["solve", "solve_fixed_point", "orientation", "Equation::prepare", "Equation::predict", "Equation::linearize", "Equation::residual", "Equation::correct", "Equation::tolerance", "Equation::orientation"]),
         ("poles_are_no_solutions",                 &["Equation::has_poles"]),

@@ -22,8 +22,8 @@ type Square = SMatrix<f64, 5, 5>;
     cost      = |h, F| (F - I).norm_squared() / (4 * h),
     potential = |q| self.stiffness.dot(&q.component_mul(&q)) / 2,
 )]
-struct Neumann {
-    stiffness: SVector<f64, 8>,
+pub struct Neumann {
+    pub stiffness: SVector<f64, 8>,
 }
 
 fn square() -> BoxedStrategy<Square> {
