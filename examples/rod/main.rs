@@ -119,7 +119,7 @@ fn run(flags: &Flags) -> Result<Claims, Failure> {
     say("a straight rod of 1 m, 2 mm thick, with free ends: frequency over that of Euler and Bernoulli, less 1\n");
     say(modes::compare(&mut claims)?);
     say("implicit steps of this rod, bent to its first mode: one period\n");
-    say(implicit::compare(&mut claims)?);
+    say(implicit::compare(steps, &mut claims)?);
     Ok(claims)
 }
 

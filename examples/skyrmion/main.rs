@@ -63,8 +63,8 @@ fn main() -> ExitCode {
 fn run(flags: &Flags) -> Result<Claims, Failure> {
     flags.run.refuse_first_order(&SCENE)?;
     let cells = flags.run.steps as usize;
-    if !(16..=1024).contains(&cells) || !cells.is_multiple_of(2) {
-        return Err(Failure::Flags(format!("--steps: {cells} cells are not an even number from 16 to 1024")));
+    if !(8..=1024).contains(&cells) || !cells.is_multiple_of(2) {
+        return Err(Failure::Flags(format!("--steps: {cells} cells are not an even number from 8 to 1024")));
     }
     let side = flags.run.duration();
     let width = flags.size / (2.0 * flags.run.step_size);
