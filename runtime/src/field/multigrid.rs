@@ -31,7 +31,7 @@ const CYCLES: u64 = 100;
 /// struct Film;
 ///
 /// // the height of a side is the square of the distance along it
-/// for n in [17_usize, 65] {
+/// for n in [17_usize, 33] {
 ///     let film = Film.grid([n, n]).fixed();
 ///     let side = |site: usize| if film.lattice().is_fixed(site) { ((site % n) as f64).powi(2) } else { 0.0 };
 ///     let mut height: Vec<_> = (0..n * n).map(|site| Vector1::new(side(site))).collect();

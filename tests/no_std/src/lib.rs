@@ -12,6 +12,7 @@
 
 #[cfg(feature = "heap")]
 extern crate alloc;
+#[cfg(feature = "f32")]
 extern crate clebsch_no_std_f32 as _;
 extern crate clebsch_no_std_f64 as _;
 

@@ -16,9 +16,18 @@ pub fn integrated<const N: usize>(
     start: SVector<f64, N>,
     time: f64,
 ) -> SVector<f64, N> {
-    const STEPS: usize = 4_000;
-    let h = time / STEPS as f64;
-    (0..STEPS).fold(start, |y, _| {
+    integrated_in(4_000, slope, start, time)
+}
+
+/// The same in so many steps.
+pub fn integrated_in<const N: usize>(
+    steps: u32,
+    slope: impl Fn(&SVector<f64, N>) -> SVector<f64, N>,
+    start: SVector<f64, N>,
+    time: f64,
+) -> SVector<f64, N> {
+    let h = time / f64::from(steps);
+    (0..steps).fold(start, |y, _| {
         let a = slope(&y);
         let b = slope(&(y + a * (h / 2.0)));
         let c = slope(&(y + b * (h / 2.0)));

@@ -20,7 +20,7 @@ use systems::{Body4, ExactBody4, FixedBody, SixthTop};
 
 const H: f64 = 0.1;
 /// States of each system, and the steps of each.
-const STATES: usize = if cfg!(feature = "heavy") { 1000 } else { 96 };
+const STATES: usize = if cfg!(feature = "heavy") { 1000 } else { 48 };
 const STEPS: usize = 6;
 
 /// A momentum whose size is anything from one that makes a step of one iteration to one that has none.
