@@ -1,19 +1,11 @@
-//! Fields: steps against integrations in 60 digits and against closed forms, grids and their sides, orders, conserved momenta, and
-//! the errors of wrong ones.
+//! Fields in many steps or sweeps: implicit steps, rest, slabs, threads, and the longest stable step.
+//!
+//! Those of a few steps are in `tests/laws/tests/fields`.
 
 #![allow(missing_docs)]
 
-mod connections;
-mod elements;
-mod grids;
-mod meshes;
 mod midpoint;
-mod multisymplectic;
-mod reference;
-mod refused;
 mod relaxation;
-mod residuals;
 mod slabs;
 mod stability;
 mod threads;
-mod waves;
