@@ -88,6 +88,34 @@ errors! {
             /// The sites, N.
             sites: usize,
         } => "there is no site {site} among {sites}: they are counted from 0, so give a number below {sites}";
+        /// A time is before the last one that was asked for, in the direction of the steps.
+        TimeOrder {
+            /// The time.
+            time: f64,
+            /// The last one, or that of the start.
+            before: f64,
+        } => "the time {time} comes after {before}, against the direction of the steps: give times in the order in which steps reach them";
+        /// The function of an event is not finite.
+        EventNotFinite {
+            /// The number of the event.
+            event: usize,
+        } => "the function of event {event} is not finite: look for NaN, division by zero or overflow in it";
+        /// The function of an event touches zero, and rounding decides whether it crosses.
+        EventGrazes {
+            /// The number of the event.
+            event: usize,
+            /// The nearest value to zero, on the positive side where the function does not cross.
+            least: f64,
+        } =>
+            "the function of event {event} touches zero, to {least:.1e}, and rounding decides whether it crosses: move \
+             its zero by more than that, or take the zeros of its rate for the touches";
+        /// The state that was set at an event does not leave the zero of its function.
+        EventStays {
+            /// The number of the event.
+            event: usize,
+        } =>
+            "the state that was set at event {event} does not leave its zero towards the side where it came from: stop \
+             there, let it rest by a constraint, or set another momentum";
         /// A grid has no site in some direction, or more than can be numbered.
         EmptyGrid {
             /// The direction, from 0 on.

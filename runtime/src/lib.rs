@@ -43,6 +43,8 @@
 //! | step a large state in place, on the heap if you like | [`Stepper::integrator`]; [`Integrator`], in a `Box` |
 //! | hit a body, or correct its place | [`Stepper::kick`], [`Stepper::with_configuration`] |
 //! | make a step of another size | [`Stepper::step_for`], [`Stepper::with_step_size`] |
+//! | have states at times of your own | [`Trajectory::at`], [`Trajectory::every`]; [`Timed`] |
+//! | find when a function of the state crosses zero, and go on, stop or kick | [`Trajectory::events`]; [`Crossing`], [`Event`] |
 //! | choose the step size for an error | [`Stepper::suggest_step_size`] |
 //! | know the quantities that no step changes | [`Stepper::conserved`], which exists where conserved momenta were found; [`Conserved`] |
 //! | step the momentum without its configuration | `emit = [momentum]`: a [`Clebsch::Configuration`] of `()` |
@@ -234,5 +236,5 @@ pub use stepper::Stepper;
 pub use system::Clebsch;
 pub use tangent::{Sensitivity, Tangent, Variation};
 pub use time::{Clock, Time};
-pub use trajectory::Trajectory;
+pub use trajectory::{Crossing, Event, Events, Multiples, Timed, Trajectory};
 pub use variational::{Carried, Differentiated, Edge, Ends, Momenta, Sensitive, Variational};

@@ -1,12 +1,19 @@
 //! Step after step as an iterator.
 
+mod events;
+mod times;
+
+pub use events::{Crossing, Event, Events};
+pub use times::{Multiples, Timed};
+
 use crate::{Clebsch, Declared, Error, Method, State, Stepper};
 use core::fmt::{self, Debug, Formatter};
 use core::iter::FusedIterator;
 
 /// The states q_0, q_1, … of a [`Stepper`], the start first. Endless; after an error it yields nothing more.
 ///
-/// A step is made when its state is asked for, so `take(n)` makes n − 1 steps.
+/// A step is made when its state is asked for, so `take(n)` makes n − 1 steps. For states at times of your own see
+/// [`at`](Self::at) and [`every`](Self::every), for crossings of a surface [`events`](Self::events).
 ///
 /// ```
 /// # use clebsch::Clebsch;
@@ -25,9 +32,33 @@ use core::iter::FusedIterator;
 /// ```
 pub struct Trajectory<'a, S: Clebsch, M: Method<S> = Declared> {
     pub(crate) stepper: &'a Stepper<S, M>,
-    /// The start, or the state that has been asked for last; `None` after an error.
-    pub(crate) state: Option<State<S, M>>,
+    /// The start, or the state that has been asked for last; after an error the one before it.
+    pub(crate) state: State<S, M>,
     pub(crate) has_started: bool,
+    pub(crate) has_failed: bool,
+}
+
+impl<S: Clebsch, M: Method<S>> Trajectory<'_, S, M> {
+    /// The state that has been asked for last, or the start. After an error it is the state before the step that failed.
+    ///
+    /// ```
+    /// # use clebsch::{Clebsch, Error};
+    /// # #[derive(Clebsch, Clone, Debug)]
+    /// # #[clebsch(action = |a: Translation<1>, x: Vector1| x + a, cost = |h, a| self.mass * a.norm_squared() / (2 * h))]
+    /// # struct Particle { mass: f64 }
+    /// # use nalgebra::Vector1;
+    /// let stepper = Particle { mass: 2.0 }.into_stepper(1e307)?;
+    /// let start = stepper.state(Vector1::zeros(), Vector1::new(16.0))?;
+    /// let mut trajectory = stepper.trajectory(start);
+    /// let error = trajectory.by_ref().find_map(Result::err);
+    /// assert!(matches!(error, Some(Error::NotFinite { .. })));
+    /// assert_eq!(trajectory.state().configuration().x, 1.6e308); // the last one before the overflow
+    /// # Ok::<(), clebsch::Error>(())
+    /// ```
+    #[inline]
+    pub fn state(&self) -> &State<S, M> {
+        &self.state
+    }
 }
 
 impl<S: Clebsch, M: Method<S>> Iterator for Trajectory<'_, S, M> {
@@ -35,9 +66,18 @@ impl<S: Clebsch, M: Method<S>> Iterator for Trajectory<'_, S, M> {
 
     #[inline]
     fn next(&mut self) -> Option<Self::Item> {
-        let state = self.state.as_ref()?;
-        let item = if self.has_started { self.stepper.step(state) } else { Ok(*state) };
-        (self.state, self.has_started) = (item.ok(), true);
+        if self.has_failed {
+            return None;
+        }
+        if !self.has_started {
+            self.has_started = true;
+            return Some(Ok(self.state));
+        }
+        let item = self.stepper.step(&self.state);
+        match &item {
+            Ok(state) => self.state = *state,
+            Err(_) => self.has_failed = true,
+        }
         Some(item)
     }
 }
@@ -52,10 +92,11 @@ impl<S: Clebsch, M: Method<S>> Clone for Trajectory<'_, S, M> {
 
 impl<S: Clebsch, M: Method<S>> Debug for Trajectory<'_, S, M> {
     fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
-        let name = if self.has_started { "Trajectory after" } else { "Trajectory from" };
-        match &self.state {
-            Some(state) => f.debug_tuple(name).field(state).finish(),
-            None => f.write_str("Trajectory ended"),
-        }
+        let name = match (self.has_failed, self.has_started) {
+            (true, _) => "Trajectory ended after",
+            (false, true) => "Trajectory after",
+            (false, false) => "Trajectory from",
+        };
+        f.debug_tuple(name).field(&self.state).finish()
     }
 }

@@ -58,7 +58,7 @@ impl<S: Clebsch, M: Method<S>> Stepper<S, M> {
     /// The states of all steps, `start` first; ends after the first error.
     #[inline]
     pub fn trajectory(&self, start: State<S, M>) -> Trajectory<'_, S, M> {
-        Trajectory { stepper: self, state: Some(start), has_started: false }
+        Trajectory { stepper: self, state: start, has_started: false, has_failed: false }
     }
 
     /// One step during which the input of the forces is `u`; [`step`](Self::step) is that with none, all zero.

@@ -1,7 +1,9 @@
 //! Scenes that fail.
 
 use crate::Scene;
-use clebsch::{Alike, Clebsch, Controlled, Error, F64x4, Field, Guess, Mesh, Relaxation, Scalar, SiteStorage, Target};
+use clebsch::{
+    Alike, Clebsch, Controlled, Error, F64x4, Field, Guess, Mesh, Relaxation, Scalar, SiteStorage, State, Target,
+};
 use clebsch_tests::fixtures::chaplygin_sleigh::ChaplyginSleigh;
 use clebsch_tests::fixtures::collocated_top::CollocatedTop;
 use clebsch_tests::fixtures::damped_body::DampedBody;
@@ -51,6 +53,16 @@ impl Mistaken {
         Vector3::y() * -x.y
     }
 }
+
+/// A ball that falls up, at 2 m/s².
+#[derive(Clebsch, Clone, Debug)]
+#[clebsch(
+    action    = |a: Translation<1>, x: Vector1| x + a,
+    cost      = |h, a| a.norm_squared() / (2 * h),
+    potential = |x| -2 * x.x,
+    scalar    = f64,
+)]
+pub struct Thrown;
 
 /// A point on a sphere about the origin.
 #[derive(Clebsch, Clone, Debug)]
@@ -283,7 +295,24 @@ fn states() -> Vec<Scene> {
     let ball = RollingBall { mass: 1.3, inertia: 0.7, radius: 0.5, table_rate: 0.9 };
     let turning = ball.into_stepper(50.0).expect("a ball");
     let rolling = turning.project(Vector2::new(0.3, -0.2), Vector5::new(0.2, 0.4, 0.1, -0.3, 0.35)).expect("a state");
+    let turning_top = stepper.state(r, mu).expect("a state");
+    let late = stepper.trajectory(turning_top).at([0.3, 0.2]).find_map(Result::err).expect("times out of order");
+    // x = (t − 1)², up to a factor that is its unit
+    let ball = Thrown.into_stepper(0.4).expect("a ball");
+    let thrown = ball.state(Vector1::new(1.0), Vector1::new(-2.0)).expect("a state");
+    let value = |state: &State<Thrown>| state.configuration().x;
+    let undefined =
+        ball.trajectory(thrown).events(5, |state| [clebsch::Crossing::Either((value(state) - 0.5).sqrt())]).next();
+    let touch = ball.trajectory(thrown).events(5, |state| [clebsch::Crossing::Either(value(state))]).next();
+    let mut floor = ball.trajectory(thrown).events(5, |state| [clebsch::Crossing::Falling(value(state) - 0.5)]);
+    let hit = floor.next().expect("the floor").expect("an event");
+    floor.go_on_from(hit.state);
+    let through = floor.next();
     vec![
+        scene(late, &["0.2 comes after 0.3", "in the order in which steps reach them"]),
+        scene(refused(undefined.expect("an error")), &["event 0 is not finite", "NaN"]),
+        scene(refused(touch.expect("an error")), &["event 0 touches zero", "the zeros of its rate"]),
+        scene(refused(through.expect("an error")), &["event 0 does not leave its zero", "set another momentum"]),
         scene(
             refused(sleigh.state_moving(r, Vector3::new(1.0, 0.5, 0.25))),
             &["the velocity violates the constraint by 2.500e-1", "start by `Stepper::project`, or give a velocity"],

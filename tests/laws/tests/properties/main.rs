@@ -21,6 +21,7 @@ mod plans;
 mod powers;
 mod public;
 mod rotations;
+mod runs;
 mod scalars;
 mod schemes;
 mod steps;

@@ -97,6 +97,15 @@ pub const PROPERTIES: &[(&str, &[Property])] = &[
         ("steps_of_other_sizes_agree",   &["Stepper::step_for", "Stepper::step_for_with", "Stepper::with_step_size"]),
         ("drivers_are_kicked",           &["Integrator::kick", "Integrator::step_for", "Ensemble::kick", "Sites::kick"]),
     ]),
+    ("tests/laws/tests/properties/runs.rs", &[
+        ("bounces_have_their_times",                   &["Trajectory::events", "Events::go_on_from", "Events::state", "Events::time", "Events::steps_left"]),
+        ("walls_fold_straight_lines",                  &["Trajectory::events"]),
+        ("orbits_have_their_apsides",                  &["Trajectory::events"]),
+        ("grazing_is_told",                            &["Trajectory::events"]),
+        ("times_are_reached_from_the_step_before",     &["Trajectory::at", "Trajectory::every", "Trajectory::state", "Timed::state"]),
+        ("times_and_events_have_the_order",            &["Trajectory::at", "Trajectory::events"]),
+        ("bobs_hit_walls",                             &["Trajectory::events"]),
+    ]),
     ("tests/laws/tests/properties/equations.rs", &[
         ("equations_are_solved_to_rounding",       &["solve", "solve_fixed_point", "orientation", "Equation::prepare", "Equation::predict", "Equation::linearize", "Equation::residual", "Equation::correct", "Equation::tolerance", "Equation::orientation"]),
         ("poles_are_no_solutions",                 &["Equation::has_poles"]),

@@ -1,0 +1,196 @@
+//! The states of a trajectory at given times.
+
+use super::Trajectory;
+use crate::fields::debug_fields;
+use crate::parameters::check_finite;
+use crate::{Clebsch, Clock, Declared, Error, Method, Real, Scalar, State, Stepper, Time};
+use core::borrow::Borrow;
+use core::fmt::Debug;
+use core::iter::FusedIterator;
+use num_traits::Zero;
+
+/// The states of a [`Trajectory`] at given times, made by [`at`](Trajectory::at) and [`every`](Trajectory::every). After an
+/// error it yields nothing more.
+///
+/// ```
+/// # use clebsch::Clebsch;
+/// # #[derive(Clebsch, Clone, Debug)]
+/// # #[clebsch(action = |a: Translation<1>, x: Vector1| x + a, cost = |h, a| self.mass * a.norm_squared() / (2 * h))]
+/// # struct Particle { mass: f64 }
+/// # use nalgebra::Vector1;
+/// let stepper = Particle { mass: 2.0 }.into_stepper(0.5)?;
+/// let start = stepper.state(Vector1::zeros(), Vector1::new(6.0))?;
+/// let mut timed = stepper.trajectory(start).at([0.25, 3.0]);
+/// assert_eq!(timed.next(), Some(stepper.step_for(&start, 0.25)));
+/// assert_eq!(timed.next().and_then(Result::ok).map(|state| state.configuration().x), Some(9.0));
+/// assert_eq!(timed.next(), None);
+/// # Ok::<(), clebsch::Error>(())
+/// ```
+pub struct Timed<'a, S: Clebsch, I, M: Method<S> = Declared> {
+    stepper: &'a Stepper<S, M>,
+    /// The last step's end that is not after the last time.
+    node: State<S, M>,
+    clock: Clock<S::Scalar>,
+    times: I,
+    /// The last time, that of the start at first.
+    last: S::Scalar,
+    has_failed: bool,
+}
+
+/// The times t₀ + kΔ, k = 0, 1, 2, …, of a [`Timed`] that [`every`](Trajectory::every) makes.
+///
+/// ```
+/// # use clebsch::{Clebsch, Multiples, Timed};
+/// # #[derive(Clebsch, Clone, Debug)]
+/// # #[clebsch(action = |a: Translation<1>, x: Vector1| x + a, cost = |h, a| self.mass * a.norm_squared() / (2 * h))]
+/// # struct Particle { mass: f64 }
+/// # use nalgebra::Vector1;
+/// let stepper = Particle { mass: 2.0 }.into_stepper(0.5)?;
+/// let start = stepper.state(Vector1::zeros(), Vector1::new(6.0))?;
+/// let frames: Timed<'_, Particle, Multiples<f64>> = stepper.trajectory(start).every(0.125);
+/// assert_eq!(frames.take(2).count(), 2);
+/// # Ok::<(), clebsch::Error>(())
+/// ```
+#[derive(Clone, Copy, Debug)]
+pub struct Multiples<T> {
+    start: T,
+    interval: T,
+    number: u64,
+}
+
+impl<T: Real> Iterator for Multiples<T> {
+    type Item = T;
+
+    #[inline]
+    fn next(&mut self) -> Option<T> {
+        let time = self.start + T::from_f64(self.number as f64) * self.interval;
+        self.number = self.number.saturating_add(1);
+        Some(time)
+    }
+}
+
+impl<'a, S: Clebsch<Scalar: Real>, M: Method<S>> Trajectory<'a, S, M> {
+    /// The states at these times, one for each: a slice, a vector or any iterator of times, in the order of the steps.
+    ///
+    /// A time between the ends of two steps is reached by one step of a smaller size from the end before, as by
+    /// [`Stepper::step_for`]. So its state has the order of the method, and its conserved momenta are exact. The steps
+    /// themselves stay as they are, whatever times are asked for. So do the bits of their ends.
+    ///
+    /// Times count from the start of the trajectory. Where the time matters they are those of the states.
+    /// Equal times give equal states.
+    ///
+    /// ```
+    /// # use clebsch::Clebsch;
+    /// # #[derive(Clebsch, Clone, Debug)]
+    /// # #[clebsch(
+    /// #     action     = |a: Translation<1>, x: Vector1| x + a,
+    /// #     lagrangian = |v| self.mass * v.norm_squared() / 2,
+    /// #     potential  = |x| self.stiffness * x.norm_squared() / 2,
+    /// # )]
+    /// # struct Spring { mass: f64, stiffness: f64 }
+    /// # use nalgebra::Vector1;
+    /// let stepper = Spring { mass: 2.0, stiffness: 8.0 }.into_stepper(0.01)?;
+    /// let start = stepper.state(Vector1::new(0.5), Vector1::zeros())?;
+    /// let times = [0.0, 0.1234, 1.0, 2.7182];
+    /// for (time, state) in times.iter().zip(stepper.trajectory(start).at(&times)) {
+    ///     assert!((state?.configuration().x - 0.5 * (2.0 * time).cos()).abs() < 1e-3);
+    /// }
+    /// # Ok::<(), clebsch::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// Each state may be an error: [`Error::NotFinite`] for its time, [`Error::TimeOrder`] where it is before the last one, and those of
+    /// [`Stepper::step`].
+    pub fn at<I>(self, times: I) -> Timed<'a, S, I::IntoIter, M>
+    where
+        I: IntoIterator<Item: Borrow<S::Scalar>>,
+    {
+        let Self { stepper, state: node, has_failed, .. } = self;
+        let last = node.time.now();
+        Timed { stepper, node, clock: Clock::at(last), times: times.into_iter(), last, has_failed }
+    }
+
+    /// The states at the times t₀, t₀ + Δ, t₀ + 2Δ, …, the start first. Endless; see [`at`](Self::at).
+    ///
+    /// ```
+    /// # use clebsch::Clebsch;
+    /// # #[derive(Clebsch, Clone, Debug)]
+    /// # #[clebsch(action = |a: Translation<1>, x: Vector1| x + a, cost = |h, a| self.mass * a.norm_squared() / (2 * h))]
+    /// # struct Particle { mass: f64 }
+    /// # use nalgebra::Vector1;
+    /// let stepper = Particle { mass: 2.0 }.into_stepper(0.5)?;
+    /// let start = stepper.state(Vector1::zeros(), Vector1::new(6.0))?;
+    /// // frames of a film, eight in a second
+    /// let places: Result<Vec<f64>, _> =
+    ///     stepper.trajectory(start).every(0.125).take(4).map(|state| Ok(state?.configuration().x)).collect();
+    /// assert_eq!(places, Ok::<_, clebsch::Error>(vec![0.0, 0.375, 0.75, 1.125]));
+    /// # Ok::<(), clebsch::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// Those of [`at`](Self::at). An interval against the direction of the steps is [`Error::TimeOrder`], in place of the second state.
+    pub fn every(self, interval: S::Scalar) -> Timed<'a, S, Multiples<S::Scalar>, M> {
+        let start = self.state.time.now();
+        self.at(Multiples { start, interval, number: 0 })
+    }
+}
+
+impl<S: Clebsch<Scalar: Real>, M: Method<S>, I: Iterator<Item: Borrow<S::Scalar>>> Timed<'_, S, I, M> {
+    /// The state at a time that is not before the last one, from the end of the last step before.
+    fn reach(&mut self, time: S::Scalar) -> Result<State<S, M>, Error> {
+        check_finite("the time", &time)?;
+        let h = self.stepper.h;
+        // how far a is behind b in the direction of the steps
+        let behind = |a: S::Scalar, b: S::Scalar| if h < Zero::zero() { a - b } else { b - a };
+        if behind(self.last, time) < Zero::zero() {
+            return Err(Error::TimeOrder { time: time.to_f64(), before: self.last.to_f64() });
+        }
+        self.last = time;
+        // two times that differ by rounding are the same
+        let rounding = S::Scalar::from_ratio(2, 1) * S::Scalar::EPSILON * (time.abs() + h.abs());
+        loop {
+            let ahead = self.clock.after_step(h);
+            if behind(time, ahead.now()) > rounding {
+                break;
+            }
+            self.node = self.stepper.step(&self.node)?;
+            self.clock = ahead;
+        }
+        let left = time - self.clock.now();
+        if left.abs() <= rounding { Ok(self.node) } else { self.stepper.step_for(&self.node, left) }
+    }
+}
+
+impl<S: Clebsch<Scalar: Real>, M: Method<S>, I: Iterator<Item: Borrow<S::Scalar>>> Iterator for Timed<'_, S, I, M> {
+    type Item = Result<State<S, M>, Error>;
+
+    fn next(&mut self) -> Option<Self::Item> {
+        if self.has_failed {
+            return None;
+        }
+        let time = *self.times.next()?.borrow();
+        let reached = self.reach(time);
+        self.has_failed = reached.is_err();
+        Some(reached)
+    }
+}
+
+impl<S: Clebsch<Scalar: Real>, M: Method<S>, I: FusedIterator<Item: Borrow<S::Scalar>>> FusedIterator
+    for Timed<'_, S, I, M>
+{
+}
+
+impl<S: Clebsch, M: Method<S>, I> Timed<'_, S, I, M> {
+    /// The end of the last step that has been made: after an error, the state before the step that failed.
+    pub fn state(&self) -> &State<S, M> {
+        &self.node
+    }
+}
+
+impl<S: Clebsch, M: Method<S>, I: Clone> Clone for Timed<'_, S, I, M> {
+    fn clone(&self) -> Self {
+        Self { times: self.times.clone(), ..*self }
+    }
+}
+
+debug_fields!(Timed<'_, S, I, M> where [S: Clebsch, I: Debug, M: Method<S>]: node, clock, times, last, has_failed);
