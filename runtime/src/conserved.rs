@@ -2,7 +2,7 @@
 
 use crate::fields::getters;
 use crate::{Clebsch, Scalar};
-use core::fmt::{self, Debug, Display, Formatter};
+use core::fmt::{self, Debug, Display, Formatter, LowerExp};
 use core::iter::Zip;
 use core::ops::Index;
 
@@ -101,12 +101,36 @@ impl<T, const K: usize> Index<usize> for Conserved<T, K> {
 /// One line `name = value` for each.
 impl<T: Copy + Display, const K: usize> Display for Conserved<T, K> {
     fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        self.write_lines(f, T::fmt)
+    }
+}
+
+impl<T: Copy, const K: usize> Conserved<T, K> {
+    fn write_lines(
+        &self,
+        f: &mut Formatter<'_>,
+        number: impl Fn(&T, &mut Formatter<'_>) -> fmt::Result,
+    ) -> fmt::Result {
         for (index, (name, value)) in self.iter().enumerate() {
             let separator = if index == 0 { "" } else { "\n" };
             write!(f, "{separator}{name} = ")?;
-            value.fmt(f)?;
+            number(&value, f)?;
         }
         Ok(())
+    }
+}
+
+/// The same with numbers in scientific form.
+///
+/// ```
+/// use clebsch::Conserved;
+///
+/// let momenta = Conserved::new(["about e3, spatial"], [0.000_123_4]);
+/// assert_eq!(format!("{momenta:.2e}"), "about e3, spatial = 1.23e-4");
+/// ```
+impl<T: Copy + LowerExp, const K: usize> LowerExp for Conserved<T, K> {
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        self.write_lines(f, T::fmt)
     }
 }
 

@@ -45,6 +45,7 @@
 //! | make a step of another size | [`Stepper::step_for`], [`Stepper::with_step_size`] |
 //! | have states at times of your own | [`Trajectory::at`], [`Trajectory::every`]; [`Timed`] |
 //! | find when a function of the state crosses zero, and go on, stop or kick | [`Trajectory::events`]; [`Crossing`], [`Event`] |
+//! | watch and cancel a long run | [`Drive::advance_watched`]; [`Stepper::advance_or_stop`] and [`Stopped`] |
 //! | choose the step size for an error | [`Stepper::suggest_step_size`] |
 //! | know the quantities that no step changes | [`Stepper::conserved`], which exists where conserved momenta were found; [`Conserved`] |
 //! | step the momentum without its configuration | `emit = [momentum]`: a [`Clebsch::Configuration`] of `()` |
@@ -231,7 +232,7 @@ pub use power::Power;
 pub use saved::SavedState;
 pub use scalar::{Mask, Real, Scalar};
 pub use space::Space;
-pub use state::{Body, CotangentState, State};
+pub use state::{Body, CotangentState, State, Stopped};
 pub use stepper::Stepper;
 pub use system::Clebsch;
 pub use tangent::{Sensitivity, Tangent, Variation};

@@ -1,10 +1,10 @@
 //! The states that a step maps: (q, N), or (q, p) on the cotangent bundle.
 
-use crate::fields::{copy, getters};
+use crate::fields::{copy, debug_fields, getters};
 use crate::parts::{Mu, Q, T};
 use crate::scheme::{Held, Left, Scheme};
-use crate::{Clebsch, Clock, Declared, Method, Scalar, Space, Time};
-use core::fmt::{self, Debug, DebugStruct, Formatter};
+use crate::{Clebsch, Clock, Declared, Error, Method, Scalar, Space, Time};
+use core::fmt::{self, Debug, DebugStruct, Display, Formatter};
 
 /// A configuration q with its momentum N, checked by [`Stepper::state`](crate::Stepper::state).
 ///
@@ -81,6 +81,52 @@ impl<S: Clebsch, M: Method<S>> State<S, M> {
         self.held.set_lane(lane, &other.held.lane(lane));
         self.left.set_lane(lane, &other.left.lane(lane));
         self.h.set_lane(lane, &Space::lane(&other.h, lane));
+    }
+}
+
+/// A run that ended at a step that failed, with the last good state; see [`Stepper::advance_or_stop`](crate::Stepper::advance_or_stop).
+///
+/// ```
+/// # use clebsch::Clebsch;
+/// # #[derive(Clebsch, Clone, Debug)]
+/// # #[clebsch(action = |a: Translation<1>, x: Vector1| x + a, cost = |h, a| self.mass * a.norm_squared() / (2 * h))]
+/// # struct Particle { mass: f64 }
+/// # use nalgebra::Vector1;
+/// let stepper = Particle { mass: 2.0 }.into_stepper(1e307)?;
+/// let start = stepper.state(Vector1::zeros(), Vector1::new(16.0))?;
+/// let stopped = stepper.advance_or_stop(&start, 1000).unwrap_err();
+/// assert!(stopped.to_string().starts_with("after 2 steps: "));
+/// # Ok::<(), clebsch::Error>(())
+/// ```
+pub struct Stopped<S: Clebsch, M: Method<S> = Declared> {
+    /// The last state that was reached.
+    pub state: State<S, M>,
+    /// The number of steps to it.
+    pub steps: usize,
+    /// Why the next step failed.
+    pub error: Error,
+}
+
+copy!(Stopped<S, M> where [S: Clebsch, M: Method<S>]);
+debug_fields!(Stopped<S, M> where [S: Clebsch, M: Method<S>]: state, steps, error);
+
+impl<S: Clebsch, M: Method<S>> PartialEq for Stopped<S, M> {
+    fn eq(&self, other: &Self) -> bool {
+        self.state == other.state && self.steps == other.steps && self.error == other.error
+    }
+}
+
+impl<S: Clebsch, M: Method<S>> Display for Stopped<S, M> {
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        write!(f, "after {} steps: {}", self.steps, self.error)
+    }
+}
+
+impl<S: Clebsch, M: Method<S>> core::error::Error for Stopped<S, M> {}
+
+impl<S: Clebsch, M: Method<S>> From<Stopped<S, M>> for Error {
+    fn from(stopped: Stopped<S, M>) -> Self {
+        stopped.error
     }
 }
 

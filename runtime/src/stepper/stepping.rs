@@ -3,7 +3,7 @@
 use super::{GRADIENT, Stepper, first_without, whole_or_lane};
 use crate::parts::{Mu, Q, T, U};
 use crate::scheme::{Left, Scheme};
-use crate::{Clebsch, Error, Mask, Method, Scalar, Space, State, Time, Trajectory};
+use crate::{Clebsch, Error, Mask, Method, Scalar, Space, State, Stopped, Time, Trajectory};
 use num_traits::Zero;
 
 impl<S: Clebsch, M: Method<S>> Stepper<S, M> {
@@ -53,6 +53,42 @@ impl<S: Clebsch, M: Method<S>> Stepper<S, M> {
             return Err(self.refused_after(state, steps, self.beyond(&next)));
         }
         Ok(next)
+    }
+
+    /// The state after `steps` steps, as [`advance`](Self::advance) makes them. If one fails, the error has the last good state and the
+    /// number of steps to it.
+    ///
+    /// ```
+    /// # use clebsch::{Clebsch, Error, Stopped};
+    /// # #[derive(Clebsch, Clone, Debug)]
+    /// # #[clebsch(action = |a: Translation<1>, x: Vector1| x + a, cost = |h, a| self.mass * a.norm_squared() / (2 * h))]
+    /// # struct Particle { mass: f64 }
+    /// # use nalgebra::Vector1;
+    /// let stepper = Particle { mass: 2.0 }.into_stepper(1e307)?;
+    /// let start = stepper.state(Vector1::zeros(), Vector1::new(16.0))?;
+    /// let Err(Stopped { state, steps, error }) = stepper.advance_or_stop(&start, 1000) else { panic!("it overflows") };
+    /// assert_eq!((state.configuration().x, steps), (1.6e308, 2));
+    /// assert!(matches!(error, Error::NotFinite { .. }));
+    /// # Ok::<(), clebsch::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// As [`advance`](Self::advance).
+    pub fn advance_or_stop(&self, state: &State<S, M>, steps: usize) -> Result<State<S, M>, Stopped<S, M>> {
+        let failed = match self.advance(state, steps) {
+            Ok(state) => return Ok(state),
+            Err(error) => error,
+        };
+        // made once more, to know how far they come
+        let mut state = *state;
+        for made in 0..steps {
+            match self.step(&state) {
+                Ok(next) => state = next,
+                Err(error) => return Err(Stopped { state, steps: made, error }),
+            }
+        }
+        // steps that are merged differ by rounding, which may decide whether the last one succeeds
+        Err(Stopped { state, steps, error: failed })
     }
 
     /// The states of all steps, `start` first; ends after the first error.

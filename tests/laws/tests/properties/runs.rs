@@ -2,13 +2,14 @@
 
 use crate::arbitrary::{attitude, cases, vector};
 use crate::bodies::{H, satellites, staggered_tops, tops};
-use clebsch::{Clebsch, Crossing, Error, Event, State, Stepper};
+use clebsch::{Clebsch, Crossing, Drive, Error, Event, State, Stepper};
 use clebsch_tests::fixtures::spherical_pendulum::SphericalPendulum;
 use clebsch_tests::fixtures::watched_top::WatchedTop;
 use clebsch_tests::oracle::motion::{motion, order};
 use clebsch_tests::oracle::near::assert_near;
 use nalgebra::{SVector, Vector2, Vector3};
 use proptest::prelude::*;
+use std::ops::ControlFlow;
 
 /// A ball that falls, as steps of second order compute it exactly.
 #[derive(Clebsch, Clone, Debug)]
@@ -196,6 +197,37 @@ proptest! {
         let resting = Ball { mass: 1.0, gravity: 0.0 }.into_stepper(0.1)?;
         let mut rest = resting.trajectory(resting.state(Vector2::zeros(), Vector2::x())?).events(50, |state| [Crossing::Either(state.configuration().y)]);
         prop_assert_eq!((rest.next(), rest.steps_left()), (None, 0));
+    }
+
+    /// A run is looked at after each part, ends where it is told to, and goes on. A step that fails leaves the last good state.
+    #[test]
+    fn long_runs_are_watched(top in tops(), r in attitude(), mu in vector::<3>(1.0), steps in 0_u64..40, each in 0_u64..7, end in 1_u64..9) {
+        let stepper = top.stepper(H)?;
+        let start = stepper.state(r, mu)?;
+        let mut run = stepper.clone().integrator(start);
+        let mut seen = Vec::new();
+        let ended = run.advance_watched(steps, each, |run| {
+            seen.push(run.steps());
+            if seen.len() as u64 == end { ControlFlow::Break(run.steps()) } else { ControlFlow::Continue(()) }
+        })?;
+        let part = each.max(1);
+        let expected: Vec<u64> = (1..=steps.div_ceil(part)).map(|k| (k * part).min(steps)).take(end as usize).collect();
+        let made = expected.last().copied().unwrap_or(0);
+        let is_cancelled = expected.len() as u64 == end;
+        prop_assert_eq!(&seen, &expected);
+        prop_assert_eq!(ended, if is_cancelled { ControlFlow::Break(made) } else { ControlFlow::Continue(()) });
+        prop_assert_eq!((run.steps(), *run.state()), (made, stepper.advance(&start, made as usize)?));
+        let never = run.advance_watched(steps - made, 3, |_| ControlFlow::<()>::Continue(()))?;
+        prop_assert_eq!(never, ControlFlow::Continue(()));
+        prop_assert_eq!(*run.state(), stepper.advance(&start, steps as usize)?);
+        prop_assert_eq!(stepper.advance_or_stop(&start, steps as usize), Ok(stepper.advance(&start, steps as usize)?));
+        // a fall for ever: its place overflows at a step that is known
+        let ball = Ball { mass: 1.0, gravity: 0.0 }.into_stepper(1e300)?;
+        let falling = ball.state(Vector2::zeros(), Vector2::new(0.0, 1.5e7))?;
+        let stopped = ball.advance_or_stop(&falling, 30).expect_err("beyond 1.8e308");
+        prop_assert_eq!(stopped.steps, 11);
+        prop_assert!((stopped.state.configuration().y / 1.65e308 - 1.0).abs() < 1e-14);
+        prop_assert_eq!(Error::from(stopped), ball.advance(&falling, 30).expect_err("the same"));
     }
 
     /// States at given times are steps of a part of h from the step before, whatever the method.

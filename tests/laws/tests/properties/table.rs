@@ -104,6 +104,7 @@ pub const PROPERTIES: &[(&str, &[Property])] = &[
         ("grazing_is_told",                            &["Trajectory::events"]),
         ("times_are_reached_from_the_step_before",     &["Trajectory::at", "Trajectory::every", "Trajectory::state", "Timed::state"]),
         ("times_and_events_have_the_order",            &["Trajectory::at", "Trajectory::events"]),
+        ("long_runs_are_watched",                      &["Drive::advance_watched", "Stepper::advance_or_stop"]),
         ("bobs_hit_walls",                             &["Trajectory::events"]),
     ]),
     ("tests/laws/tests/properties/equations.rs", &[
