@@ -16,8 +16,8 @@ pub use crate::constraint::{
 };
 pub use crate::definite::{check_definite, check_definite_at, check_definite_uniform};
 pub use crate::element::{
-    below_right_angle, from_increment, inverse, per_one_plus_cosine, quaternion, quaternion_from_increment,
-    quotient_per_one_plus_cosine,
+    below_right_angle, below_right_angle_from, from_increment, inverse, per_one_plus_cosine, quaternion,
+    quaternion_from_increment, quotient_per_one_plus_cosine,
 };
 pub use crate::energy::{
     VelocityEquation, kinetic_energy, kinetic_energy_at, kinetic_energy_uniform, legendre_fenchel,

@@ -115,18 +115,17 @@ impl<T: Scalar> Violation<T> {
     /// Refuses a violation of more than √ε of that size.
     pub(crate) fn check(self) -> Result<(), Error> {
         let tolerance = T::EPSILON.sqrt() * self.size;
-        (0..T::LANES).try_for_each(|lane| {
-            let (violation, tolerance) = (self.largest.lane(lane), tolerance.lane(lane));
-            // written so that NaN is a violation
-            if violation <= tolerance {
-                return Ok(());
-            }
-            Err(Error::ConstraintViolated {
-                violation: violation.to_f64().min(f64::MAX),
-                tolerance: tolerance.to_f64().min(f64::MAX),
-            })
-        })
+        within(self.largest, tolerance)
+            .map_err(|[violation, tolerance]| Error::ConstraintViolated { violation, tolerance })
     }
+}
+
+/// Whether a violation is at most a tolerance in every lane, or both in the first lane where it is not. NaN is a violation.
+fn within<T: Scalar>(violation: T, tolerance: T) -> Result<(), [f64; 2]> {
+    (0..T::LANES).try_for_each(|lane| {
+        let both = [violation.lane(lane), tolerance.lane(lane)];
+        if both[0] <= both[1] { Ok(()) } else { Err(both.map(|number| number.to_f64().min(f64::MAX))) }
+    })
 }
 
 /// Whether φ(q) = 0. The rows are those of φ at q. The tolerance is √ε of the change of φ when q moves by 1 + |q|.
@@ -139,16 +138,8 @@ pub fn check_place<T: Scalar, const R: usize, const M: usize>(
     q: &impl Space<T>,
 ) -> Result<(), Error> {
     for i in 0..R {
-        let tolerance = T::EPSILON.sqrt() * change(rows, i, q);
-        for lane in 0..T::LANES {
-            let (violation, tolerance) = (places[i].abs().lane(lane), tolerance.lane(lane));
-            // written so that NaN is a violation
-            if violation <= tolerance {
-                continue;
-            }
-            let (violation, tolerance) = (violation.to_f64().min(f64::MAX), tolerance.to_f64().min(f64::MAX));
-            return Err(Error::OffConstraint { violation, tolerance });
-        }
+        within(places[i].abs(), T::EPSILON.sqrt() * change(rows, i, q))
+            .map_err(|[violation, tolerance]| Error::OffConstraint { violation, tolerance })?;
     }
     Ok(())
 }

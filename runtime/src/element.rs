@@ -44,6 +44,42 @@ pub fn below_right_angle<T: Scalar, const M: usize>(x: SVector<T, M>, sine_squar
     Err(beyond_right_angle(sine_squared))
 }
 
+/// The same of a solution that is affine in the momentum and need not rest without it, as with a constraint. `sine_squared`
+/// is that of a solution, and `solution` the one of another momentum.
+///
+/// # Errors
+/// As [`below_right_angle`]. The fraction of the momentum is 0 where none has a solution.
+#[inline]
+pub fn below_right_angle_from<T: Scalar, const M: usize, const K: usize>(
+    x: SVector<T, M>,
+    sine_squared: impl Fn(&SVector<T, M>) -> T,
+    solution: impl FnOnce(&SVector<T, K>) -> SVector<T, M>,
+) -> Result<SVector<T, M>, Error> {
+    let square = sine_squared(&x);
+    match below_right_angle(x, square) {
+        Err(Error::Unsolvable { .. }) => {
+            let rest = solution(&SVector::from_element(T::zero()));
+            let half = (x + rest) * T::from_f64(0.5);
+            Err(beyond_right_angle_from([sine_squared(&rest), sine_squared(&half), square]))
+        }
+        found => found,
+    }
+}
+
+/// The error from sin²θ for no part of the momentum, for half of it, and for all of it: a quadratic polynomial of the part.
+#[cold]
+fn beyond_right_angle_from<T: Scalar>(squares: [T; 3]) -> Error {
+    let lane = (0..T::LANES).find(|&lane| squares[2].lane(lane).is_finite()).unwrap_or(0);
+    let [start, half, end] = squares.map(|square| square.lane(lane).to_f64());
+    let bend = 2.0 * (start + end - 2.0 * half);
+    let slope = end - start - bend;
+    // the largest s with start + slope s + bend s² = 1
+    let root = Scalar::sqrt(slope * slope - 4.0 * bend * (start - 1.0));
+    let part = if slope > 0.0 { 2.0 * (1.0 - start) / (slope + root) } else { (root - slope) / (2.0 * bend) };
+    // false for NaN
+    Error::unsolvable(if part > 0.0 && part <= 1.0 { part } else { 0.0 })
+}
+
 /// 1/(1 + cos θ) = 1/(1 + √(1 − t)) of t = sin²θ ≤ 1, for |θ| ≤ π/2.
 ///
 /// Below t = 2⁻⁷, angles of 5°, seven terms of the power series

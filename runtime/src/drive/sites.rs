@@ -4,7 +4,7 @@ use super::Drive;
 use crate::fields::getters;
 use crate::parameters::check_finite;
 use crate::power::{Point, Power, SiteMomentum};
-use crate::scheme::{At, AtSite, InStorage, JoinedInStorage, Scheme, Stored};
+use crate::scheme::{At, AtOf, AtSite, InStorage, JoinedInStorage, Scheme, Stored};
 use crate::space::plus;
 use crate::stepper::{check_on_orbit, check_violation};
 use crate::{Clebsch, Clock, Conserves, Error, Scalar, Space, Stepper, Time};
@@ -165,6 +165,11 @@ impl<R> AsMut<[R]> for NoJoints {
         &mut []
     }
 }
+
+/// q, N and the kick at which a step starts.
+type Start<'a, P> = (&'a <P as Clebsch>::Configuration, &'a <P as Clebsch>::Momentum, &'a <P as Clebsch>::Momentum);
+/// The sum of all numbers of a state.
+type Summed<P> = Result<<P as Clebsch>::Scalar, SiteError>;
 
 /// The multipliers of the joints of a site of P.
 type Multipliers<P, const N: usize> = <<P as Clebsch>::Scheme as JoinedInStorage<P, N>>::Multipliers;
@@ -448,14 +453,21 @@ where
     /// # Errors
     /// Those of [`Stepper::step_with`], with the site. After an error the state is unchanged.
     pub fn step_with(&mut self, u: &P::Input) -> Result<(), SiteError> {
-        if !u.all_finite() {
-            return Err(SiteError { site: None, error: Error::NotFinite { name: "the input" } });
-        }
+        check_input::<P>(u)?;
         self.stepped(Some(u))
     }
 
     /// One step; an input that is not given is 0.
     fn stepped(&mut self, u: Option<&P::Input>) -> Result<(), SiteError> {
+        self.stepped_by(|at, from, next, room| Ok(P::Scheme::step_from(at, from, u, next, room)?))
+    }
+
+    /// One step as `step` makes it, from a state to the place of another. It gives the sum of all numbers of the new state.
+    #[inline(always)]
+    fn stepped_by(
+        &mut self,
+        step: impl FnOnce(AtOf<'_, P, P::Scheme>, Start<'_, P>, Stored<'_, P>, &mut [Room<P, N>]) -> Summed<P>,
+    ) -> Result<(), SiteError> {
         let time = self.time.after_step(self.stepper.step_size());
         if !time.now().is_finite() {
             return Err(SiteError { site: None, error: Error::NotFinite { name: "the time after the step" } });
@@ -468,7 +480,7 @@ where
         // after an error the room has those of another configuration
         let mut factored = self.factored.take();
         let next_state = Stored { q, mu, kick, gradient, factored: &mut factored };
-        let sum = P::Scheme::step_from(self.stepper.at(self.time.now()), from, u, next_state, self.room.as_mut())?;
+        let sum = step(self.stepper.at(self.time.now()), from, next_state, self.room.as_mut())?;
         if !sum.is_finite()
             && let Some(error) = not_finite(next.as_ref(), moved.as_ref(), next_kick.as_ref())
         {
@@ -638,12 +650,8 @@ where
         u: &P::Input,
         multipliers: &mut [Multipliers<P, N>],
     ) -> Result<LoopMultipliers<P, N>, SiteError> {
-        if !u.all_finite() {
-            return Err(SiteError { site: None, error: Error::NotFinite { name: "the input" } });
-        }
-        if multipliers.len() != N {
-            return Err(wrong_length::<N>(multipliers.len()));
-        }
+        check_input::<P>(u)?;
+        check_room::<_, N>(multipliers)?;
         let SiteStorage { configuration: q, momentum: mu, more_points: [_, gradient], more_momenta: [moved, _, kick] } =
             &mut self.storage;
         let state = (array(q.as_ref())?, array(mu.as_ref())?);
@@ -651,13 +659,98 @@ where
         let at = self.stepper.at(self.time.now());
         self.factored = None;
         let loops = P::Scheme::reactions(at, state, u, self.room.as_mut(), free, multipliers)?;
-        let error = Error::NotFinite { name: "the reactions of the constraint" };
-        let site = multipliers.iter().position(|of_site| !of_site.all_finite());
-        if site.is_some() || !loops.all_finite() {
-            return Err(SiteError { site, error });
-        }
+        check_reactions(multipliers, &loops)?;
         Ok(loops)
     }
+
+    /// One step, as [`step`](Self::step), with the reactions of that step, as [`Stepper::step_with_reactions`] has them.
+    /// They are the impulses of the joints divided by h, in units of force. A vector for each site is written to `multipliers`.
+    /// Returns those of the equations that close loops.
+    ///
+    /// ```
+    /// # use clebsch::{Clebsch, Error, SiteStorage};
+    /// # use nalgebra::{Vector1, Vector2};
+    /// # #[derive(Clebsch, Clone, Debug)]
+    /// # #[clebsch(
+    /// #     action     = |a: [Translation<2>; N], x: [Vector2; N]| (0..N).map(|i| x[i] + a[i]),
+    /// #     lagrangian = |v| (0..N).map(|i| v[i].norm_squared() / 2).sum(),
+    /// #     potential  = |x| (0..N).map(|i| 10 * x[i].y).sum(),
+    /// #     constraint = |x| [
+    /// #         x[0].norm() == 1,
+    /// #         (1..N).map(|i| (x[i] - x[i - 1]).norm() == 1),
+    /// #     ],
+    /// # )]
+    /// # struct Rope<const N: usize>;
+    /// // a straight rope swings through its lowest point, 1 rad/s: its first rod carries all weights and centripetal forces
+    /// let stepper = Rope::<3>.into_stepper(1e-3)?;
+    /// let places = vec![-Vector2::y(), -Vector2::y() * 2.0, -Vector2::y() * 3.0];
+    /// let velocities = vec![Vector2::x(), Vector2::x() * 2.0, Vector2::x() * 3.0];
+    /// let room = vec![stepper.joint(); 3];
+    /// let mut rope = stepper.joined_sites_moving(SiteStorage::of(places, velocities), room)?;
+    /// let mut pulls = vec![Vector1::zeros(); 3];
+    /// rope.step_with_reactions(&mut pulls)?;
+    /// assert!((pulls[0].x + 3.0 * 10.0 + 1.0 + 2.0 + 3.0).abs() < 1e-4);
+    /// # Ok::<(), Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// As [`step`](Self::step), [`Error::NumberOfSites`] where `multipliers` has another length than N, and
+    /// [`Error::NotFinite`] where the reactions overflow. After an error the state is unchanged.
+    pub fn step_with_reactions(
+        &mut self,
+        multipliers: &mut [Multipliers<P, N>],
+    ) -> Result<LoopMultipliers<P, N>, SiteError> {
+        self.step_with_reactions_under(&Space::origin(), multipliers)
+    }
+
+    /// The same while the input of the forces is `u`, as [`step_with`](Self::step_with).
+    ///
+    /// # Errors
+    /// As [`step_with_reactions`](Self::step_with_reactions), and [`Error::NotFinite`] where the input is not.
+    pub fn step_with_reactions_under(
+        &mut self,
+        u: &P::Input,
+        multipliers: &mut [Multipliers<P, N>],
+    ) -> Result<LoopMultipliers<P, N>, SiteError> {
+        check_input::<P>(u)?;
+        check_room::<_, N>(multipliers)?;
+        let per_step = self.stepper.step_size().recip();
+        let mut loops = LoopMultipliers::<P, N>::origin();
+        multipliers.iter_mut().for_each(|of_site| *of_site = Space::origin());
+        self.stepped_by(|at, (q, mu, kick), next, room| {
+            next.q.copy_from_slice(q);
+            next.mu.copy_from_slice(mu);
+            next.kick.copy_from_slice(kick);
+            let (_, sum) = P::Scheme::step_with_reactions(at, Some(u), next, room, (&mut *multipliers, &mut loops))?;
+            multipliers.iter_mut().for_each(|of_site| *of_site = of_site.zip_map(of_site, |sum, _| sum * per_step));
+            loops = loops.zip_map(&loops, |sum, _| sum * per_step);
+            check_reactions(multipliers, &loops)?;
+            Ok(sum)
+        })?;
+        Ok(loops)
+    }
+}
+
+/// An input that is finite.
+fn check_input<P: Clebsch>(u: &P::Input) -> Result<(), SiteError> {
+    if u.all_finite() {
+        return Ok(());
+    }
+    Err(SiteError { site: None, error: Error::NotFinite { name: "the input" } })
+}
+
+/// Room for the multipliers of N sites.
+fn check_room<V, const N: usize>(multipliers: &[V]) -> Result<(), SiteError> {
+    if multipliers.len() == N { Ok(()) } else { Err(wrong_length::<N>(multipliers.len())) }
+}
+
+/// Reactions that are finite.
+fn check_reactions<T: Scalar, V: Space<T>, L: Space<T>>(multipliers: &[V], loops: &L) -> Result<(), SiteError> {
+    let site = multipliers.iter().position(|of_site| !of_site.all_finite());
+    if site.is_none() && loops.all_finite() {
+        return Ok(());
+    }
+    Err(SiteError { site, error: Error::NotFinite { name: "the reactions of the constraint" } })
 }
 
 impl<P, Points, Momenta, Rooms, const N: usize> Drive for Sites<P, Points, Momenta, N, Rooms>

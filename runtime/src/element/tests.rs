@@ -1,8 +1,8 @@
 //! Group elements against series of more terms, and exact identities.
 
-use super::{below_right_angle, inverse, per_one_plus_cosine, quaternion_from_increment};
+use super::{below_right_angle, below_right_angle_from, inverse, per_one_plus_cosine, quaternion_from_increment};
 use crate::Error;
-use nalgebra::{Matrix3, Matrix4, Quaternion, Vector1};
+use nalgebra::{Matrix3, Matrix4, Quaternion, Vector1, Vector2};
 
 #[test]
 fn steps_beyond_a_quarter_turn_say_by_how_much() {
@@ -10,6 +10,29 @@ fn steps_beyond_a_quarter_turn_say_by_how_much() {
     assert_eq!(check(0.99), Ok(Vector1::new(1.0)));
     assert_eq!(check(4.0), Err(Error::Unsolvable { solvable_fraction: 0.5, step_size: None, solvable_step: None }));
     assert_eq!(check(f64::NAN), Err(Error::NotFinite { name: "the momentum" }));
+}
+
+/// |d + s (a − d)| = 1 at the fraction s, with the sine d where there is no momentum.
+#[test]
+fn constrained_steps_beyond_a_quarter_turn_say_by_how_much() {
+    let check = |rest: [f64; 2], all: [f64; 2]| {
+        let (rest, all) = (Vector2::from(rest), Vector2::from(all));
+        below_right_angle_from(all, |a| a.norm_squared(), |_: &Vector1<f64>| rest)
+    };
+    let fraction = |rest, all| match check(rest, all) {
+        Err(Error::Unsolvable { solvable_fraction, .. }) => solvable_fraction,
+        other => panic!("{other:?}"),
+    };
+    assert_eq!(check([2.0, 0.0], [0.0, 0.5]), Ok(Vector2::new(0.0, 0.5)));
+    assert!((fraction([0.0; 2], [0.0, 4.0]) - 0.25).abs() < 1e-15);
+    assert!((fraction([0.5, 0.0], [2.5, 0.0]) - 0.25).abs() < 1e-15);
+    // back through 0
+    assert!((fraction([0.5, 0.0], [-2.5, 0.0]) - 0.5).abs() < 1e-15);
+    assert!((fraction([0.6, 0.0], [0.6, 1.6]) - 0.5).abs() < 1e-15);
+    // none
+    assert_eq!(fraction([2.0, 0.0], [3.0, 0.0]), 0.0);
+    assert_eq!(fraction([2.0, 0.0], [2.0, 3.0]), 0.0);
+    assert_eq!(check([0.0; 2], [f64::NAN, 0.0]), Err(Error::NotFinite { name: "the momentum" }));
 }
 
 /// Against the series to many more terms, on both sides of where it ends, and in single precision against the quotient in double.

@@ -119,6 +119,9 @@ pub trait Border<T: Scalar, const M: usize>: Clone + core::fmt::Debug {
 
     /// The solution.
     fn solution(&self) -> Self::Values;
+
+    /// λ of the move, or μ of the projection after it, where that is the solution.
+    fn impulses(&self, is_after: bool) -> Self::Values;
 }
 
 impl<T: Scalar, const M: usize, const L: usize> Border<T, M> for Loops<T, M, L> {
@@ -160,6 +163,10 @@ impl<T: Scalar, const M: usize, const L: usize> Border<T, M> for Loops<T, M, L> 
 
     fn solution(&self) -> SVector<T, L> {
         self.values()
+    }
+
+    fn impulses(&self, is_after: bool) -> SVector<T, L> {
+        if is_after { self.values() } else { SVector::from_iterator(self.all.iter().map(|row| row.multiplier)) }
     }
 }
 

@@ -205,6 +205,11 @@ impl<'a, P: Joined<N, R, M>, const N: usize, const R: usize, const M: usize> Joi
         self.room.iter().map(|joint| &joint.block.right)
     }
 
+    /// λ of the move, or μ of the projection after it, of each site.
+    pub fn impulses(&self, is_after: bool) -> impl Iterator<Item = &SVector<T<P>, R>> {
+        self.room.iter().map(move |joint| if is_after { &joint.block.right } else { &joint.multipliers })
+    }
+
     /// Aᵀλ of the move, or Aᵀμ of the projection after it.
     pub fn pushes(&self, is_after: bool) -> Mu<P> {
         let mut pushes = [Space::origin(); N];

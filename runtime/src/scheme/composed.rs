@@ -170,14 +170,33 @@ impl<S: Power<N>, I: InStorage<S, N>, Z: Sizes<K>, const K: usize, const N: usiz
     }
 
     #[inline]
-    fn step_in_place<'a, 'r>(
+    fn step_in_place<'a>(
         at: AtOf<'_, S, Self>,
         u: Option<&U<S>>,
         state: Stored<'a, S>,
-        room: &'r mut [I::Room],
+        room: &mut [I::Room],
     ) -> Result<(Stored<'a, S>, T<S>), AtSite> {
+        Self::in_place(at, state, room, |stage, t, state, room| {
+            I::step_in_place(At::new(at.system, stage, t), u, state, room)
+        })
+    }
+}
+
+impl<I, Z, const K: usize> Composed<I, Z, K> {
+    /// The steps of a composed step, one after the other.
+    #[inline(always)]
+    fn in_place<'a, 'r, S: Power<N>, const N: usize>(
+        at: AtOf<'_, S, Self>,
+        state: Stored<'a, S>,
+        room: &'r mut [I::Room],
+        mut step: impl FnMut(&I::Constants, T<S>, Stored<'a, S>, &mut [I::Room]) -> Result<(Stored<'a, S>, T<S>), AtSite>,
+    ) -> Result<(Stored<'a, S>, T<S>), AtSite>
+    where
+        I: InStorage<S, N>,
+        Z: Sizes<K>,
+    {
         let step = |stage: &I::Constants, t, (state, _, room): Stage<'a, 'r, S, I::Room>| {
-            let (state, sum) = I::step_in_place(At::new(at.system, stage, t), u, state, room)?;
+            let (state, sum) = step(stage, t, state, &mut *room)?;
             Ok((state, sum, room))
         };
         let scaled = |(state, sum, room): Stage<'a, 'r, S, I::Room>, ratio| {
@@ -200,6 +219,20 @@ impl<S: Power<N>, I: JoinedInStorage<S, N>, Z: Sizes<K>, const K: usize, const N
 
     fn to_joints(at: AtOf<'_, S, Self>, state: (&mut Q<S>, &mut Mu<S>), room: &mut [I::Room]) -> Result<(), AtSite> {
         I::to_joints(At::new(at.system, &at.constants.whole, at.t), state, room)
+    }
+
+    #[inline]
+    fn step_with_reactions<'a>(
+        at: AtOf<'_, S, Self>,
+        u: Option<&U<S>>,
+        state: Stored<'a, S>,
+        room: &mut [I::Room],
+        (impulses, of_loops): (&mut [I::Multipliers], &mut I::OfLoops),
+    ) -> Result<(Stored<'a, S>, T<S>), AtSite> {
+        let step = |stage: &I::Constants, t, state: Stored<'a, S>, room: &mut [I::Room]| {
+            I::step_with_reactions(At::new(at.system, stage, t), u, state, room, (&mut *impulses, &mut *of_loops))
+        };
+        Self::in_place(at, state, room, step)
     }
 
     fn reactions(

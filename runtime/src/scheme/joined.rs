@@ -62,6 +62,15 @@ pub trait JoinedInStorage<S: Power<N>, const N: usize>: InStorage<S, N> {
     /// Moves q to φ = 0, and N to a momentum whose velocity obeys the joints.
     fn to_joints(at: AtOf<'_, S, Self>, state: (&mut Q<S>, &mut Mu<S>), room: &mut [Self::Room]) -> Result<(), AtSite>;
 
+    /// One step in place, as [`step_in_place`](InStorage::step_in_place). Adds the impulses λ + μ of the joints to those that are given.
+    fn step_with_reactions<'a>(
+        at: AtOf<'_, S, Self>,
+        u: Option<&U<S>>,
+        state: Stored<'a, S>,
+        room: &mut [Self::Room],
+        impulses: (&mut [Self::Multipliers], &mut Self::OfLoops),
+    ) -> Result<(Stored<'a, S>, T<S>), AtSite>;
+
     /// The multipliers of the motion through (q, N) with the input u. The content of `free` does not matter.
     fn reactions(
         at: AtOf<'_, S, Self>,
@@ -93,6 +102,22 @@ impl<S: Joined<N, R, M>, K: SiteKicks<S, N>, const N: usize, const R: usize, con
         let mut joints = Joints::new(system, constants, of_all(room)?)?;
         joints.placed(t, q)?;
         joints.projected(t, q, mu, T::<S>::EPSILON.sqrt()).map(|_| ())
+    }
+
+    #[inline]
+    fn step_with_reactions<'a>(
+        at: At<'_, S>,
+        u: Option<&U<S>>,
+        state: Stored<'a, S>,
+        room: &mut [Self::Room],
+        (impulses, of_loops): (&mut [Self::Multipliers], &mut Self::OfLoops),
+    ) -> Result<(Stored<'a, S>, T<S>), AtSite> {
+        Self::step_telling(at, u, state, room, |Told { joints, is_after, .. }| {
+            let both = impulses.iter_mut().zip(joints.impulses(is_after));
+            both.for_each(|(sum, impulse)| *sum += impulse);
+            let of_border = joints.border.impulses(is_after);
+            *of_loops = plus(of_loops, &of_border);
+        })
     }
 
     fn reactions(

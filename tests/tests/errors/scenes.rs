@@ -294,7 +294,7 @@ fn states() -> Vec<Scene> {
     let crossing = Crossing.into_stepper(0.1).expect("a crossing");
     let ball = RollingBall { mass: 1.3, inertia: 0.7, radius: 0.5, table_rate: 0.9 };
     let turning = ball.into_stepper(50.0).expect("a ball");
-    let rolling = turning.project(Vector2::new(0.3, -0.2), Vector5::new(0.2, 0.4, 0.1, -0.3, 0.35)).expect("a state");
+    let rolling = turning.project(Vector2::new(3.0, -2.0), Vector5::new(0.2, 0.4, 0.1, -0.3, 0.35)).expect("a state");
     let turning_top = stepper.state(r, mu).expect("a state");
     let late = stepper.trajectory(turning_top).at([0.3, 0.2]).find_map(Result::err).expect("times out of order");
     // x = (t − 1)², up to a factor that is its unit

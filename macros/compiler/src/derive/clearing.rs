@@ -81,9 +81,7 @@ pub(super) fn by_square<'g>(system: &SystemFormulas<'g>, block: &ChartBlock<'g>,
     let (identity, square) = (group.identity(graph), graph.integer(1) + x.norm_squared());
     let inverse = |z: Expr<'g>| ((identity - z).inverse(), identity + (z + z * z) / square);
     let scaled = rows.substitute(&both([x, -x], |x| inverse(group.wedge(x)))).expand();
-    let scaled = scaled.times_each(square).expand();
-    let is_free = !scaled.has_inverse() && scaled.least_exponent(square).is_none_or(|least| least >= integer(0));
-    if is_free { scaled } else { rows }
+    freed(scaled, square, 1).filter(|scaled| !scaled.has_inverse()).unwrap_or(rows)
 }
 
 /// The residual of unit quaternions, times the power of 1 + |x|² that frees it of fractions.
@@ -92,7 +90,11 @@ pub(super) fn of_quaternions<'g>(coordinates: &[Expr<'g>], group: Group, plain: 
         return plain;
     }
     let square = coordinates[0].graph().integer(1) + coordinates[0].norm_squared();
-    let is_fraction = |expression: &Expr<'g>| expression.least_exponent(square).is_some_and(|least| least < integer(0));
-    let mut scaled = (1..=2).map(|power| plain.times_each(square.powi(power)).expand());
-    scaled.find(|scaled| !is_fraction(scaled)).unwrap_or(plain)
+    freed(plain, square, 2).unwrap_or(plain)
+}
+
+/// The rows times the least power of a sum, up to `most`, that leaves none of its fractions. `None` if fractions remain.
+fn freed<'g>(rows: Expr<'g>, sum: Expr<'g>, most: i32) -> Option<Expr<'g>> {
+    let mut scaled = (1..=most).map(|power| rows.times_each(sum.powi(power)).expand());
+    scaled.find(|scaled| scaled.least_exponent(sum).is_none_or(|least| least >= integer(0)))
 }

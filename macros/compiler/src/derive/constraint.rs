@@ -248,7 +248,7 @@ fn rows_of_places<'g>(system: &SystemFormulas<'g>, places: Expr<'g>) -> Expr<'g>
 }
 
 /// A product, entry by entry: zeros of both factors are left out.
-fn product<'g>(left: Expr<'g>, right: Expr<'g>) -> Expr<'g> {
+pub(super) fn product<'g>(left: Expr<'g>, right: Expr<'g>) -> Expr<'g> {
     let shape = Shape::new(left.shape().rows, right.shape().columns);
     let entry = |(i, j): (usize, usize)| {
         let terms = (0..left.shape().columns).map(|k| left.entry(i, k) * right.entry(k, j));

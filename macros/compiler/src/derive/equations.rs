@@ -4,7 +4,7 @@ use clebsch_symbolic::work::{self, Exhausted};
 use clebsch_symbolic::{Chart, Elements, Expr, IntoList, Shape, identity, indexed};
 
 use super::clearing;
-use super::closed_form::{closed_form, is_solved_by_predictor};
+use super::closed_form::{SolvedConstraint, closed_form, is_solved_by_predictor};
 use super::equation::{DISTRIBUTED, Form, Momentum, MomentumEquation, Solution, Sources, is_diagonal};
 use super::letters::Letters;
 use super::{ChartBlock, ConstraintFormulas, exact, structure, tangent};
@@ -35,9 +35,12 @@ fn in_charts<'g>(sources: &Sources<'_, 'g>, momentum: &Momentum<'_, 'g>) -> Equa
     let (model, symbols) = (sources.model, &sources.symbols);
     let is_free_rotation = |block: &ChartBlock<'g>| exact::is_free_rotation(model, block.factor);
     let letters = Letters::new(sources, momentum);
-    let (mut residuals, reaction, still) = match momentum.constraint {
+    let Residuals { mut residuals, reaction, still, mut solved } = match momentum.constraint {
         Some(constraint) => constrained(sources, momentum, (constraint, &letters)),
-        None => (unconstrained(sources, momentum, &letters), None, Vec::new()),
+        None => {
+            let residuals = unconstrained(sources, momentum, &letters);
+            Residuals { residuals, reaction: None, still: Vec::new(), solved: None }
+        }
     };
     if !momentum.is_forced {
         substitute_explicit(sources, &mut residuals);
@@ -51,7 +54,14 @@ fn in_charts<'g>(sources: &Sources<'_, 'g>, momentum: &Momentum<'_, 'g>) -> Equa
     let depends = |i: usize, j: usize| residuals[i].rows.depends_on(symbols.blocks[j].coordinates);
     let equations = structure::connected(residuals.len(), |i, j| depends(i, j) || depends(j, i))
         .into_iter()
-        .map(|group| equation(sources, momentum, &residuals, group))
+        .map(|group| {
+            let solved = solved.take_if(|_| group.len() == residuals.len());
+            let equation = equation(sources, momentum, &residuals, group);
+            match solved {
+                Some(solved) => solved.solve(equation),
+                None => equation,
+            }
+        })
         .filter_map(|equation| structure::without_still(sources, equation, &still))
         .flat_map(|equation| structure::specialised(sources, equation));
     Equations { equations: equations.into_list(), reaction, still }
@@ -82,8 +92,7 @@ fn unconstrained<'g>(
     residuals
 }
 
-/// The residuals of all blocks with a constraint, its force for each factor, and the coordinates that stay zero. Products
-/// are not distributed, so that S⁻¹ is computed once in a step.
+/// The residuals of all blocks with a constraint. Products are not distributed, so that S⁻¹ is computed once in a step.
 ///
 /// If each row says that a coordinate is zero, the others have their momentum equations as they are, y = 0. The force of
 /// the constraint is then y in the coordinates that are zero.
@@ -91,7 +100,7 @@ fn constrained<'g>(
     sources: &Sources<'_, 'g>,
     momentum: &Momentum<'_, 'g>,
     (constraint, letters): (&ConstraintFormulas<'g>, &Letters<'_, 'g>),
-) -> (Vec<Residual<'g>>, Option<Vec<Expr<'g>>>, Vec<usize>) {
+) -> Residuals<'g> {
     let (graph, symbols) = (sources.model.graph, &sources.symbols);
     let factors = (0..sources.model.factors.len()).map(|k| residual(sources, momentum, (k, letters)).0);
     let difference = letters.replaced(graph.below(&factors.into_list()));
@@ -111,7 +120,14 @@ fn constrained<'g>(
     };
     let is_near = momentum.couples || !are_all;
     let residual = |block: &ChartBlock<'g>| Residual { rows: rows(block), slope: None, cleared: false, is_near };
-    (symbols.blocks.each(residual), Some(sources.parted(reaction)), still)
+    let may_be_affine = still.is_empty() && !momentum.couples;
+    let affine = || SolvedConstraint::of(sources, (constraint, letters), [difference, between]);
+    Residuals {
+        residuals: symbols.blocks.each(residual),
+        reaction: Some(sources.parted(reaction)),
+        solved: may_be_affine.then(affine).flatten(),
+        still,
+    }
 }
 
 /// The coordinates that stay zero in a step: those of rows ξ_i = 0. There A has one entry, a number, b is zero, and ψ
@@ -133,6 +149,17 @@ fn still<'g>(sources: &Sources<'_, 'g>, constraint: &ConstraintFormulas<'g>, bet
     let mut still: Vec<usize> = (0..rows).filter_map(component).into_list();
     still.sort_unstable();
     still
+}
+
+/// The residuals of all blocks.
+struct Residuals<'g> {
+    residuals: Vec<Residual<'g>>,
+    /// The force of the constraint for each factor; `None` if there is none.
+    reaction: Option<Vec<Expr<'g>>>,
+    /// The coordinates that the constraint holds at zero.
+    still: Vec<usize>,
+    /// The solution of all of them at once, where there is one.
+    solved: Option<SolvedConstraint<'g>>,
 }
 
 /// The residual of one block.

@@ -202,7 +202,7 @@ pub(super) fn adopt_sine<'g>(symbols: &mut Symbols<'g>, substeps: &mut [Substep<
         let mut own = Vec::new();
         for equation in substeps.iter_mut().flat_map(|substep| &mut substep.equations) {
             if let Some(form) = equation.sine
-                && equation.components.iter().copied().eq(block.components())
+                && block.components().all(|component| equation.components.contains(&component))
             {
                 own.push((equation, form));
             }

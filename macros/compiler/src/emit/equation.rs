@@ -121,8 +121,10 @@ impl<'e, 'a, 'g> EquationType<'e, 'a, 'g> {
         // in matrix code the terms contain the momenta
         let target = (is_newton && emitter.keeps_matrices).then(|| quote!(let mu = &terms.0;));
         Some(match function.name {
-            "closed_form" => function.written(scope, kernel, words)?,
-            "closed_form_or_nan" if emitter.drifts_alone().is_none() => return None,
+            "closed_form" if solve.has_multipliers => return None,
+            "constrained_form" if !solve.has_multipliers => return None,
+            "closed_form" | "constrained_form" => function.written(scope, kernel, words)?,
+            "closed_form_or_nan" if emitter.drifts_alone().is_none() && !solve.has_multipliers => return None,
             "closed_form_or_nan" => Body { cost: None, ..function.written(scope, kernel, words)? },
             "explicit" => {
                 let is_predicted = !emitter.rows.titled(solve.id(Id::Predictor)).is_empty();

@@ -324,6 +324,11 @@ functions! {
             let x = { Locals Value0 };
             runtime::below_right_angle(x, { ByReference SineSquared })
         }
+        /// The solution with the multipliers of a constraint: the rotation by θ in one plane with sin θ = |a|, |a|² < 1.
+        fn constrained_form(&self, mu: &Momenta) -> Solved<Vector> { Id::ClosedForm(0, 0) => Id::Solution(0, 0) } = {
+            let x = { Locals Value0 };
+            runtime::below_right_angle_from(x, |x| { SineSquared }, |mu| self.closed_form_or_nan(mu))
+        }
         /// The same without a branch. Where there is none, the root of 1 − |a|² is NaN.
         fn closed_form_or_nan(&self, mu: &Momenta) -> Vector { Id::ClosedForm(0, 0) => } = { Locals Value0 }
         /// The solution, coordinate after coordinate.

@@ -34,6 +34,7 @@ impl Emitter<'_, '_> {
         let held = held.map(|(name, _)| format_ident!("{}", if name == "system" { "self" } else { name }));
         let (equation, target) = (quote!(#name(#(#held),*)), self.part_of_momentum(&solve.momenta));
         match solve.solution {
+            Solution::ClosedForm if solve.has_multipliers => quote!(#name::constrained_form(&#equation, #target)),
             Solution::ClosedForm => quote!(#name::closed_form(&#equation, #target)),
             Solution::Explicit => quote!(#name::explicit(&#equation, #target #given)),
             Solution::Linear => quote!(runtime::solve_linear_equation(&#equation, #target)),

@@ -27,6 +27,8 @@ pub struct Solve {
     pub coupled: Vec<usize>,
     /// How it is solved.
     pub solution: Solution,
+    /// Whether its closed form has the multipliers of a constraint in it.
+    pub has_multipliers: bool,
     /// The known structure of its Jacobian.
     pub structure: Structure,
     /// Whether the equation depends on the configuration, on the time or on the input.
@@ -157,6 +159,7 @@ impl<'g> Maker<'_, 'g> {
             given,
             coupled: equation.coupled.clone(),
             solution: equation.solution,
+            has_multipliers: equation.solution == Solution::ClosedForm && formulas.substeps[index].reaction.is_some(),
             structure: match formulas.table().value(Id::JacobianFactor(index, number)).filter(|_| keeps_matrices) {
                 Some(factor) => Structure::Sylvester(factor[0].shape().rows),
                 None => equation.structure.clone(),

@@ -1,10 +1,11 @@
 //! Constraints: the closure `constraint`. Its equations are affine in the velocity, or of the configuration alone.
 
 use clebsch_symbolic::{Elements, Expr, IntoElements, IntoList, identity};
-use syn::{BinOp, Expr as Syntax, ExprArray, ExprBinary, ExprMethodCall};
+use proc_macro2::Ident;
+use syn::{BinOp, Expr as Syntax, ExprArray, ExprBinary, ExprForLoop, ExprMethodCall, Stmt};
 
 use super::closures::optional;
-use super::elaborate::Elaborator;
+use super::elaborate::{Context, Elaborator};
 use super::features::{self, Feature, Found};
 use super::sites::unrolled;
 use super::slots::{CONSTRAINT, Slot};
@@ -12,7 +13,7 @@ use super::typed::{ActedSystem, Velocity};
 use super::value::Value;
 use super::{Constraint, Equation, VelocityRows, Written};
 use crate::diagnostic::{Diagnostics, Location, error, refuse};
-use crate::parse::{Closure, Declaration, Kinetic, shortened, spell, tail};
+use crate::parse::{Closure, Declaration, Kinetic, shortened, spell, spell_tokens, tail};
 
 /// One equation of the list, as left side less right side.
 pub(super) struct Sides<'g> {
@@ -42,7 +43,10 @@ impl<'g> ActedSystem<'_, '_, 'g> {
                     rows.push(found.rows);
                     values.push(found.values);
                 }
-                None => places.extend(all.each(|sides| sides.difference)),
+                None => {
+                    all.iter().try_for_each(|sides| check_squares(self.context, sides))?;
+                    places.extend(all.each(|sides| sides.difference));
+                }
             }
             let is_of_velocities = velocities.is_some();
             let known = if is_of_velocities { &mut of_velocities } else { &mut of_places };
@@ -93,6 +97,20 @@ impl<'g> ActedSystem<'_, '_, 'g> {
     }
 }
 
+/// No square in the potential is that of an equation: such a term is zero with its force wherever the equation holds.
+pub(super) fn check_squares<'g>(context: &Context<'_, 'g>, Sides { difference, written }: &Sides<'g>) -> Option<()> {
+    let repeats = |square: &Expr<'g>| {
+        square.shape() == difference.shape()
+            && (identity::equal(&[*square], &[*difference]) || identity::equal(&[*square], &[-*difference]))
+    };
+    let Some((Written { place, text }, _)) = context.squares.iter().find(|(_, square)| repeats(square)) else {
+        return Some(());
+    };
+    refuse!(context.diagnostics, *place, "`{text}` repeats the constraint `{}`", written.text;
+        help "leave it out of the potential, or leave out the constraint";
+        note "where the equation holds, this term and its force are zero")
+}
+
 /// The list that the body ends with.
 pub(super) fn list<'s>(closure: &'s Closure, diagnostics: &Diagnostics) -> Option<&'s ExprArray> {
     let body = tail(&closure.body);
@@ -112,6 +130,9 @@ pub(super) fn list<'s>(closure: &'s Closure, diagnostics: &Diagnostics) -> Optio
             help "write `[{} == {}]`", spell(&link.left), spell(&link.right)),
         Syntax::MethodCall(call) if call.method == "map" => {
             refuse!(diagnostics, body, "a constraint is a list of equations"; help "write `[{}]`", spell(body))
+        }
+        Syntax::Macro(list) if list.mac.path.is_ident("vec") => {
+            refuse!(diagnostics, body, "a constraint is a list of equations"; help "write `[{}]`", spell_tokens(&list.mac.tokens))
         }
         _ => refuse!(diagnostics, body, "a constraint is a list of equations";
             help "end it with a list, as in `[{}.z == 0]`", last_name(closure)),
@@ -142,22 +163,69 @@ fn as_equation(link: &ExprBinary) -> String {
     format!("{} == {}", spell(&link.left), spell(&link.right))
 }
 
-/// An element of the list: `a == b`, or `(0..3).map(|i| a == b)` with an equation for each number.
+/// An element of the list: `a == b`, or `(0..3).map(|i| a == b)` with equations for each number.
 fn element<'g>(elaborator: &mut Elaborator<'_, '_, 'g>, syntax: &Syntax) -> Option<Vec<Sides<'g>>> {
     let Some(sequence) = sequence(syntax) else { return equation(elaborator, syntax).map(|only| vec![only]) };
-    let mut all = elaborator.each_of_map(sequence, |elaborator, body| {
-        elaborator.in_block(body, |elaborator| element(elaborator, tail(body)))
-    })?;
+    check_range(elaborator, sequence)?;
+    let mut all = elaborator.each_of_map(sequence, of_each)?;
     let text = shortened(syntax);
     all.iter_mut().for_each(|sides| sides.written.text.clone_from(&text));
     Some(all)
 }
 
+/// The equations for one index: `a == b`, a list of equations, or those of numbers, `(0..2).map(|k| a == b)`.
+pub(super) fn of_each<'g>(elaborator: &mut Elaborator<'_, '_, 'g>, body: &Syntax) -> Option<Vec<Sides<'g>>> {
+    elaborator.in_block(body, |elaborator| match (tail(body), sequence(tail(body))) {
+        (Syntax::Array(list), _) if list.elems.is_empty() => {
+            refuse!(elaborator.context.diagnostics, list, "the constraint has no equation"; help "write one, as in `[a == b]`")
+        }
+        (Syntax::Array(list), _) => {
+            let all = list.elems.iter().map(|syntax| of_each(elaborator, syntax)).into_list();
+            Some(all.into_iter().collect::<Option<Vec<_>>>()?.into_iter().flatten().into_list())
+        }
+        (Syntax::Binary(link), _) if matches!(link.op, BinOp::And(_)) => {
+            refuse!(elaborator.context.diagnostics, &link.op, "`{}` is no equation", shortened(body);
+                help "separate equations by commas, in a list: write `[{}]`", conjuncts(tail(body)))
+        }
+        (_, Some(inner)) => {
+            check_range(elaborator, inner)?;
+            if let Value::Range(..) = elaborator.elaborate(&inner.receiver)? {
+                refuse!(elaborator.context.diagnostics, inner, "ranges inside each other make joints of all pairs";
+                    help "{}", unrolled("constraint", &elaborator.context.power.as_ref()?.length);
+                    note "a joint is of one site, or of two neighbours")
+            }
+            elaborator.each_of_map(inner, of_each)
+        }
+        (equation, None) => self::equation(elaborator, equation).map(|only| vec![only]),
+    })
+}
+
+/// A sequence of equations goes over a range or an array as it is.
+pub(super) fn check_range(elaborator: &Elaborator<'_, '_, '_>, sequence: &ExprMethodCall) -> Option<()> {
+    let Syntax::MethodCall(call) = inside(&sequence.receiver) else { return Some(()) };
+    let (range, diagnostics) = (a_range(elaborator), elaborator.context.diagnostics);
+    refuse!(diagnostics, &call.method, "`{}` has no meaning in the constraint", call.method;
+        help "go over indices, as in `{range}.map(|i| a == b)`";
+        note "each number of a range gives an equation, and their order does not matter")
+}
+
+/// A range to write in a message.
+fn a_range(elaborator: &Elaborator<'_, '_, '_>) -> String {
+    elaborator.context.power.as_ref().map_or_else(|| "(0..3)".to_string(), |power| format!("(1..{})", power.length))
+}
+
+/// The expression without parentheses.
+fn inside(syntax: &Syntax) -> &Syntax {
+    match syntax {
+        Syntax::Paren(inner) => inside(&inner.expr),
+        Syntax::Group(inner) => inside(&inner.expr),
+        other => other,
+    }
+}
+
 /// A call `….map(…)`.
 pub(super) fn sequence(syntax: &Syntax) -> Option<&ExprMethodCall> {
-    match syntax {
-        Syntax::Paren(inner) => sequence(&inner.expr),
-        Syntax::Group(inner) => sequence(&inner.expr),
+    match inside(syntax) {
         Syntax::MethodCall(call) if call.method == "map" => Some(call),
         _ => None,
     }
@@ -179,6 +247,21 @@ pub(super) fn equation<'g>(elaborator: &mut Elaborator<'_, '_, 'g>, syntax: &Syn
         }
         Syntax::Assign(link) => refuse!(diagnostics, &link.eq_token, "`{text}` is no equation";
             help "write `{} == {}`", spell(&link.left), spell(&link.right)),
+        Syntax::MethodCall(call) if ["collect", "into_iter", "to_vec"].iter().any(|name| call.method == name) => {
+            refuse!(diagnostics, &call.method, "`{text}` is no equation"; help "write `{}`", spell(&call.receiver))
+        }
+        Syntax::MethodCall(call) if call.method == "flat_map" => {
+            let map = ExprMethodCall { method: Ident::new("map", call.method.span()), ..call.clone() };
+            refuse!(diagnostics, &call.method, "`{text}` is no equation"; help "write `{}`", spell(&Syntax::MethodCall(map)))
+        }
+        Syntax::ForLoop(ExprForLoop { pat, expr, body, for_token, .. }) => {
+            let body = match &body.stmts[..] {
+                [Stmt::Expr(equation, None)] => spell(equation),
+                _ => spell_tokens(body),
+            };
+            refuse!(diagnostics, for_token, "a loop is no equation";
+                help "write `({}).map(|{}| {body})`", spell(inside(expr)), spell_tokens(pat))
+        }
         other => refuse!(diagnostics, other, "`{text}` is no equation"; help "write `{} == 0`", spell(other)),
     }
     let (left, right) = elaborator.equation(syntax)?;

@@ -1,10 +1,10 @@
 //! Joints: the equations of the configurations of a power, between neighbouring sites or between those of a tree.
 
-use clebsch_symbolic::{Expr, IntoList, Role};
+use clebsch_symbolic::{Expr, IntoElements, IntoList, Role};
 use syn::Expr as Syntax;
 
 use super::Written;
-use super::constraint::{Sides, equation, list, sequence};
+use super::constraint::{Sides, check_range, check_squares, equation, list, of_each, sequence};
 use super::elaborate::Elaborator;
 use super::features::{self, Feature, Found};
 use super::power::{Joint, Joints, Linear, Range, SiteIndex, Term};
@@ -60,24 +60,22 @@ impl<'g> ActedSystem<'_, '_, 'g> {
         let list = list(closure, diagnostics)?;
         let mut elaborator = Elaborator::new(self.context, "constraint", scope);
         elaborator.in_block(&closure.body, |elaborator| {
-            let equations = list.elems.iter().map(|syntax| read(elaborator, syntax));
-            equations.into_list().into_iter().collect()
+            let equations = list.elems.iter().map(|syntax| read(elaborator, syntax)).into_list();
+            let all = equations.into_iter().collect::<Option<Vec<_>>>()?.into_iter().flatten().into_list();
+            all.iter().try_for_each(|read: &Read<'g>| check_squares(elaborator.context, &read.sides))?;
+            Some(all)
         })
     }
 }
 
-/// `a == b`, or `(1..N).map(|i| a == b)`.
-fn read<'g>(elaborator: &mut Elaborator<'_, '_, 'g>, syntax: &Syntax) -> Option<Read<'g>> {
-    let Some(call) = sequence(syntax) else { return Some(Read { range: None, sides: equation(elaborator, syntax)? }) };
-    let (range, sides) = elaborator.of_range(call, |elaborator, body| match sequence(body) {
-        None => equation(elaborator, body),
-        Some(inner) => {
-            refuse!(elaborator.context.diagnostics, inner, "ranges inside each other make joints of all pairs";
-            help "{}", unrolled("constraint", &elaborator.context.power.as_ref()?.length);
-            note "a joint is of one site, or of two neighbours")
-        }
-    })?;
-    Some(Read { range: Some(range), sides })
+/// `a == b`, or `(1..N).map(|i| a == b)`, also with several equations for each index.
+fn read<'g>(elaborator: &mut Elaborator<'_, '_, 'g>, syntax: &Syntax) -> Option<Vec<Read<'g>>> {
+    let Some(call) = sequence(syntax) else {
+        return Some(vec![Read { range: None, sides: equation(elaborator, syntax)? }]);
+    };
+    check_range(elaborator, call)?;
+    let (range, all) = elaborator.of_range(call, of_each)?;
+    Some(all.into_each(|sides| Read { range: Some(range), sides }))
 }
 
 /// The sites that an equation reads: the later one, its parent, and how they follow each other.

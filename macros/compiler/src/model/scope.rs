@@ -72,13 +72,18 @@ impl<'g> Scope<'g> {
         self.arguments = self.names.len();
     }
 
+    /// The names of the arguments.
+    pub fn arguments(&self) -> impl Iterator<Item = &String> {
+        self.names[..self.arguments].iter().map(|(name, _)| name)
+    }
+
     /// Introduces a name of a `let` or of a closure inside. Arguments keep their meaning.
     pub fn add(&mut self, ident: &Ident, value: Option<Value<'g>>, what: &str, diagnostics: &Diagnostics) {
         if !check_reserved(ident, what, diagnostics) {
             return;
         }
         let name = ident.unraw().to_string();
-        if self.names[..self.arguments].iter().any(|(argument, _)| *argument == name) {
+        if self.arguments().any(|argument| *argument == name) {
             report!(diagnostics, ident, "`{name}` is an argument and cannot be redefined";
                 help "choose another name"; note "a `let` may replace a `let`, and nothing else");
             return;

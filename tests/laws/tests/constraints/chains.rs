@@ -3,7 +3,7 @@
 
 use clebsch::{Clebsch, Error, F64x4, Scalar, SiteStorage, Space, Stepper};
 use clebsch_tests::fixtures::{hanging_chain::HangingChain, jointed_bodies::JointedBodies};
-use nalgebra::{DMatrix, DVector, Matrix3, Matrix4, Rotation3, SVector, Vector2, Vector3, Vector6};
+use nalgebra::{DMatrix, DVector, Matrix3, Matrix4, Rotation3, SVector, Vector1, Vector2, Vector3, Vector6};
 
 mod declared {
     use clebsch::Clebsch;
@@ -121,6 +121,39 @@ mod declared {
         pub far: nalgebra::Vector3<f64>,
     }
 
+    macro_rules! written {
+        ($($name:ident $constraint:expr)*) => { $(
+            /// Beads on rods that stay in their plane.
+            #[derive(Clebsch, Clone, Debug)]
+            #[clebsch(
+                action     = |a: [Translation<3>; N], x: [Vector3; N]| (0..N).map(|i| x[i] + a[i]),
+                lagrangian = |v| (0..N).map(|i| v[i].norm_squared() / 2).sum(),
+                potential  = |x| (0..N).map(|i| x[i].x).sum(),
+                constraint = $constraint,
+            )]
+            pub struct $name<const N: usize>;
+        )* };
+    }
+    written! {
+        OneByOne |x| [
+            x[0] == Vector3::zeros(),
+            (1..N).map(|i| (x[i] - x[i - 1]).norm_squared() == 1),
+            (1..N).map(|i| x[i].z == x[i - 1].z),
+        ]
+        InLists |x| [
+            x[0] == Vector3::zeros(),
+            (1..N).map(|i| {
+                let gap = x[i] - x[i - 1];
+                [gap.norm_squared() == 1, gap.z == 0]
+            }),
+        ]
+        InRanges |x| [
+            x[0] == Vector3::zeros(),
+            (1..N).map(|i| (x[i] - x[i - 1]).norm_squared() == 1),
+            (1..N).map(|i| (2..3).map(|k| x[i][k] == x[i - 1][k])),
+        ]
+    }
+
     macro_rules! orders {
         ($($name:ident $order:literal)*) => { $(
             /// Beads on rods in a field that is not constant.
@@ -138,7 +171,9 @@ mod declared {
     orders! { Second 2 Fourth 4 Sixth 6 Eighth 8 }
 }
 
-use declared::{Bridge, Eighth, Flying, FourBeads, Fourth, Links, Necklace, Rope, Second, Sixth};
+use declared::{
+    Bridge, Eighth, Flying, FourBeads, Fourth, InLists, InRanges, Links, Necklace, OneByOne, Rope, Second, Sixth,
+};
 
 const NEAR: [Vector3<f64>; 2] = [Vector3::new(0.0, 0.0, 0.5), Vector3::new(0.0, 0.0, 0.4)];
 const FAR: Vector3<f64> = Vector3::new(0.0, 0.0, -0.5);
@@ -214,6 +249,9 @@ fn a_rope_is_its_beads_unrolled() -> Result<(), Error> {
     let hand = Vector3::x() * 0.2;
     let mut one = rope.state_moving(places, [hand; 4])?;
     let mut other = beads.state_moving(places, SVector::<f64, 12>::from_fn(|i, _| hand[i % 3]))?;
+    let storage = SiteStorage::of(places.to_vec(), vec![hand; 4]);
+    let mut sites = rope.clone().joined_sites_moving(storage, vec![rope.joint(); 4])?;
+    let mut in_storage = [Vector3::zeros(); 4];
     for step in 0..300 {
         // the three equations of the hand, and one of each rod
         let of_beads = |reactions: &[Vector3<f64>; 4]| {
@@ -227,6 +265,10 @@ fn a_rope_is_its_beads_unrolled() -> Result<(), Error> {
         (one, other) = (next, other_next);
         let far = (other_pushes - of_beads(&pushes)).norm();
         assert!(far < 1e-9, "reactions of step {step}: {far:e}");
+        sites.step_with_reactions(&mut in_storage)?;
+        let far = (other_pushes - of_beads(&in_storage)).norm();
+        assert!(far < 1e-9, "reactions of step {step} in storage: {far:e}");
+        assert_eq!((sites.configuration(), sites.momentum()), (&one.configuration()[..], &one.momentum()[..]));
         let far = one.configuration().distance_squared(other.configuration()).sqrt();
         assert!(far < 1e-11, "step {step}: {far:e}");
         let momentum: Vec<f64> = one.momentum().iter().flat_map(|n| n.iter().copied()).collect();
@@ -235,6 +277,47 @@ fn a_rope_is_its_beads_unrolled() -> Result<(), Error> {
     }
     let hand = one.configuration()[0] - Vector3::x() * 0.2 * one.time().sin();
     assert!(hand.norm() < 1e-15, "{hand}");
+    Ok(())
+}
+
+/// Several equations for each index, in a list after a `let` or by a range of numbers, are those that are written one by one.
+#[test]
+fn equations_of_a_range_may_be_lists() -> Result<(), Error> {
+    let places = std::array::from_fn::<_, 4, _>(|i| Vector3::new(0.6, 0.8, 0.0) * i as f64);
+    let at_rest = [Vector3::zeros(); 4];
+    let stepper = OneByOne::<4>.into_stepper(0.05)?;
+    let expected = stepper.advance(&stepper.state(places, at_rest)?, 40)?;
+    let ends: Vec<_> = expected.configuration().to_vec();
+    assert!((ends[3] - places[3]).norm() > 0.1 && ends.iter().all(|x| x.z == 0.0), "{ends:?}");
+    let listed = InLists::<4>.into_stepper(0.05)?;
+    assert_eq!(listed.advance(&listed.state(places, at_rest)?, 40)?.configuration(), expected.configuration());
+    let ranged = InRanges::<4>.into_stepper(0.05)?;
+    assert_eq!(ranged.advance(&ranged.state(places, at_rest)?, 40)?.configuration(), expected.configuration());
+    Ok(())
+}
+
+/// A composed step adds the impulses of its parts, in storage too.
+#[test]
+fn reactions_of_composed_steps_are_the_same_in_storage() -> Result<(), Error> {
+    let stepper = Fourth::<5>.into_stepper(0.1)?;
+    let places = std::array::from_fn(|i| Vector2::new(0.6, -0.8) * (i as f64 + 1.0));
+    let mut state = stepper.state(places, [Vector2::zeros(); 5])?;
+    let storage = SiteStorage::of(places.to_vec(), vec![Vector2::zeros(); 5]);
+    let mut sites = stepper.clone().joined_sites(storage, vec![stepper.joint(); 5])?;
+    let mut found = [Vector1::zeros(); 5];
+    for step in 0..30 {
+        let (next, expected) = stepper.step_with_reactions(&state)?;
+        sites.step_with_reactions(&mut found)?;
+        state = next;
+        assert_eq!((sites.configuration(), sites.momentum()), (&state.configuration()[..], &state.momentum()[..]));
+        for (found, expected) in found.iter().zip(&expected) {
+            assert!((found - expected).norm() < 1e-10 * (1.0 + expected.norm()), "step {step}: {found} {expected}");
+        }
+    }
+    // too little room: the state is as before
+    let refused = sites.step_with_reactions(&mut [Vector1::zeros(); 4]).map_err(|error| error.error);
+    assert_eq!(refused, Err(Error::NumberOfSites { found: 4, sites: 5 }));
+    assert_eq!((sites.configuration(), sites.steps()), (&state.configuration()[..], 30));
     Ok(())
 }
 

@@ -231,6 +231,9 @@ fn braced_beads_step_by_rattle_with_a_dense_matrix() -> Result<(), Error> {
     let mut state = stepper.project(places, [Vector2::new(0.1, 0.05); 7])?;
     let (mut x, mut p) = (*state.configuration(), stacked(&state.momentum()));
     assert!((rows(&x) * inverse_masses(&of) * &p).amax() < 1e-13);
+    let storage = SiteStorage::of(x.to_vec(), state.momentum().to_vec());
+    let mut sites = stepper.clone().joined_sites(storage, vec![stepper.joint(); 7])?;
+    let mut in_storage = [SVector::<f64, 1>::zeros(); 7];
     for step in 0..crate::long(300) {
         let (next, (joints, loops)) = stepper.step_with_reactions(&state)?;
         state = next;
@@ -238,6 +241,8 @@ fn braced_beads_step_by_rattle_with_a_dense_matrix() -> Result<(), Error> {
         let far = (stacked(state.configuration()) - stacked(&x)).norm() + (stacked(&state.momentum()) - &p).norm();
         assert!(far < 1e-11, "step {step}: {far:e}");
         assert!((all(&joints, &loops) - &pull).norm() < 1e-9, "step {step}: {joints:?} {loops} {pull}");
+        let loops = sites.step_with_reactions(&mut in_storage)?;
+        assert!((all(&in_storage, &loops) - &pull).norm() < 1e-9, "step {step}: {in_storage:?} {loops} {pull}");
         // λ of the continuous motion: A Σ⁻¹(f + Aᵀλ) = −φ″ with constant velocities
         let (rows, inverse) = (rows(&x), inverse_masses(&of));
         let velocity = beads(&(&inverse * &p));

@@ -110,6 +110,7 @@ fn the_ball_goes_round_an_exact_circle() -> Result<(), Error> {
     let ball = RollingBall { mass: 1.3, inertia: 0.7, radius: 0.5, table_rate: 0.9 };
     let kappa = ball.inertia * ball.table_rate / (ball.inertia + ball.mass * ball.radius * ball.radius);
     let h = 0.1;
+    assert!(!RollingBall::DERIVATION.contains("Newton"), "{}", RollingBall::DERIVATION);
     let stepper = ball.stepper(h)?;
     let (place, spin) = (Vector2::new(0.3, -0.2), 0.5);
     let v = Vector2::new(0.1863414637, 0.2795121951);

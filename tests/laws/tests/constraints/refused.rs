@@ -31,21 +31,50 @@ fn projection_repairs_momenta() -> Result<(), Error> {
     Ok(())
 }
 
-/// The table turns under a ball at rest too, so that no fraction of the momentum has a long step. The longest step is told.
+/// A step of a ball that is too long for its momentum names the part of it that has a step, and the longest step.
+/// Far from the axis the table turns a ball at rest too fast: no part of the momentum has a step.
 #[test]
 fn steps_too_long_for_a_turning_table_name_the_longest() -> Result<(), Error> {
     let ball = RollingBall { mass: 1.3, inertia: 0.7, radius: 0.5, table_rate: 0.9 };
-    let (place, momentum) = (Vector2::new(0.3, -0.2), Vector5::new(0.2, 0.4, 0.1, -0.3, 0.35));
-    let step = |h: f64| -> Result<(), Error> {
+    let momentum = Vector5::new(0.2, 0.4, 0.1, -0.3, 0.35);
+    let step = |h: f64, place: Vector2<f64>| -> Result<(), Error> {
         let stepper = ball.stepper(h)?;
         stepper.step(&stepper.project(place, momentum)?).map(drop)
     };
-    let Err(Error::StepTooLong { step_size, solvable_step: Some(longest) }) = step(50.0) else {
-        panic!("{:?}", step(50.0))
+    let far = Vector2::new(3.0, -2.0);
+    let Err(Error::StepTooLong { step_size, solvable_step: Some(longest) }) = step(50.0, far) else {
+        panic!("{:?}", step(50.0, far))
     };
     assert!(step_size == 50.0 && longest > 0.1 && longest < 50.0, "{step_size} {longest}");
-    assert!(step(longest).is_ok());
-    assert!(matches!(step(longest * 1.03), Err(Error::StepTooLong { .. })), "{longest}: {:?}", step(longest * 1.03));
+    assert!(step(longest, far).is_ok() && step(longest * 1.03, far).is_err(), "{longest}");
+
+    let near = Vector2::new(0.3, -0.2);
+    let Err(Error::Unsolvable { solvable_fraction, solvable_step: Some(longest), .. }) = step(3.0, near) else {
+        panic!("{:?}", step(3.0, near))
+    };
+    assert!(step(longest, near).is_ok() && step(longest * 1.03, near).is_err(), "{longest}");
+    let stepper = ball.stepper(3.0)?;
+    let whole = stepper.project(near, momentum)?.momentum();
+    // the sine itself, by hand: y = Σ g/h − N = Aᵀλ and ψ = 0 in (a, s)
+    let (m, inertia, r, rate, h) = (ball.mass, ball.inertia, ball.radius, ball.table_rate, 3.0);
+    let sine = |mu: Vector5<f64>| {
+        let rows = nalgebra::Matrix2x5::new(1.0, 0.0, 0.0, -r, 0.0, 0.0, 1.0, r, 0.0, 0.0);
+        let table = nalgebra::Matrix2::new(0.0, -rate, rate, 0.0);
+        let sigma = nalgebra::Matrix5::from_diagonal(&Vector5::new(m, m, inertia, inertia, inertia));
+        let mut bordered = nalgebra::SMatrix::<f64, 7, 7>::zeros();
+        bordered.fixed_view_mut::<5, 5>(0, 0).copy_from(&(sigma / h));
+        bordered.fixed_view_mut::<5, 2>(0, 5).copy_from(&-rows.transpose());
+        let mut slope = rows / h;
+        let turned = slope.fixed_view::<2, 2>(0, 0) - table / 2.0;
+        slope.fixed_view_mut::<2, 2>(0, 0).copy_from(&turned);
+        bordered.fixed_view_mut::<2, 5>(5, 0).copy_from(&slope);
+        let mut right = nalgebra::SVector::<f64, 7>::zeros();
+        right.fixed_rows_mut::<5>(0).copy_from(&mu);
+        right.fixed_rows_mut::<2>(5).copy_from(&(table * near));
+        bordered.lu().solve(&right).map(|solution| solution.fixed_rows::<3>(2).norm())
+    };
+    let found = sine(whole * solvable_fraction).expect("a regular system");
+    assert!((found - 1.0).abs() < 1e-12, "{found}");
     Ok(())
 }
 

@@ -277,6 +277,8 @@ proptest! {
         loops.solve();
         assert_near(&loops.values(), &Vector3::new(entries[3], entries[4], entries[5]), 1e-12, "the solution");
         prop_assert_eq!(loops.solution(), loops.values());
+        // no sweep has corrected the multipliers of a move
+        prop_assert_eq!([loops.impulses(true), loops.impulses(false)], [loops.values(), Vector3::zeros()]);
         prop_assert_eq!(loops.factor(|i, j| root[(i, 0)] * root[(j, 0)], 1e-12), 3 - usize::from(root[(0, 0)] != 0.0));
         let mut limb = <LoopedLimb<f64, 2, 2, 3> as Branch<f64, 2, 2>>::new();
         prop_assert_eq!((limb.columns().len(), limb.columns_mut().len()), (3, 3));
@@ -421,6 +423,15 @@ proptest! {
         in_storage = [SVector::zeros(); 3];
         sites.reactions_under(&(), &mut in_storage)?;
         prop_assert_eq!(in_storage, stepper.reactions(&start)?);
+        let (next, mean) = stepper.step_with_reactions(&start)?;
+        for step_under in [false, true] {
+            let mut sites = sites.clone();
+            if step_under { sites.step_with_reactions_under(&(), &mut in_storage)? } else { sites.step_with_reactions(&mut in_storage)? };
+            prop_assert_eq!(sites.momentum(), &next.momentum()[..]);
+            for (found, mean) in in_storage.iter().zip(&mean) {
+                assert_near(found, mean, 1e-9, "the reactions of the step");
+            }
+        }
         let (pushes, weight) = (push(&lambda), crane.power_kick(0.0, &q, -1.0));
         let (mut velocities, mut accelerations) = ([Vector3::zeros(); 3], [Vector3::zeros(); 3]);
         for i in 0..3 {

@@ -169,6 +169,11 @@ proptest! {
         let refused = private::below_right_angle(x, beyond * beyond * 1.001);
         let is_refused = matches!(refused, Err(Error::Unsolvable { solvable_fraction, .. }) if (solvable_fraction * beyond * 1.001_f64.sqrt() - 1.0).abs() < NEAR);
         prop_assert!(is_refused);
+        // from a rest inside: the part s of the momentum at which |d + s (a − d)| = 1
+        let (rest, all) = (x * 0.5, x * 0.5 + x.normalize() * (2.0 * beyond));
+        let refused = private::below_right_angle_from(all, |a| a.norm_squared(), |none: &SVector<f64, 1>| rest + all * none.x);
+        let Err(Error::Unsolvable { solvable_fraction: s, .. }) = refused else { return Err(TestCaseError::fail("a solution")) };
+        prop_assert!(((rest + (all - rest) * s).norm() - 1.0).abs() < 1e-13);
     }
 
     /// A cubic has the slope of its derivative, and no other.

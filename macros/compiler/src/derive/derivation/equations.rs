@@ -46,6 +46,9 @@ pub(super) fn how(formulas: &MechanicsFormulas<'_>, equation: &MomentumEquation<
             "is solved by the velocity itself, x = h Σ⁻¹μ, which commutes with the momentum: no iteration".to_string()
         }
         Solution::Explicit => format!("is linear in {chart}: solved explicitly, no iteration"),
+        Solution::ClosedForm if formulas.constraint.is_some() => {
+            "is solved in closed form, no iteration: y and ψ are affine in the sine of the turn, so a linear system gives λ, and the step turns one plane by θ, sin θ < 1".to_string()
+        }
         Solution::ClosedForm => {
             let coordinates = if own_chart == Chart::Sine { ", which is the length of x" } else { "" };
             format!(

@@ -129,7 +129,18 @@ impl<'g> MechanicsFormulas<'g> {
             Formula::new(Id::JacobianFactor(index, number), symbol, [factor])
         }));
         let coordinates = self.coordinates_of(&equation.components);
-        rows.extend(equation.formula.map(|x| Formula::new(Id::Solution(index, number), &coordinates, [x])));
+        rows.extend(equation.formula.map(|solution| {
+            let row = Formula::new(Id::Solution(index, number), &coordinates, [solution]);
+            if !has_multipliers || equation.solution != Solution::ClosedForm {
+                return row;
+            }
+            row.in_words(
+                format!("h·Σ⁻¹·({mu} + Aᵀ·λ), B·Σ⁻¹·Aᵀ·λ = −ψ(0) − B·Σ⁻¹·{mu} with B = h·∂ψ/∂{x}"),
+                format!(
+                    "h \\Sigma^{{-1}} ({mu} + A^T \\lambda),\\quad B \\Sigma^{{-1}} A^T \\lambda = -\\psi(0) - B \\Sigma^{{-1}} {mu}, \\quad B = h\\,\\partial\\psi/\\partial {x}"
+                ),
+            )
+        }));
         if self.is_predicted(equation) {
             let inertia = self.model.graph.symbol("Σ", self.inertia.shape(), Role::Letter, Property::Symmetric);
             let printed = self.predictor_by_blocks(substep, equation, inertia.inverse());

@@ -138,6 +138,9 @@ impl<'g> Elaborator<'_, '_, 'g> {
             Rule::Three(make) if shape == Shape::vector(3) => make,
             _ => return self.refuse(wrong_receiver(rule, call, shape)),
         };
+        if call.method == "norm_squared" {
+            self.note_square(call, a);
+        }
         let is_inverse = call.method == "inverse";
         if a.is_zero() && (is_inverse || call.method == "normalize") {
             refuse!(self, &call.receiver, "`{}` is zero and has no `{}`", spell(&call.receiver), call.method;

@@ -24,11 +24,11 @@ use syn::{Expr as Syntax, Generics};
 
 pub(crate) use markdown::functions_as_markdown;
 
-use super::Constant;
 use super::fields::Fields;
 use super::scope::Scope;
 use super::sites::Sites;
 use super::value::Value;
+use super::{Constant, Written};
 use crate::diagnostic::{Diagnostic, Diagnostics, error, refuse};
 use crate::parse::{Closure, parenthesized, shortened, spell};
 
@@ -50,6 +50,8 @@ pub(super) struct Context<'c, 'g> {
     pub constants: Vec<Constant<'g>>,
     /// The sites of a power; `None` where the declaration is none.
     pub power: Option<Sites<'g>>,
+    /// The squares in the potential, each with the number or vector that is squared.
+    pub squares: Vec<(Written, Expr<'g>)>,
     pub diagnostics: &'c Diagnostics,
 }
 
@@ -61,7 +63,7 @@ impl<'c, 'g> Context<'c, 'g> {
         power: Option<Sites<'g>>,
         diagnostics: &'c Diagnostics,
     ) -> Self {
-        Context { graph, fields, generics, constants: Vec::new(), power, diagnostics }
+        Context { graph, fields, generics, constants: Vec::new(), power, squares: Vec::new(), diagnostics }
     }
 
     /// The value of a closure with these names; `None` if it has an error, which was reported.

@@ -1,12 +1,23 @@
 //! The operators `+ - * / %`, unary minus, and the shapes that they need.
 
 use clebsch_symbolic::{Expr, Group, Rational, Role, integer};
+use proc_macro2::{TokenStream, TokenTree};
+use quote::ToTokens;
 use syn::{BinOp, Expr as Syntax, ExprBinary, ExprUnary, UnOp};
 
 use super::errors::{no_product, not_added, point_moved, unequal_shapes, verb};
 use super::{Elaborator, Growth, Value};
 use crate::diagnostic::{Diagnostic, error, refuse};
 use crate::parse::{joined, parenthesized, spell, spell_tokens};
+
+/// Whether a name stands in some tokens.
+fn mentions(tokens: TokenStream, name: &str) -> bool {
+    tokens.into_iter().any(|token| match token {
+        TokenTree::Group(group) => mentions(group.stream(), name),
+        TokenTree::Ident(ident) => ident == name,
+        _ => false,
+    })
+}
 
 /// A sum or a difference.
 pub(super) fn combined<'g>(link: &ExprBinary, a: Expr<'g>, b: Expr<'g>) -> Expr<'g> {
@@ -47,6 +58,16 @@ impl<'g> Elaborator<'_, '_, 'g> {
                 error
                     .help(format!("write the price of the distance, as in `self.price * ({left} - {right}).{square}`"))
                     .note("the endpoint is a price, and a plan ends where it is small")
+            }
+            BinOp::Eq(_) if self.key == "potential" => {
+                let equation = spell(&Syntax::Binary(link.clone()));
+                let names = self.scope.arguments().filter(|name| mentions(link.to_token_stream(), name));
+                error
+                    .help(format!(
+                        "for an equation that every motion obeys write `constraint = |{}| [{equation}]`",
+                        joined(names)
+                    ))
+                    .note("a potential is an energy; the force of a constraint is found without one")
             }
             BinOp::Eq(_) | BinOp::Le(_) | BinOp::Ge(_) | BinOp::Lt(_) | BinOp::Gt(_) | BinOp::Ne(_) => {
                 error.note("an equation or an inequality stands only where a key asks for one")

@@ -1,12 +1,13 @@
 //! Powers, roots and norms, and the other methods that are no plain maps of matrices.
 
 use clebsch_symbolic::{Expr, Function, Group, Rational, Shape, integer, rational};
-use syn::ExprMethodCall;
+use syn::{Expr as Syntax, ExprMethodCall};
 
 use super::methods::no_real_value;
 use super::{Elaborator, Growth, Value};
-use crate::diagnostic::{error, refuse};
-use crate::parse::{parenthesized, spell};
+use crate::diagnostic::{Location, error, refuse};
+use crate::model::Written;
+use crate::parse::{parenthesized, shortened, spell};
 
 /// The largest exponent of `powi`.
 const EXPONENT: i64 = 64;
@@ -41,12 +42,23 @@ impl<'g> Elaborator<'_, '_, 'g> {
         match number.and_then(|number| number.parts()) {
             Some((exponent, _)) if exponent < 0 && a.is_zero() => self.refuse(no_real_value(call)),
             Some((exponent, _)) if exponent.abs() <= EXPONENT => {
+                if exponent > 0 && exponent % 2 == 0 {
+                    self.note_square(call, a);
+                }
                 self.build(call, &[a], Growth::Power(exponent.unsigned_abs()), || a.powi(exponent as i32))
             }
             Some(_) => refuse!(self, syntax, "an exponent of `powi` goes from -{EXPONENT} to {EXPONENT}";
                 help "write `(self.exponent * x.ln()).exp()` for a larger one"),
             None => refuse!(self, syntax, "`{}` is no whole number known here", spell(syntax);
                 help "write `.powf({})`", spell(syntax)),
+        }
+    }
+
+    /// Notes a square of the potential: that of an equation of the constraint does nothing.
+    pub(super) fn note_square(&mut self, call: &ExprMethodCall, of: Expr<'g>) {
+        if self.key == "potential" {
+            let syntax = Syntax::MethodCall(call.clone());
+            self.context.squares.push((Written { place: Location::from(&syntax), text: shortened(&syntax) }, of));
         }
     }
 

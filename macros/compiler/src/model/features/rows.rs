@@ -80,7 +80,7 @@ pub(super) const ROWS: [Row; 83] = [
     row(&[Boundary], &[Constraint],
         "{refused} is not for a system with a constraint yet",
         "the multipliers of places would be further unknowns of a path, and the motion of wheels makes no action critical",
-        "leave out `boundary` from `emit`; for derivatives of steps write `emit = [tangent]`"),
+        "leave out `boundary`; write `emit = [tangent]`, and change the start by Newton's method until the end fits"),
     row(&[FirstOrder, Sixteenth], &[Constraint],
         "a step with a constraint has order 2, 4, 6 or 8, not {name}",
         "its equation takes the configuration between both ends, which is time-symmetric and of order 2",
