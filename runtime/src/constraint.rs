@@ -121,7 +121,7 @@ impl<T: Scalar> Violation<T> {
 }
 
 /// Whether a violation is at most a tolerance in every lane, or both in the first lane where it is not. NaN is a violation.
-fn within<T: Scalar>(violation: T, tolerance: T) -> Result<(), [f64; 2]> {
+pub(crate) fn within<T: Scalar>(violation: T, tolerance: T) -> Result<(), [f64; 2]> {
     (0..T::LANES).try_for_each(|lane| {
         let both = [violation.lane(lane), tolerance.lane(lane)];
         if both[0] <= both[1] { Ok(()) } else { Err(both.map(|number| number.to_f64().min(f64::MAX))) }

@@ -12,6 +12,7 @@ mod staggered;
 pub(crate) mod step_size;
 mod symmetric;
 
+use crate::constraint::within;
 use crate::fields::{debug_fields, getters};
 use crate::parameters::check_finite;
 use crate::scheme::{At, Constants, Scheme};
@@ -297,17 +298,9 @@ pub(crate) fn check_momentum<S: Clebsch>(system: &S, q: &S::Configuration, mu: &
 
 /// The part of μ that is no momentum of a motion is at most √ε of the largest component.
 pub(crate) fn check_violation<T: Scalar, N: Space<T>>(violation: T, mu: &N) -> Result<(), Error> {
-    let tolerance = T::EPSILON.sqrt() * mu.max_abs();
-    (0..T::LANES).try_for_each(|lane| {
-        let (violation, tolerance) = (violation.lane(lane), tolerance.lane(lane));
-        // Written so that NaN is a violation.
-        if violation <= tolerance {
-            return Ok(());
-        }
-        // the length of many of the largest numbers is beyond them
-        let violation = violation.to_f64().min(f64::MAX);
-        Err(Error::OutsideMomentumSpace { violation, tolerance: tolerance.to_f64() })
-    })
+    // the length of many of the largest numbers is beyond them
+    within(violation, T::EPSILON.sqrt() * mu.max_abs())
+        .map_err(|[violation, tolerance]| Error::OutsideMomentumSpace { violation, tolerance })
 }
 
 /// The name of a kick that is not finite.
