@@ -114,8 +114,8 @@ errors! {
             /// The number of the event.
             event: usize,
         } =>
-            "the state that was set at event {event} does not leave its zero towards the side where it came from: stop \
-             there, let it rest by a constraint, or set another momentum";
+            "the state that was set at event {event} does not leave the zero of its function: stop there, let it rest by \
+             a constraint, or set another momentum";
         /// A grid has no site in some direction, or more than can be numbered.
         EmptyGrid {
             /// The direction, from 0 on.

@@ -241,9 +241,9 @@ impl<S: Clebsch, G, M: Method<S>, const K: usize> Events<'_, S, G, K, M> {
     /// Goes on from another state at the time of the last event, such as that of a [kick](Stepper::kick) there. The next step starts
     /// from it, and other events of the last step are searched anew.
     ///
-    /// The function of that event has to leave zero again, towards the side where it came from; with
-    /// [`Crossing::Either`] it may leave to either side. Otherwise the next item is [`Error::EventStays`]. A ball that
-    /// bounces ever lower comes to rest in this way, once a bounce takes less than ∛ε of a step.
+    /// The function of that event leaves zero to either side: a ball that bounces goes back, a burn at a pericentre goes on. If it
+    /// does neither within a part ∛ε of a step, the next item is [`Error::EventStays`]. A ball that bounces ever lower
+    /// comes to rest in this way.
     pub fn go_on_from(&mut self, state: State<S, M>) {
         if let Some(event) = self.yielded.take() {
             self.clock = Clock::at(event.time);
@@ -294,11 +294,14 @@ where
                 // it has the side that it takes a little later
                 self.known_from[k] = S::Scalar::EPSILON.powf(S::Scalar::from_ratio(1, 3));
                 values[k] = self.part(self.known_from[k], k)?.1;
-                self.is_above[k] = values[k] > Zero::zero();
-                let has_left = !values[k].is_zero() && crossings[k].counts_from(self.is_above[k]);
-                if set_at == Some(k) && !has_left {
+                let is_above = values[k] > Zero::zero();
+                // a motion that passes through is beyond by a part ∛ε of a step, one that bounces no more by its square
+                let is_beyond = is_above == self.is_above[k];
+                let is_small = values[k].abs() <= S::Scalar::EPSILON.sqrt() * self.sizes[k];
+                if set_at == Some(k) && (values[k].is_zero() || is_beyond && is_small) {
                     return Err(Error::EventStays { event: k });
                 }
+                self.is_above[k] = is_above;
             } else if values[k].abs() > S::Scalar::EPSILON.sqrt() * self.sizes[k] {
                 // a smaller value may be rounding of another event at the same time, which is still to come
                 self.is_above[k] = values[k] > Zero::zero();

@@ -173,6 +173,25 @@ proptest! {
         prop_assert_eq!(Some(Ok(*events.state())), stepper.trajectory(start).nth(650));
     }
 
+    /// Burns at pericentres: a larger orbit, whose period is known, and a smaller one. The event goes on through zero.
+    #[test]
+    fn burns_change_orbits(e in 0.1_f64..0.4, part in 0.02_f64..0.1) {
+        let stepper = Orbit.into_stepper_by::<Fine>(PERIOD / 211.3)?;
+        let (q, p) = kepler(e, PERIOD / 2.0);
+        let mut burns = stepper.trajectory(stepper.state(q, p)?).events(2000, |state| {
+            [Crossing::Rising(state.configuration().dot(&state.momentum()))]
+        });
+        let mut expected = PERIOD / 2.0;
+        for change in [part, -part / 2.0, part] {
+            let Event { time, state, .. } = burns.next().transpose()?.expect("a pericentre");
+            prop_assert!((time - expected).abs() < 1e-8, "{time}, not {expected}");
+            let state = stepper.kick(&state, state.momentum() * change)?;
+            // a = −1/2E
+            expected = time + PERIOD * (-0.5 / stepper.energy(&state)).powf(1.5);
+            burns.go_on_from(state);
+        }
+    }
+
     /// Two crossings in one step, a touch, and none; and functions that are not finite.
     #[test]
     fn grazing_is_told(depth in 1e-3_f64..0.02, number in 3_u32..8) {

@@ -101,6 +101,7 @@ pub const PROPERTIES: &[(&str, &[Property])] = &[
         ("bounces_have_their_times",                   &["Trajectory::events", "Events::go_on_from", "Events::state", "Events::time", "Events::steps_left"]),
         ("walls_fold_straight_lines",                  &["Trajectory::events"]),
         ("orbits_have_their_apsides",                  &["Trajectory::events"]),
+        ("burns_change_orbits",                        &["Events::go_on_from"]),
         ("grazing_is_told",                            &["Trajectory::events"]),
         ("times_are_reached_from_the_step_before",     &["Trajectory::at", "Trajectory::every", "Trajectory::state", "Timed::state"]),
         ("times_and_events_have_the_order",            &["Trajectory::at", "Trajectory::events"]),
