@@ -124,6 +124,7 @@ impl<T: Scalar> Violation<T> {
 pub(crate) fn within<T: Scalar>(violation: T, tolerance: T) -> Result<(), [f64; 2]> {
     (0..T::LANES).try_for_each(|lane| {
         let both = [violation.lane(lane), tolerance.lane(lane)];
+        // the length of many of the largest numbers is beyond them
         if both[0] <= both[1] { Ok(()) } else { Err(both.map(|number| number.to_f64().min(f64::MAX))) }
     })
 }

@@ -298,7 +298,6 @@ pub(crate) fn check_momentum<S: Clebsch>(system: &S, q: &S::Configuration, mu: &
 
 /// The part of μ that is no momentum of a motion is at most √ε of the largest component.
 pub(crate) fn check_violation<T: Scalar, N: Space<T>>(violation: T, mu: &N) -> Result<(), Error> {
-    // the length of many of the largest numbers is beyond them
     within(violation, T::EPSILON.sqrt() * mu.max_abs())
         .map_err(|[violation, tolerance]| Error::OutsideMomentumSpace { violation, tolerance })
 }
