@@ -62,7 +62,7 @@ pub trait JoinedInStorage<S: Power<N>, const N: usize>: InStorage<S, N> {
     /// Moves q to φ = 0, and N to a momentum whose velocity obeys the joints.
     fn to_joints(at: AtOf<'_, S, Self>, state: (&mut Q<S>, &mut Mu<S>), room: &mut [Self::Room]) -> Result<(), AtSite>;
 
-    /// One step in place, as [`step_in_place`](InStorage::step_in_place). Adds the impulses λ + μ of the joints to those that are given.
+    /// One step in place, as `step_in_place`. Adds the impulses λ + μ of the joints to those that are given.
     fn step_with_reactions<'a>(
         at: AtOf<'_, S, Self>,
         u: Option<&U<S>>,
