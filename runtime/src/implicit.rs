@@ -13,6 +13,7 @@ mod lane;
 mod linear_equation;
 mod path;
 
+pub(crate) use fixed_point::solve_at_last;
 pub use fixed_point::solve_fixed_point;
 pub use jacobian::Jacobian;
 pub use linear_equation::{LinearEquation, solve_linear_equation};
@@ -305,7 +306,7 @@ fn newton<T: Scalar, E: Equation<T, M, N>, const M: usize, const N: usize>(
 ///
 /// Source: Griewank and Walther, *Evaluating Derivatives*, 2nd edition, SIAM 2008, section 15.4.
 #[inline(never)]
-fn with_derivatives<T: Scalar, E: Equation<T, M, N>, const M: usize, const N: usize>(
+pub(crate) fn with_derivatives<T: Scalar, E: Equation<T, M, N>, const M: usize, const N: usize>(
     equation: &E,
     target: &SVector<T, N>,
     mut xi: SVector<T, M>,

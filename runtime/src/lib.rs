@@ -181,6 +181,7 @@ mod parameters;
 mod parts;
 mod power;
 mod root;
+mod rotation;
 #[cfg(feature = "serde")]
 mod saved;
 mod scalar;

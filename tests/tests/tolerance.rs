@@ -23,6 +23,7 @@ macro_rules! systems {
                 action         = |F: SO<3>, R: SO<3>| R * F,
                 lagrangian     = |omega| omega.dot(&(Matrix3::from_diagonal(&self.moments) * omega)) / 2,
                 discretization = moser_veselov,
+                solver         = newton,
                 $(tolerance    = $tolerance,)?
             )]
             pub struct Body<T: Scalar> {

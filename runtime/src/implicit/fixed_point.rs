@@ -32,7 +32,7 @@ pub fn solve_fixed_point<T: Scalar, E: Equation<T, M>, const M: usize>(
 /// The lanes that do not contract in `made` iterations, by [`solve`](super::solve).
 #[cold]
 #[inline(never)]
-fn solve_at_last<T: Scalar, const M: usize>(
+pub(crate) fn solve_at_last<T: Scalar, const M: usize>(
     equation: &impl Equation<T, M>,
     target: &SVector<T, M>,
     xi: &SVector<T, M>,

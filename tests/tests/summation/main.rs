@@ -145,7 +145,9 @@ fn momenta_and_rotations_stay() -> Result<(), Error> {
     let compensated = lost(compensated::Body { moments }, spin)?;
     println!("{STEPS} steps in double precision: |RᵀR − I|, spatial momentum, energy: {plain:?} {compensated:?}");
     assert!(compensated.iter().all(|lost| *lost < 3e-15), "{compensated:?}");
-    assert!(plain.iter().zip(compensated).all(|(plain, lost)| *plain > 5.0 * lost), "{plain:?} {compensated:?}");
+    // plain steps take the rounding off rotations as well, now and then
+    let lost_by_sums = plain.iter().zip(compensated).skip(1);
+    assert!(lost_by_sums.into_iter().all(|(plain, lost)| *plain > 5.0 * lost), "{plain:?} {compensated:?}");
     Ok(())
 }
 

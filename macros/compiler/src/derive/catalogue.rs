@@ -286,6 +286,8 @@ catalogue! {
     Jacobian(substep: usize, equation: usize) = listed("Jacobian", Hot).by(LieGroupMethods);
     /// B(x) with Dρ(x)·δ = ⟨δ^·B, E⟩.
     JacobianFactor(substep: usize, equation: usize) = unlisted("factor of the Jacobian", Hot);
+    /// f(κ) = 0, the scalar equation of a rotating body.
+    ScalarEquation(substep: usize, equation: usize) = listed("scalar equation", Hot);
     /// x(μ).
     Solution(substep: usize, equation: usize) = listed("solution", Hot);
     /// x(μ) to first order in h, component by component: the start of iterations.

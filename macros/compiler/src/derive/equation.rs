@@ -58,6 +58,11 @@ pub enum Solution {
     ClosedForm,
     /// By the power series of the free motion of a rigid body.
     FreeRotation,
+    /// By the least root of a polynomial of degree four, the equation of a rotating body.
+    Rotation {
+        /// Whether the inertia is diagonal.
+        has_principal_axes: bool,
+    },
     /// By one elimination, as the residual is affine in x.
     Linear,
     /// By Newton's method from the predictor.

@@ -7,7 +7,7 @@ use super::clearing;
 use super::closed_form::{SolvedConstraint, closed_form, is_solved_by_predictor};
 use super::equation::{DISTRIBUTED, Form, Momentum, MomentumEquation, Solution, Sources, is_diagonal};
 use super::letters::Letters;
-use super::{ChartBlock, ConstraintFormulas, exact, structure, tangent};
+use super::{ChartBlock, ConstraintFormulas, exact, rotation, structure, tangent};
 
 /// The equations of a substep, with the part of its constraint in them.
 pub(super) struct Equations<'g> {
@@ -320,6 +320,17 @@ fn equation<'g>(
         && let Some(closed_form) = closed_form(sources, &momentum.before[symbols.blocks[only].factor], &equation, only)
     {
         return closed_form;
+    }
+    // these dials are about iterations for x
+    let dials = &sources.model.dials;
+    let asks_for_iterations = dials.solver.is_some() || dials.tolerance.is_some() || dials.iterations.is_some();
+    if let [only] = blocks[..]
+        && !momentum.is_forced
+        && momentum.constraint.is_none()
+        && !asks_for_iterations
+        && let Some(rotating) = rotation::rotating(sources, &equation, only)
+    {
+        return rotating;
     }
     // where Σ changes with the configuration there is no predictor
     if !sources.is_moving(sources.inertia) && !equation.moves && is_solved_by_predictor(sources, &blocks, residual) {

@@ -8,10 +8,10 @@ use clebsch_symbolic::{Chart, Expr, Group, IntoList};
 use super::energy::is_multiple_of_identity;
 use super::{
     Collocation, ConstraintFormulas, DiscreteLagrangian, Energy, FieldFormulas, FormulaTable, InputStep, JointFormulas,
-    MomentumEquation, Quantity, SiteTerm, Splitting, Substep, SymmetricParts, Symmetries, SystemFormulas, Vertical,
-    exact, signature,
+    MomentumEquation, Quantity, SiteTerm, Solution, Splitting, Substep, SymmetricParts, Symmetries, SystemFormulas,
+    Vertical, exact, signature,
 };
-use crate::model::{Isotropy, LeafSpace, Mechanics, Signature, Steered};
+use crate::model::{Factor, Isotropy, LeafSpace, Mechanics, Signature, Steered};
 
 /// The derived formulas, as matrix expressions.
 pub enum Formulas<'g> {
@@ -164,7 +164,50 @@ impl MechanicsFormulas<'_> {
     /// The factors whose chart coordinates x/w are given by x and w, so that F − I = 2 (w x^ + (x^)²)/(w² + |x|²) holds the only division.
     pub fn weighted(&self) -> Vec<usize> {
         let rotates = |k: &usize| self.model.factors[*k].group == Group::SpecialOrthogonal(3);
-        (0..self.model.factors.len()).filter(|k| rotates(k) && exact::is_free_rotation(&self.model, *k)).into_list()
+        let is_found = |k: &usize| exact::is_free_rotation(&self.model, *k) || self.has_scalar_equation(*k);
+        (0..self.model.factors.len()).filter(|k| rotates(k) && is_found(k)).into_list()
+    }
+
+    /// Whether a rotation in space is a free motion, exactly.
+    pub fn turns_freely(&self) -> bool {
+        let rotates = |k: &usize| self.model.factors[*k].group == Group::SpecialOrthogonal(3);
+        (0..self.model.factors.len()).any(|k| rotates(&k) && exact::is_free_rotation(&self.model, k))
+    }
+
+    /// Whether each step has the same scalars: those of bodies that turn freely, whose momenta move with them.
+    pub fn keeps_scalars(&self) -> bool {
+        let [substep] = self.substeps.as_slice() else { return false };
+        let is_scalar = |equation: &MomentumEquation<'_>| matches!(equation.solution, Solution::Rotation { .. });
+        let is_solved = |equation: &MomentumEquation<'_>| {
+            is_scalar(equation) || equation.solution == Solution::Explicit && equation.formula.is_none()
+        };
+        let is_group = |factor: &Factor<'_>| match factor.group {
+            Group::SpecialOrthogonal(n) => n == 3,
+            group => group == Group::UnitQuaternions || group.is_translation(),
+        };
+        let is_free = substep.start.is_none() && substep.end.is_none() && substep.rest.is_none();
+        let is_alone = substep.coupling.is_none() && substep.force.is_none() && self.constraint.is_none();
+        is_free
+            && is_alone
+            && self.moves_freely()
+            && !self.has_sites()
+            && !self.is_timed()
+            && self.stages().is_none()
+            && self.collocation.is_none()
+            && self.model.factors.iter().all(is_group)
+            && substep.equations.iter().any(is_scalar)
+            && substep.equations.iter().all(is_solved)
+    }
+
+    /// Whether the motion of a factor is found by one scalar in all substeps, and steps alone take its coordinates.
+    fn has_scalar_equation(&self, k: usize) -> bool {
+        let is_scalar = |equation: &MomentumEquation<'_>| matches!(equation.solution, Solution::Rotation { .. });
+        let finds_coordinates = self.collocation.is_none() && self.constraint.is_none() && self.field.is_none();
+        finds_coordinates
+            && self.substeps.iter().all(|substep| {
+                let mut own = substep.equations.iter().filter(|equation| equation.factors.contains(&k)).peekable();
+                own.peek().is_some() && own.all(is_scalar)
+            })
     }
 
     /// Whether the step is found as F − I and the next momentum themselves, not by chart coordinates.

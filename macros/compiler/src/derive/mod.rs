@@ -35,6 +35,7 @@ mod moves;
 mod naming;
 mod power;
 mod predictor;
+mod rotation;
 mod rows;
 mod signature;
 mod splitting;

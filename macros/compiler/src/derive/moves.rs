@@ -132,7 +132,7 @@ impl<'g> MechanicsFormulas<'g> {
             let w = self.model.graph.symbol("w", Shape::scalar(), role, Property::General);
             let x = self.symbols.stacked_coordinates(k);
             let hat = factor.group.wedge(x);
-            2 * (w * hat + hat * hat) / (w * w + x.dot(x))
+            (w * hat + hat * hat) / ((w * w + x.dot(x)) / 2)
         };
         self.model.factors.iter().enumerate().map(increment).into_list()
     }

@@ -64,7 +64,7 @@ impl<'g> SystemFormulas<'g> {
     }
 
     /// s = dx/dξ at the identity in a block, a ratio.
-    pub(super) fn chart_slope(&self, block: usize) -> (i64, i64) {
+    pub fn chart_slope(&self, block: usize) -> (i64, i64) {
         let ChartBlock { factor, block, .. } = self.symbols.blocks[block];
         let blocks = self.model.graph.blocks(self.model.factors[factor].group);
         self.symbols.charts[factor].slope_at_identity(&blocks[block])

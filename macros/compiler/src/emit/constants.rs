@@ -1,6 +1,6 @@
 //! The values that a stepper computes once: their type, the checks before, and their code.
 
-use clebsch_symbolic::{IntoList, Role, both};
+use clebsch_symbolic::{IntoList, Role, both, integer};
 use proc_macro2::{Ident, TokenStream};
 use quote::{format_ident, quote};
 
@@ -48,12 +48,22 @@ impl Emitter<'_, '_> {
             };
             [quote!(#name), quote!(runtime::#kind<T>), value]
         });
+        let bodies = self.solves().filter_map(|solve| {
+            let (name, inertia, part) =
+                (self.constant_of(solve), self.block_of_inertia(solve), self.part_of_step(solve));
+            let tensor = tensor(solve.solution)?;
+            Some([
+                quote!(#name),
+                quote!(runtime::RotatingBody<T, #tensor>),
+                quote!(: runtime::RotatingBody::new(&#inertia, #part)?),
+            ])
+        });
         let formulas = &self.formulas;
         let is_scheduled = formulas.splitting.is_some() || formulas.collocation.is_some();
         let needs_step_size = is_scheduled || self.keeps_matrices || self.has_constrained_edges();
         let step_size = needs_step_size.then(|| [quote!(step_size), quote!(T), quote!(: h)]);
         let inverse = (!formulas.inertia_moves()).then(|| [quote!(inertia_inverse), self.inverse().0, quote!()]);
-        numbers.chain(orientations).chain(rotations).chain(step_size).chain(inverse).into_list()
+        numbers.chain(orientations).chain(rotations).chain(bodies).chain(step_size).chain(inverse).into_list()
     }
 
     /// The type of Σ⁻¹, and the function that makes it.
@@ -98,7 +108,11 @@ impl Emitter<'_, '_> {
 
     /// The name of the constant that belongs to an equation: its orientation, or those of a free rotation.
     pub(super) fn constant_of(&self, solve: &Solve) -> Ident {
-        let kind = if solve.solution == Solution::FreeRotation { "free_rotation" } else { "orientation" };
+        let kind = match solve.solution {
+            Solution::FreeRotation => "free_rotation",
+            Solution::Rotation { .. } => "body",
+            _ => "orientation",
+        };
         format_ident!("{kind}{}_{}", self.program.suffix(solve.substep), solve.number + 1)
     }
 
@@ -106,6 +120,15 @@ impl Emitter<'_, '_> {
     pub(super) fn free_rotations(&self) -> impl Iterator<Item = (Ident, &Solve)> {
         let free = self.solves().filter(|solve| solve.solution == Solution::FreeRotation);
         free.map(|solve| (self.constant_of(solve), solve))
+    }
+
+    /// s·h, the time that the Gibbs vector of a rotating body is a velocity times.
+    fn part_of_step(&self, solve: &Solve) -> TokenStream {
+        let block = self.symbols.blocks_of(&solve.components)[0];
+        let (numerator, denominator) = self.formulas.chart_slope(block);
+        let divisor = self.formulas.substeps[solve.substep].divisor;
+        let part = self.scope_of_system().number(&(integer(numerator) / integer(denominator * divisor)));
+        quote!(#part * h)
     }
 
     /// The part of `inertia` that belongs to a free rotation.
@@ -183,6 +206,15 @@ impl Emitter<'_, '_> {
             self.check_of(Promise::Symmetric, &parameter.name, &quote!(#system.#field #access))
         });
         checks.collect()
+    }
+}
+
+/// The type of the inertia of a rotating body.
+pub(super) fn tensor(solution: Solution) -> Option<TokenStream> {
+    match solution {
+        Solution::Rotation { has_principal_axes: true } => Some(quote!(runtime::Diagonal<T>)),
+        Solution::Rotation { has_principal_axes: false } => Some(quote!(runtime::Symmetric<T>)),
+        _ => None,
     }
 }
 

@@ -4,11 +4,12 @@ use clebsch_symbolic::{Role, Shape, both};
 use proc_macro2::{Ident, TokenStream};
 use quote::{format_ident, quote};
 
-use super::Emitter;
 use super::block::{Target, matrix};
+use super::constants::tensor;
 use super::function::{self, Body, Function, Words};
 use super::functions::{EQUATION, SOLVER};
 use super::scope::{Scope, index, size};
+use super::{Emitter, flag};
 use crate::derive::{Id, Solution, Structure};
 use crate::lower::{Kernel, Solve};
 
@@ -67,9 +68,10 @@ impl<'e, 'a, 'g> EquationType<'e, 'a, 'g> {
         let of = match solve.solution {
             Solution::Newton => Some(quote!(runtime::Equation<T, #(#sizes),*>)),
             Solution::Linear => Some(quote!(runtime::LinearEquation<T, #(#sizes),*>)),
+            Solution::Rotation { .. } => Some(quote!(runtime::RotationEquation<T>)),
             _ => None,
         };
-        let types = (solve.solution == Solution::Newton).then(|| self.types());
+        let types = if solve.solution == Solution::Newton { Some(self.types()) } else { self.types_of_rotation() };
         let (functions, solver) = (self.functions(EQUATION), self.functions(SOLVER));
         let target = emitter.borrowed(&emitter.equation_name(solve));
         let implementation = target.implementation(of, quote!(#types #functions #solver));
@@ -99,6 +101,7 @@ impl<'e, 'a, 'g> EquationType<'e, 'a, 'g> {
                 let kernel = self.emitter.program.find(self.solve.id(Id::SineSquared));
                 kernel.map(|kernel| self.scope.body_of_scalar(kernel))
             }
+            "Body" => Some(quote!(&runtime::RotatingBody<T, Self::Tensor>)),
             "Square" => Some(matrix(self.solve.dimension, self.solve.dimension)),
             _ => None,
         };
@@ -108,7 +111,7 @@ impl<'e, 'a, 'g> EquationType<'e, 'a, 'g> {
             let held = self.emitter.held_by_equation(self.solve).into_iter().map(|(name, _)| format_ident!("{name}"));
             let reads = match function.name {
                 "prepare" => self.prepares(),
-                name => !["orientation", "extent"].contains(&name) && function.arguments.contains("self"),
+                name => !["orientation", "extent", "body"].contains(&name) && function.arguments.contains("self"),
             };
             Some(body.after(reads.then(|| quote!(let &Self(#(#held),*) = self;))))
         })
@@ -118,6 +121,7 @@ impl<'e, 'a, 'g> EquationType<'e, 'a, 'g> {
     fn function(&self, function: &Function, kernel: Option<&'e Kernel>, words: &Words<'_>) -> Option<Body<'e>> {
         let EquationType { emitter, solve, scope, .. } = self;
         let is_newton = solve.solution == Solution::Newton;
+        let is_rotation = tensor(solve.solution).is_some();
         // in matrix code the terms contain the momenta
         let target = (is_newton && emitter.keeps_matrices).then(|| quote!(let mu = &terms.0;));
         Some(match function.name {
@@ -169,6 +173,10 @@ impl<'e, 'a, 'g> EquationType<'e, 'a, 'g> {
                     None => quote!(runtime::extent(&())),
                 }
             }),
+            "body" if is_rotation => {
+                let body = emitter.constant_of(solve);
+                Body::from(quote!(&self.1.#body))
+            }
             "tolerance" if is_newton => Body::from({
                 let tolerance = emitter.tolerance()?;
                 quote!(runtime::tolerance(#tolerance))
@@ -232,6 +240,13 @@ impl<'e, 'a, 'g> EquationType<'e, 'a, 'g> {
             quote!([T; #count])
         };
         quote!(type Terms = #terms; type Jacobian = #jacobian;)
+    }
+
+    /// The type of the inertia of a rotating body, and whether it turns back.
+    fn types_of_rotation(&self) -> Option<TokenStream> {
+        let tensor = tensor(self.solve.solution)?;
+        let is_left = self.emitter.is_left(self.solve).then(|| flag("IS_LEFT", true));
+        Some(quote!(type Tensor = #tensor; #is_left))
     }
 
     /// The terms that Newton's method computes once.

@@ -359,6 +359,8 @@ functions! {
         /// Dρ is block triangular: one small system for each block.
         fn correct(a: &Square, b: &Vector) -> Option<(Vector, Orientation)> { Id::Equation(0, 0) => }
         fn orientation(&self) -> Option<Orientation> { Id::Constants }
+        /// The constants.
+        fn body(&self) -> Body { Id::Equation(0, 0) => Id::ScalarEquation(0, 0), Id::Solution(0, 0) }
         fn has_poles() -> Bool { Id::Equation(0, 0) } = { true }
         /// 1 + |q|: the constraint is known to the rounding of places.
         fn extent(&self) -> T { Id::Equation(0, 0) => }

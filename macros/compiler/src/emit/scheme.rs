@@ -5,10 +5,12 @@ use proc_macro2::{Ident, TokenStream};
 use quote::{format_ident, quote};
 
 use super::Emitter;
+use super::constants::tensor;
 use super::function::{Body, no_words};
 use super::functions::{FREE_MOTION, GREAT_CIRCLES, SPLIT_KICKS};
 use super::scope::size;
-use crate::derive::Id;
+use crate::derive::{Id, Solution};
+use crate::lower::Solve;
 
 impl Emitter<'_, '_> {
     /// The type of the scheme.
@@ -81,7 +83,13 @@ impl Emitter<'_, '_> {
 
     /// Whether the free motions of several steps are the same, so that their constants are computed once.
     pub(super) fn keeps_motions(&self) -> bool {
-        self.formulas.is_exact && self.free_rotations().next().is_some()
+        self.formulas.is_exact && self.free_rotations().next().is_some() || self.formulas.keeps_scalars()
+    }
+
+    /// The equations whose constants stay the same along a motion.
+    pub(super) fn kept(&self) -> impl Iterator<Item = &Solve> {
+        let is_kept = |solve: &&Solve| solve.solution == Solution::FreeRotation || tensor(solve.solution).is_some();
+        self.program.steps[0].solves.iter().filter(is_kept)
     }
 
     pub(super) fn kind_of_free_rotation(&self) -> Ident {
@@ -94,16 +102,22 @@ impl Emitter<'_, '_> {
         let kept = if self.formulas.turns_whole() { quote!(KeptRotation4) } else { quote!(KeptRotation) };
         let functions = self.functions(FREE_MOTION, (0, 0), &|word| self.word_of_step(word), |function, _| {
             if function.name == "follow" {
-                return Some(Body::from(self.followed()));
+                let followed = Body::from(self.followed());
+                let is_short = self.formulas.keeps_scalars();
+                return Some(if is_short { followed.inlined(quote!(#[inline(always)])) } else { followed });
             }
-            let motions = self.free_rotations().map(|(name, solve)| {
-                let target = self.momentum_of_free_rotation(solve);
-                quote!(runtime::#kind::motion(&c.#name, #target))
+            let motions = self.kept().map(|solve| match self.equation_of_body(solve) {
+                Some((equation, target)) => quote!(runtime::scalar_of_motion(&#equation, #target)),
+                None => {
+                    let (name, target) = (self.constant_of(solve), self.momentum_of_free_rotation(solve));
+                    quote!(runtime::#kind::motion(&c.#name, #target))
+                }
             });
             Some(Body::from(quote!([#(#motions),*])).inlined(quote!()))
         });
-        let count = size(self.free_rotations().count());
-        self.implementation("FreeMotion", &[], quote!(type Kept = [runtime::#kept<T>; #count]; #functions))
+        let count = size(self.kept().count());
+        let kept = if self.formulas.keeps_scalars() { quote!(T) } else { quote!(runtime::#kept<T>) };
+        self.implementation("FreeMotion", &[], quote!(type Kept = [#kept; #count]; #functions))
     }
 
     /// F − I and the next momentum at once, or the chart coordinates of all factors.

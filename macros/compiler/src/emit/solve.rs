@@ -5,6 +5,7 @@ use proc_macro2::{Ident, Literal, TokenStream};
 use quote::{format_ident, quote};
 
 use super::Emitter;
+use super::constants::tensor;
 use super::scope::size;
 use crate::derive::{Id, Solution};
 use crate::lower::{Solve, Step};
@@ -20,6 +21,7 @@ impl Emitter<'_, '_> {
         if let [solve] = &step.solves[..]
             && solve.dimension == self.dimension
             && !matches!(solve.solution, Solution::FreeRotation | Solution::Explicit)
+            && self.formulas.weighted().is_empty()
         {
             return self.found(solve, None);
         }
@@ -30,13 +32,15 @@ impl Emitter<'_, '_> {
     /// The solution of an equation, as a result if it can fail.
     fn found(&self, solve: &Solve, given: Option<TokenStream>) -> TokenStream {
         let name = self.equation_name(solve);
-        let held = self.held_by_equation(solve).into_iter();
-        let held = held.map(|(name, _)| format_ident!("{}", if name == "system" { "self" } else { name }));
-        let (equation, target) = (quote!(#name(#(#held),*)), self.part_of_momentum(&solve.momenta));
+        let (equation, target) = self.equation_and_target(solve);
         match solve.solution {
             Solution::ClosedForm if solve.has_multipliers => quote!(#name::constrained_form(&#equation, #target)),
             Solution::ClosedForm => quote!(#name::closed_form(&#equation, #target)),
             Solution::Explicit => quote!(#name::explicit(&#equation, #target #given)),
+            Solution::Rotation { .. } if self.weight_of(solve).is_some() => {
+                quote!(runtime::turn_of_body(&#equation, #target))
+            }
+            Solution::Rotation { .. } => quote!(runtime::solve_rotation(&#equation, #target)),
             Solution::Linear => quote!(runtime::solve_linear_equation(&#equation, #target)),
             Solution::Newton if self.program.find(solve.id(Id::Residual)).is_some() => {
                 quote!(runtime::solve_fixed_point(&#equation, #target))
@@ -62,9 +66,21 @@ impl Emitter<'_, '_> {
             }
             let given = solve.given.iter().map(entry);
             let given = (!solve.given.is_empty()).then(|| quote!(, &runtime::vector([#(#given),*])));
-            let (solution, found) = (solution_name(solve.number), self.found(solve, given));
+            let solution = solution_name(solve.number);
+            let found = match self.equation_of_body(solve).filter(|_| kept) {
+                Some((equation, target)) => {
+                    let index = self.place_among_kept(solve);
+                    let name = if self.weight_of(solve).is_some() { "turn_of_motion" } else { "rotation_of_motion" };
+                    let name = format_ident!("{name}");
+                    quote!(runtime::#name(&#equation, kept[#index], #target))
+                }
+                None => self.found(solve, given),
+            };
             let fails = (solve.solution != Solution::Explicit).then(|| quote!(?));
-            quote!(let #solution = #found #fails;)
+            match self.weight_of(solve).map(weight_name) {
+                Some(weight) => quote!(let (#weight, #solution) = #found #fails;),
+                None => quote!(let #solution = #found #fails;),
+            }
         });
         let solutions = solutions.collect();
         let components: Vec<usize> = (0..self.dimension).into_list();
@@ -80,8 +96,7 @@ impl Emitter<'_, '_> {
     fn found_free_rotation(&self, solve: &Solve, kept: bool) -> TokenStream {
         let (rotation, solution) = (self.constant_of(solve), solution_name(solve.number));
         let (weight, target) = (self.weight_of(solve), self.momentum_of_free_rotation(solve));
-        let before = self.program.steps[0].solves.iter().take(solve.number);
-        let index = size(before.filter(|solve| solve.solution == Solution::FreeRotation).count());
+        let index = self.place_among_kept(solve);
         let name = if weight.is_some() { "turn" } else { "gibbs_vector" };
         let method = format_ident!("{name}{}", if kept { "_of" } else { "" });
         let motion = kept.then(|| quote!(&kept[#index],));
@@ -91,6 +106,25 @@ impl Emitter<'_, '_> {
             Some(weight) => quote!(let (#weight, #solution) = #found; #turned_back),
             None => quote!(let #solution = #found; #turned_back),
         }
+    }
+
+    /// The place of an equation among those whose constants stay the same along a motion.
+    fn place_among_kept(&self, solve: &Solve) -> Literal {
+        size(self.kept().take_while(|other| other.number != solve.number).count())
+    }
+
+    /// The equation of a rotating body, and its momentum.
+    pub(super) fn equation_of_body(&self, solve: &Solve) -> Option<(TokenStream, TokenStream)> {
+        tensor(solve.solution)?;
+        Some(self.equation_and_target(solve))
+    }
+
+    /// An equation, and the components of the momentum that it holds.
+    fn equation_and_target(&self, solve: &Solve) -> (TokenStream, TokenStream) {
+        let name = self.equation_name(solve);
+        let held = self.held_by_equation(solve).into_iter();
+        let held = held.map(|(name, _)| format_ident!("{}", if name == "system" { "self" } else { name }));
+        (quote!(#name(#(#held),*)), self.part_of_momentum(&solve.momenta))
     }
 
     /// The declared tolerance.

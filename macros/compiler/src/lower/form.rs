@@ -146,7 +146,7 @@ pub(super) fn without_matrices(formulas: &MechanicsFormulas<'_>) -> Option<Featu
         Feature::Power => model.power.is_some(),
         Feature::Quaternions => is_quaternion,
         Feature::ExactDrifts => formulas.splitting.is_some() || formulas.turns_whole(),
-        Feature::FreeRotation => !formulas.weighted().is_empty(),
+        Feature::FreeRotation => formulas.turns_freely(),
         Feature::Collocation => formulas.collocation.is_some(),
         Feature::GeneralLagrangian => formulas.energy.general.is_some(),
         _ => false,

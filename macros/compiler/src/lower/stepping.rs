@@ -112,21 +112,23 @@ impl<'g> Maker<'_, 'g> {
         let equation = &formulas.substeps[index].equations[number];
         let start = match (equation.formula, equation.solution) {
             (Some(formula), _) => Some(vec![formula]),
-            (None, Solution::Linear | Solution::FreeRotation) => None,
+            (None, Solution::Linear | Solution::FreeRotation | Solution::Rotation { .. }) => None,
             (None, _) if keeps_matrices => formulas.whole_predictor(index, number),
             (None, _) => formulas.table().value(Id::Predictor(index, number)).map(<[_]>::to_vec),
         };
         let solved = match equation.solution {
             Solution::ClosedForm => Id::ClosedForm(index, number),
             Solution::Explicit => Id::Explicit(index, number),
-            Solution::Newton | Solution::Linear | Solution::FreeRotation => Id::Predictor(index, number),
+            Solution::Newton | Solution::Linear | Solution::FreeRotation | Solution::Rotation { .. } => {
+                Id::Predictor(index, number)
+            }
         };
         let predict = start.map(|start| self.stack(&start));
         let sine_squared = equation.sine_squared.map(|square| (Id::SineSquared(index, number), self.stack(&[square])));
         let mut kernels: Vec<(Id, Kernel)> = sine_squared.into_iter().into_list();
         let mut residual = None;
         match equation.solution {
-            Solution::Explicit | Solution::ClosedForm | Solution::FreeRotation => {}
+            Solution::Explicit | Solution::ClosedForm | Solution::FreeRotation | Solution::Rotation { .. } => {}
             Solution::Linear => {
                 let system = formulas.linear_system(equation, keeps_matrices);
                 let system = of_matrices(&mut self.scalars, &system, Hoisting::Constants(&mut self.hoisted));

@@ -36,7 +36,7 @@ macro_rules! all_of {
             let (z, zero) = (Vector3::z(), Vector3::zeros());
             let top = Top { mass_matrix: Matrix3::identity(), weight: 1.0, center: z };
             steps(&top, Matrix3::identity(), zero);
-            assert!(Top::GENERATED.contains("linearize"));
+            assert!(Top::GENERATED.contains("turn_of_body"));
             assert!(Top::DERIVATION_LATEX.starts_with("\\begin{align*}"));
             let body = Body { inertia: Matrix3::identity() };
             steps(&body, Matrix3::identity(), zero);

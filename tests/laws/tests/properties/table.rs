@@ -33,6 +33,11 @@ pub const PROPERTIES: &[(&str, &[Property])] = &[
     ("runtime/src/lanes/tests.rs", &[
         ("operations_are_those_of_single_numbers", &["Scalar::select", "Scalar::sqrt", "Scalar::from_lanes"]),
     ]),
+    ("runtime/src/rotation/tests.rs", &[
+        ("rotations_are_those_of_newtons_method", &["RotatingBody::new", "RotationEquation::body", "Tensor::matrix", "Tensor::of", "Tensor::times", "solve_rotation"]),
+        ("principal_axes_are_axes",               &["turn_of_body"]),
+        ("free_bodies_keep_their_scalar",         &["scalar_of_motion", "turn_of_motion", "rotation_of_motion"]),
+    ]),
     ("tests/laws/tests/properties/constraints.rs", &[
         ("momenta_come_to_constraints",      &["constrained", "violation", "Violation::none"]),
         ("velocities_obey_constraints",      &["Stepper::state_moving", "Stepper::project_at", "Constrained::momentum_of_velocity", "Clebsch::constrained", "Clebsch::constraint_defect", "Method::constrained", "Method::constraint_defect"]),

@@ -5,6 +5,7 @@ use std::cell::RefCell;
 use clebsch::__private::{Equation, LinearEquation, solve, solve_linear_equation};
 use clebsch_compiler::derive::{Id, Solution};
 use clebsch_compiler::lower::{Kernel, MechanicsProgram, Solve};
+use clebsch_symbolic::{Property, Role, Shape};
 use nalgebra::{SMatrix, SVector};
 
 use crate::kernels::Values;
@@ -252,6 +253,10 @@ impl<'a, 'g> Stepper<'a, 'g> {
 
     /// Gives an equation's unknowns their values.
     fn turn(&mut self, solve: &Solve, x: &[f64]) {
+        // x itself, where the program takes it with a weight
+        let graph = self.program.formulas.model.graph;
+        let weight = graph.symbol("w", Shape::scalar(), Role::ChartWeight(0), Property::General);
+        self.values.set(weight, &[1.0]);
         for block in &self.program.formulas.symbols.blocks {
             let known = self.values.0.get(&block.coordinates.as_symbol().expect("a symbol").name);
             let mut entries = known.map_or(vec![0.0; block.dimension()], |known| known.entries.clone());
@@ -333,11 +338,39 @@ impl Interpreted<'_, '_, '_> {
     }
 }
 
+impl Interpreted<'_, '_, '_> {
+    /// Whether the program has no linearisation, as the runtime finds one scalar. Here it is Newton's method for x.
+    fn is_rotation(&self) -> bool {
+        matches!(self.solve.solution, Solution::Rotation { .. })
+    }
+
+    /// ρ and Dρ by their formulas, for the momentum in the terms.
+    fn linearized_by_formulas<const M: usize>(
+        &self,
+        terms: &[f64],
+        x: &SVector<f64, M>,
+    ) -> (SVector<f64, M>, SMatrix<f64, M, M>) {
+        self.stepper.borrow_mut().turn(self.solve, x.as_slice());
+        self.aimed(&SVector::from_column_slice(terms), |stepper| {
+            let formulas = &stepper.program.formulas;
+            let equation = &formulas.substeps[self.solve.substep].equations[self.solve.number];
+            let columns = equation.columns(&formulas.symbols);
+            let columns: Vec<f64> =
+                columns.into_iter().flat_map(|column| stepper.values.evaluate(column).entries).collect();
+            let residual = stepper.values.evaluate(equation.residual).entries;
+            (SVector::from_column_slice(&residual), SMatrix::from_column_slice(&columns))
+        })
+    }
+}
+
 impl<const M: usize> Equation<f64, M, MOMENTA> for Interpreted<'_, '_, '_> {
     type Terms = Vec<f64>;
     type Jacobian = SMatrix<f64, M, M>;
 
     fn prepare(&self, target: &SVector<f64, MOMENTA>) -> Vec<f64> {
+        if self.is_rotation() {
+            return target.as_slice().to_vec();
+        }
         self.aimed(target, |stepper| stepper.run(stepper.program.kernel(self.solve.id(Id::Preparation))).concat())
     }
 
@@ -356,6 +389,9 @@ impl<const M: usize> Equation<f64, M, MOMENTA> for Interpreted<'_, '_, '_> {
     }
 
     fn linearize(&self, terms: &Vec<f64>, x: &SVector<f64, M>) -> (SVector<f64, M>, SMatrix<f64, M, M>) {
+        if self.is_rotation() {
+            return self.linearized_by_formulas(terms, x);
+        }
         let mut stepper = self.stepper.borrow_mut();
         stepper.turn(self.solve, x.as_slice());
         let outputs = stepper.values.run(stepper.program.linearization(self.solve), &stepper.constants, terms);

@@ -55,6 +55,9 @@ pub(super) fn how(formulas: &MechanicsFormulas<'_>, equation: &MomentumEquation<
                 "is solved in closed form: the kinetic energy is bi-invariant, so the step turns one plane by θ, sin θ = h|μ|/Σ < 1{coordinates}"
             )
         }
+        Solution::Rotation { .. } => {
+            "has one scalar unknown: A x = μ + (μ·x) x ± μ × x with A = 2Σ/h, x the Gibbs vector of the step, is linear in x once κ = μ·x is known; κ is the least root of a polynomial of degree four, by a series for short steps and by Newton's method".to_string()
+        }
         Solution::Linear => format!("is linear in {chart}: solved by one elimination, no iteration"),
         Solution::FreeRotation if formulas.turns_whole() => {
             "is solved by the free motion itself: F̃J̃ − J̃F̃ᵀ = m = h̃μ with J̃² = D² + β, F = exp(δm + κ⋆m) F̃; the constants of a motion are found once, from its Taylor series, and travel along with the state; then NF̃ = G with N and G polynomials of m, one division a step, no iteration, and no error in h".to_string()

@@ -3,7 +3,7 @@
 use clebsch_symbolic::{Elements, Expr, IntoList, Property, Role, both};
 
 use super::Names;
-use crate::derive::{Formula, Id, MechanicsFormulas, Solution};
+use crate::derive::{Formula, Id, MechanicsFormulas, Solution, rotation};
 
 impl<'g> MechanicsFormulas<'g> {
     /// Kicks are functions of the time at which the step starts, as their methods are.
@@ -129,6 +129,9 @@ impl<'g> MechanicsFormulas<'g> {
             Formula::new(Id::JacobianFactor(index, number), symbol, [factor])
         }));
         let coordinates = self.coordinates_of(&equation.components);
+        if let Solution::Rotation { .. } = equation.solution {
+            rows.extend(self.rows_of_rotation(index, number, (mu, &coordinates)));
+        }
         rows.extend(equation.formula.map(|solution| {
             let row = Formula::new(Id::Solution(index, number), &coordinates, [solution]);
             if !has_multipliers || equation.solution != Solution::ClosedForm {
@@ -155,6 +158,22 @@ impl<'g> MechanicsFormulas<'g> {
             rows.push(row.computed_as(self.predictor(substep, equation)));
         }
         rows
+    }
+
+    /// The scalar equation of a rotating body, with A = Σ/(s·h), and its solution.
+    fn rows_of_rotation(&self, index: usize, number: usize, (mu, x): (&str, &str)) -> [Formula<'g>; 2] {
+        let block = self.symbols.blocks_of(&self.substeps[index].equations[number].components)[0];
+        let parts = rotation::ScalarEquation::new(self.momentum_of_block(block));
+        let scalar = Formula::new(Id::ScalarEquation(index, number), "0 = f(κ)", [parts.polynomial]).in_words(
+            format!("κ⁴ − e₁·κ³ + (e₂ + 2·m)·κ² − (e₃ + e₁·m)·κ + m² + {mu}ᵀ·adj(A)·{mu}, m = |{mu}|², e₁, e₂, e₃ of A"),
+            format!("\\kappa^4 - e_1 \\kappa^3 + (e_2 + 2 m) \\kappa^2 - (e_3 + e_1 m) \\kappa + m^2 + {mu}^T \\operatorname{{adj}}(A) {mu},\\quad m = |{mu}|^2"),
+        );
+        let value = [parts.numerator / parts.denominator];
+        let solution = Formula::new(Id::Solution(index, number), x, value).in_words(
+            format!("(adj(A − κ)·{mu} + m·{mu} ± A·{mu} × {mu})/(det(A − κ) + {mu}ᵀ·(A − κ)·{mu})"),
+            format!("\\frac{{\\operatorname{{adj}}(A - \\kappa) {mu} + m {mu} \\pm A {mu} \\times {mu}}}{{\\det(A - \\kappa) + {mu}^T (A - \\kappa) {mu}}}"),
+        );
+        [scalar, solution]
     }
 
     /// Coordinates by their names: `x₁`, and `x[0], x[1]` where they are not all of a vector.

@@ -1,0 +1,105 @@
+//! The momentum equation of a rotating body of any inertia, which has one scalar unknown.
+//!
+//! With A = Σ/(s·h) it is A x = μ + (μ·x) x ± μ × x for the Gibbs vector x, + for an action from the right. It is linear
+//! in x once κ = μ·x is known, and κ is the least root of a polynomial of degree four.
+
+use clebsch_symbolic::{Chart, Expr, Graph, Group, Property, Role, Shape, identity};
+
+use super::equation::{MomentumEquation, Solution, Sources, is_diagonal};
+use crate::model::Side;
+
+/// The same equation, if it is that of a rotating body.
+///
+/// Matrices lead to ρ = A x − μ − (μ·x) x ∓ μ × x, quaternions to ρ = A x ± x × A x − (1 + |x|²) μ. The second is the
+/// first times (1 ± x^) from the left, which is regular: the same x solves both.
+pub(super) fn rotating<'g>(
+    sources: &Sources<'_, 'g>,
+    equation: &MomentumEquation<'g>,
+    i: usize,
+) -> Option<MomentumEquation<'g>> {
+    let (model, block) = (sources.model, sources.symbols.blocks[i]);
+    let factor = &model.factors[block.factor];
+    let is_rotation = match (factor.group, sources.symbols.charts[block.factor]) {
+        (Group::SpecialOrthogonal(3) | Group::UnitQuaternions, Chart::Cayley) => true,
+        (Group::SpecialEuclidean(3), Chart::Product) => block.offset == model.offset(block.factor),
+        _ => false,
+    };
+    if !is_rotation || equation.moves || sources.is_moving(sources.inertia) {
+        return None;
+    }
+    let inertia = sources.inertia.block(block.offset, block.offset, Shape::square(3));
+    let (x, mu) = (block.coordinates, sources.momentum_of_block(i));
+    let a = inertia / sources.chart_step(i, sources.divisor);
+    let turned = if factor.side == Side::Left { x.cross(mu) } else { mu.cross(x) };
+    let by_matrices = a * x - mu - mu.dot(x) * x - turned;
+    let back = if factor.side == Side::Left { (a * x).cross(x) } else { x.cross(a * x) };
+    let one = model.graph.integer(1);
+    let by_quaternions = a * x + back - (one + x.norm_squared()) * mu;
+    let is_that = |form: Expr<'g>| identity::equal(&[equation.residual], &[form]);
+    (is_that(by_matrices) || is_that(by_quaternions)).then(|| MomentumEquation {
+        solution: Solution::Rotation { has_principal_axes: is_diagonal(inertia) },
+        ..equation.clone()
+    })
+}
+
+/// The scalar equation f(κ) = 0, and r and p of its solution x = r/p.
+pub(super) struct ScalarEquation<'g> {
+    /// f(κ) = μ·r − κp.
+    pub(super) polynomial: Expr<'g>,
+    /// r = adj(A − κ) μ + |μ|² μ + A μ × μ.
+    pub(super) numerator: Expr<'g>,
+    /// p = det(A − κ) + μ·(A − κ) μ.
+    pub(super) denominator: Expr<'g>,
+}
+
+/// The symbols of a scalar equation: A and κ.
+pub(super) fn letters(graph: &Graph) -> [Expr<'_>; 2] {
+    [
+        graph.symbol("A", Shape::square(3), Role::Letter, Property::Symmetric),
+        graph.symbol("κ", Shape::scalar(), Role::Letter, Property::General),
+    ]
+}
+
+impl<'g> ScalarEquation<'g> {
+    /// For the momentum μ of an action from the right.
+    pub(super) fn new(mu: Expr<'g>) -> ScalarEquation<'g> {
+        let graph = mu.graph();
+        let [a, kappa] = letters(graph);
+        let identity = Group::SpecialOrthogonal(3).identity(graph);
+        let b = a - kappa * identity;
+        let (trace, square) = (b.trace(), b * b);
+        let adjugate = square - trace * b + (trace * trace - square.trace()) / 2 * identity;
+        let numerator = adjugate * mu + mu.norm_squared() * mu + (a * mu).cross(mu);
+        let denominator = (adjugate * b).trace() / 3 + mu.dot(b * mu);
+        ScalarEquation { polynomial: mu.dot(numerator) - kappa * denominator, numerator, denominator }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// x = r/p solves the equation but for f(κ): ρ(r/p) = −f(κ)/p x, and f is the polynomial that the runtime evaluates.
+    #[test]
+    fn the_root_of_the_polynomial_solves_the_equation() {
+        let graph = &Graph::new();
+        let mu = graph.symbol("μ", Shape::vector(3), Role::Momentum(0), Property::General);
+        let [a, kappa] = letters(graph);
+        let ScalarEquation { polynomial, numerator, denominator } = ScalarEquation::new(mu);
+        let x = numerator / denominator;
+        let residual = a * x - mu - mu.dot(x) * x - mu.cross(x);
+        assert!(identity::equal(&[residual], &[-((polynomial / denominator) * x)]));
+        let (square, m) = (a * a, mu.norm_squared());
+        let e1 = a.trace();
+        let e2 = (e1 * e1 - square.trace()) / 2;
+        let adjugate = square - e1 * a + e2 * Group::SpecialOrthogonal(3).identity(graph);
+        let e3 = (adjugate * a).trace() / 3;
+        let quartic = kappa.powi(4) - e1 * kappa.powi(3) + (e2 + 2 * m) * kappa.powi(2) - (e3 + e1 * m) * kappa
+            + m * m
+            + mu.dot(adjugate * mu);
+        assert!(identity::equal(&[polynomial], &[quartic]));
+        // the quaternions' form is the first times 1 + x^
+        let by_quaternions = a * x + x.cross(a * x) - (graph.integer(1) + x.norm_squared()) * mu;
+        assert!(identity::equal(&[by_quaternions], &[residual + x.cross(residual)]));
+    }
+}

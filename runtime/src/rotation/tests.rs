@@ -1,0 +1,219 @@
+//! Rotations by one scalar against Newton's method for three unknowns, which follows the path from the identity.
+
+use super::{
+    Diagonal, RotatingBody, RotationEquation, Symmetric, Tensor, rotation_of_motion, scalar_of_motion, solve_rotation,
+    turn_of_body, turn_of_motion,
+};
+use crate::implicit::{Equation, solve};
+use crate::{Error, Scalar};
+use nalgebra::{Matrix3, Rotation3, Vector3};
+use proptest::prelude::*;
+
+/// A body in steps of a size, by one scalar.
+struct Body<T, A, const IS_LEFT: bool>(RotatingBody<T, A>);
+
+impl<T: Scalar, A: Tensor<T>, const IS_LEFT: bool> Body<T, A, IS_LEFT> {
+    fn new(inertia: &Matrix3<T>, h: T) -> Self {
+        Self(RotatingBody::new(inertia, h * T::from_ratio(1, 2)).expect("a body"))
+    }
+}
+
+impl<T: Scalar, A: Tensor<T>, const IS_LEFT: bool> RotationEquation<T> for Body<T, A, IS_LEFT> {
+    type Tensor = A;
+    const IS_LEFT: bool = IS_LEFT;
+
+    fn body(&self) -> &RotatingBody<T, A> {
+        &self.0
+    }
+}
+
+/// hμ = (F𝒥 − 𝒥Fᵀ)^∨ in the Cayley chart, cleared of its denominator: 2Jx/h = μ + (μ·x) x ± μ × x.
+struct Reference {
+    inertia: Matrix3<f64>,
+    h: f64,
+    sign: f64,
+}
+
+impl Equation<f64, 3> for Reference {
+    type Terms = Vector3<f64>;
+    type Jacobian = Matrix3<f64>;
+
+    fn prepare(&self, target: &Vector3<f64>) -> Vector3<f64> {
+        *target
+    }
+
+    fn linearize(&self, mu: &Vector3<f64>, x: &Vector3<f64>) -> (Vector3<f64>, Matrix3<f64>) {
+        let a = self.inertia * (2.0 / self.h);
+        let turned = mu.cross_matrix() * self.sign;
+        let jacobian = a - Matrix3::identity() * mu.dot(x) - x * mu.transpose() - turned;
+        (a * x - mu - x * mu.dot(x) - turned * x, jacobian)
+    }
+}
+
+/// The angle whose tangent of the half is |x|.
+fn angle(x: &Vector3<f64>) -> f64 {
+    2.0 * x.norm().atan()
+}
+
+/// Moments within a factor of six, and axes.
+fn bodies() -> impl Strategy<Value = Matrix3<f64>> {
+    let moments = prop::array::uniform3(0.5..3.0_f64);
+    (moments, prop::array::uniform3(-3.0..3.0_f64)).prop_map(|(moments, axes)| {
+        let axes = *Rotation3::from_scaled_axis(Vector3::from(axes)).matrix();
+        let inertia = axes * Matrix3::from_diagonal(&Vector3::from(moments)) * axes.transpose();
+        (inertia + inertia.transpose()) / 2.0
+    })
+}
+
+/// Both forms of both sides against the reference, with the momentum of a rotation by this Gibbs vector.
+fn check<const IS_LEFT: bool>(inertia: &Matrix3<f64>, h: f64, mu: &Vector3<f64>) -> Result<(), TestCaseError> {
+    let reference = solve(&Reference { inertia: *inertia, h, sign: if IS_LEFT { -1.0 } else { 1.0 } }, mu);
+    let found = solve_rotation(&Body::<f64, Symmetric<f64>, IS_LEFT>::new(inertia, h), mu);
+    match (reference, found) {
+        (Ok(expected), Ok(found)) => {
+            // how much the angle moves with the momentum grows as the end of solvability comes near
+            let room = 1.0 + angle(&expected).tan().abs().powi(2);
+            let error = (found - expected).norm() / (expected.norm() + f64::MIN_POSITIVE);
+            prop_assert!(error < 64.0 * f64::EPSILON * room * 12.0, "{error:e} of {expected}");
+        }
+        (Err(Error::Unsolvable { .. }), Err(Error::Unsolvable { .. })) => {}
+        (expected, found) => prop_assert!(false, "{expected:?} {found:?}"),
+    }
+    Ok(())
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(96))]
+
+    /// Every body, from the shortest steps to the longest that have a solution and beyond, either way in time.
+    #[test]
+    fn rotations_are_those_of_newtons_method(
+        inertia in bodies(), direction in prop::array::uniform3(-1.0..1.0_f64), exponent in -12.0..0.3_f64, h in 0.01..2.0_f64,
+        back in any::<bool>(),
+    ) {
+        let h = if back { -h } else { h };
+        let velocity = Vector3::from(direction) * 10.0_f64.powf(exponent);
+        let mu = inertia * velocity / h;
+        check::<false>(&inertia, h, &mu)?;
+        check::<true>(&inertia, h, &mu)?;
+        let tensor = Symmetric::of(&inertia);
+        prop_assert_eq!(tensor.matrix(), inertia);
+        prop_assert!((tensor.times(&mu) - inertia * mu).norm() <= 4.0 * f64::EPSILON * inertia.norm() * mu.norm());
+        // A and −μ for −A and μ: backwards in time it is positive too
+        prop_assert!(Body::<f64, Symmetric<f64>, false>::new(&inertia, h).body().determinant() > 0.0);
+    }
+
+    /// A diagonal tensor gives the solution that the same numbers give as a symmetric tensor.
+    #[test]
+    fn principal_axes_are_axes(moments in prop::array::uniform3(0.5..3.0_f64), mu in prop::array::uniform3(-1.0..1.0_f64)) {
+        let (inertia, mu) = (Matrix3::from_diagonal(&Vector3::from(moments)), Vector3::from(mu));
+        let short = turn_of_body(&Body::<f64, Diagonal<f64>, false>::new(&inertia, 0.3), &mu);
+        let long = turn_of_body(&Body::<f64, Symmetric<f64>, false>::new(&inertia, 0.3), &mu);
+        prop_assert_eq!(short.expect("a turn"), long.expect("a turn"));
+    }
+
+    /// κ = μ·x of a free body is the same after each step, N⁺ = Fᵀμ, and gives the rotation without an iteration.
+    #[test]
+    fn free_bodies_keep_their_scalar(inertia in bodies(), mu in prop::array::uniform3(-1.0..1.0_f64)) {
+        let (body, mut mu) = (Body::<f64, Symmetric<f64>, false>::new(&inertia, 0.3), Vector3::from(mu));
+        let kappa = scalar_of_motion(&body, &mu);
+        for _ in 0..8 {
+            let x = solve_rotation(&body, &mu).expect("a turn");
+            let known = rotation_of_motion(&body, kappa, &mu).expect("a turn");
+            prop_assert!((known - x).norm() < 1e-14 * x.norm(), "{known} {x}");
+            let (w, r) = turn_of_motion(&body, kappa, &mu).expect("a turn");
+            prop_assert!((r / w - x).norm() < 1e-14 * x.norm());
+            mu += (mu.cross(&x) + x.cross(&x.cross(&mu))) * (2.0 / (1.0 + x.norm_squared()));
+        }
+        // no scalar: a momentum that is too large has none, and the error of its step
+        let large = Vector3::from([40.0, 0.0, 0.0]);
+        prop_assert_eq!(scalar_of_motion(&body, &large), 0.0);
+        prop_assert!(turn_of_motion(&body, 0.0, &large).is_err());
+    }
+
+    /// Units change no bit: inertia and momentum times the same power of two.
+    #[test]
+    fn units_do_not_matter(inertia in bodies(), mu in prop::array::uniform3(-1.0..1.0_f64), power in -900..900_i32) {
+        let (mu, unit) = (Vector3::from(mu), 2.0_f64.powi(power));
+        let plain = solve_rotation(&Body::<f64, Symmetric<f64>, false>::new(&inertia, 0.25), &mu);
+        let other = solve_rotation(&Body::<f64, Symmetric<f64>, false>::new(&(inertia * unit), 0.25), &(mu * unit));
+        prop_assert_eq!(plain.expect("a turn"), other.expect("a turn"));
+    }
+}
+
+/// A kinetic energy that is not positive has a solution too, by the path from the identity.
+#[test]
+fn an_indefinite_energy_is_left_to_newtons_method() {
+    let inertia = Matrix3::from_diagonal(&Vector3::new(1.0, -2.0, 1.5));
+    let (h, mu) = (0.1, Vector3::new(0.4, 0.3, -0.2));
+    let expected = solve(&Reference { inertia, h, sign: 1.0 }, &mu).expect("a solution");
+    let found = solve_rotation(&Body::<f64, Diagonal<f64>, false>::new(&inertia, h), &mu).expect("a solution");
+    assert!((found - expected).norm() < 1e-15, "{found} {expected}");
+}
+
+/// A body that turns about one axis turns by sin θ = hμ/J up to a right angle, and no further.
+#[test]
+fn the_end_of_solvability_is_the_right_angle() {
+    let body = Body::<f64, Diagonal<f64>, false>::new(&Matrix3::identity(), 1.0);
+    for angle in [1.0, 1.2, 1.5, 1.57] {
+        let x = solve_rotation(&body, &Vector3::new(0.0, 0.0, f64::sin(angle))).expect("less than a right angle");
+        assert!((x.z - (angle / 2.0).tan()).abs() < 1e-12, "{angle}: {x}");
+    }
+    let beyond = solve_rotation(&body, &Vector3::new(0.0, 0.0, 1.001));
+    let Err(Error::Unsolvable { solvable_fraction, .. }) = beyond else { panic!("{beyond:?}") };
+    // the path finds its end to a few parts in 10⁵
+    assert!((solvable_fraction * 1.001 - 1.0).abs() < 1e-4, "{solvable_fraction}");
+}
+
+#[test]
+fn what_is_not_finite_is_an_error() {
+    let body = Body::<f64, Symmetric<f64>, false>::new(&Matrix3::identity(), 1.0);
+    for mu in [f64::NAN, f64::INFINITY, 1e300] {
+        let found = solve_rotation(&body, &Vector3::new(0.0, mu, 0.0));
+        assert!(matches!(found, Err(Error::NotFinite { .. } | Error::Unsolvable { .. })), "{found:?}");
+    }
+    assert_eq!(solve_rotation(&body, &Vector3::zeros()), Ok(Vector3::zeros()));
+}
+
+#[test]
+fn a_body_without_a_moment_is_refused() {
+    let inertia = Matrix3::from_diagonal(&Vector3::new(1.0, 0.0, 2.0));
+    let made = RotatingBody::<f64, Diagonal<f64>>::new(&inertia, 0.1);
+    assert!(matches!(made, Err(Error::SingularKineticEnergy { .. })), "{made:?}");
+}
+
+/// In single precision the series ends sooner and the angle is right to its own rounding.
+#[test]
+fn single_precision_is_right_to_its_rounding() {
+    for size in [1e-4_f32, 1e-2, 0.1, 0.5] {
+        let (inertia, mu) = (Vector3::new(1.0_f32, 2.0, 2.5), Vector3::new(0.3_f32, 0.7, -0.4) * size);
+        let found =
+            solve_rotation(&Body::<f32, Diagonal<f32>, false>::new(&Matrix3::from_diagonal(&inertia), 1.0), &mu);
+        let inertia = Matrix3::from_diagonal(&inertia.map(f64::from));
+        let expected = solve(&Reference { inertia, h: 1.0, sign: 1.0 }, &mu.map(f64::from)).expect("a solution");
+        let error = (found.expect("a solution").map(f64::from) - expected).norm() / expected.norm();
+        assert!(error < 4.0 * f64::from(f32::EPSILON), "{size}: {error:e}");
+    }
+}
+
+/// Each lane has the bits of a single number, where others have another way to it or none.
+#[cfg(feature = "lanes")]
+#[test]
+fn lanes_are_single_numbers() {
+    use crate::{F64x4, Space};
+    use num_traits::One;
+    let sizes = [1e-6, 0.02, 0.4, 3.0];
+    let inertia = Matrix3::new(1.0, 0.1, 0.0, 0.1, 1.5, -0.2, 0.0, -0.2, 2.0);
+    let direction = Vector3::new(0.3, 0.7, -0.4);
+    let all =
+        Body::<F64x4, Symmetric<F64x4>, false>::new(&inertia.map(|entry| F64x4::from_lanes(|_| entry)), F64x4::one());
+    let mu = direction.map(|entry| F64x4::from_lanes(|lane| sizes[lane] * entry));
+    let found = solve_rotation(&all, &mu).expect("three turns");
+    let one = Body::<f64, Symmetric<f64>, false>::new(&inertia, 1.0);
+    for (lane, size) in sizes.into_iter().enumerate() {
+        match solve_rotation(&one, &(direction * size)) {
+            Ok(expected) => assert_eq!(Space::<F64x4>::lane(&found, lane), expected),
+            Err(_) => assert!(!Space::<f64>::all_finite(&Space::<F64x4>::lane(&found, lane))),
+        }
+    }
+}
