@@ -8,6 +8,7 @@ pub mod keys;
 pub use crate::__formulas_of_joints as formulas_of_joints;
 pub use crate::__formulas_of_sites as formulas_of_sites;
 pub use crate::collocation::{GAUSS_16, SWEEPS, collocate};
+pub use crate::conserved::conserved;
 pub use crate::constraint::edge::{
     ConstrainedSubstep, ConstraintAtEnd, ConstraintAtStart, PassedEdge, slopes_with_constraint, with_constraint,
 };
@@ -72,8 +73,8 @@ pub use crate::sums::{Compensated, Plain, accumulate};
 pub use crate::sylvester::Sylvester;
 pub use crate::{
     Arrival, BoundsExpansion, Carried, Clebsch, Clock, Conserved, Conserves, Constrained, Controlled, Declared, Edge,
-    EndpointExpansion, Ends, Error, Expansion, Method, Momenta, Reacting, Scalar, Sensitive, Space, Time, Variational,
-    group,
+    EndpointExpansion, Ends, Error, Expansion, Method, Momenta, Names, Reacting, Scalar, Sensitive, Space, Time,
+    Variational, group,
 };
 pub use core;
 pub use core::option::Option::{self, None, Some};

@@ -1,7 +1,7 @@
 //! Momenta that no step changes, with their names.
 
 use crate::fields::getters;
-use crate::{Clebsch, Scalar};
+use crate::{Clebsch, Columns, Scalar};
 use core::fmt::{self, Debug, Display, Formatter, LowerExp};
 use core::iter::Zip;
 use core::ops::Index;
@@ -31,7 +31,10 @@ use core::ops::Index;
 )]
 pub trait Conserves: Clebsch {
     /// The momenta: a [`Conserved`].
-    type Conserved: Copy + Debug + Display + PartialEq;
+    type Conserved: Columns<Self::Scalar> + Copy + Debug + Display + PartialEq;
+
+    /// The names of the momenta, in the order of their values.
+    const CONSERVED_NAMES: &'static [&'static str];
 
     /// The conserved momenta at (q, μ).
     fn conserved(&self, q: &Self::Configuration, mu: &Self::Momentum) -> Self::Conserved;
@@ -77,6 +80,13 @@ impl<T: Copy, const K: usize> Conserved<T, K> {
     pub fn iter(&self) -> Zip<core::array::IntoIter<&'static str, K>, core::array::IntoIter<T, K>> {
         self.names.into_iter().zip(self.values)
     }
+}
+
+/// The values of momenta with the names of their system, as many as there are values.
+#[inline]
+pub fn conserved<T, const K: usize>(names: &[&'static str], values: [T; K]) -> Conserved<T, K> {
+    // by construction: there are K names
+    Conserved { names: names.first_chunk().copied().unwrap_or([""; K]), values }
 }
 
 impl<T: Scalar, const K: usize> Conserved<T, K> {

@@ -36,7 +36,7 @@ macro_rules! debug {
 
 /// `Debug` of a type from all of these fields. A derived one would ask for methods that are `Debug`.
 macro_rules! debug_fields {
-    ($name:ident<$($argument:tt),*> where [$($generics:tt)*]: $($field:ident),*) => {
+    ($name:ident<$($argument:tt),*> where [$($generics:tt)*]: $($field:tt),*) => {
         impl<$($generics)*> core::fmt::Debug for $name<$($argument),*> {
             fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
                 let mut shown = f.debug_struct(stringify!($name));

@@ -45,6 +45,8 @@
 //! | make a step of another size | [`Stepper::step_for`], [`Stepper::with_step_size`] |
 //! | have states at times of your own | [`Trajectory::at`], [`Trajectory::every`]; [`Timed`] |
 //! | find when a function of the state crosses zero, and go on, stop or kick | [`Trajectory::events`]; [`Crossing`], [`Event`] |
+//! | have the numbers of a state with their names | [`Stepper::table`]; [`Table`], [`Column`] |
+//! | write states to a file, as CSV or for NumPy | the module `record`, with the feature of this name |
 //! | watch and cancel a long run | [`Drive::advance_watched`]; [`Stepper::advance_or_stop`] and [`Stopped`] |
 //! | choose the step size for an error | [`Stepper::suggest_step_size`] |
 //! | know the quantities that no step changes | [`Stepper::conserved`], which exists where conserved momenta were found; [`Conserved`] |
@@ -82,6 +84,7 @@
 //! | `num-dual` | the numbers of that crate as scalars, which carry derivatives; needs the standard library |
 //! | `double-double` | `DoubleDouble`: 31 digits for reference runs |
 //! | `generated` | the dial `emit = [generated]`: the constant `GENERATED`, the generated code as text |
+//! | `record` | the module `record`: tables of states in files, CSV and NumPy; needs the standard library |
 //! | `serde` | states that are written and read back; `Stepper::resume` and `FieldStepper::resume` go on bit for bit, if the format keeps all digits (`serde_json` with `float_roundtrip`) |
 //!
 //! # Where dials end
@@ -135,7 +138,7 @@
 
 #[cfg(feature = "alloc")]
 extern crate alloc;
-#[cfg(any(feature = "std", feature = "rayon", test))]
+#[cfg(any(feature = "std", feature = "rayon", feature = "record", test))]
 extern crate std;
 
 // first, as its page shows methods in the order of modules
@@ -146,6 +149,7 @@ pub mod __private;
 mod boundary;
 mod cofactors;
 mod collocation;
+mod columns;
 mod conserved;
 mod constraint;
 mod control;
@@ -180,6 +184,8 @@ mod orientation;
 mod parameters;
 mod parts;
 mod power;
+#[cfg(feature = "record")]
+pub mod record;
 mod root;
 mod rotation;
 #[cfg(feature = "serde")]
@@ -195,6 +201,7 @@ mod stumpff;
 mod sums;
 mod sylvester;
 mod system;
+mod table;
 mod tangent;
 mod time;
 mod trajectory;
@@ -202,6 +209,7 @@ mod variational;
 
 pub use boundary::{Boundary, Extremal, Guess, Node, States, Way};
 pub use clebsch_macros::Clebsch;
+pub use columns::{Column, Columns, Form, Names};
 pub use conserved::{Conserved, Conserves};
 pub use constraint::{Constrained, Reacting};
 pub use control::{Control, Optimum, Stage, Target};
@@ -236,7 +244,8 @@ pub use space::Space;
 pub use state::{Body, CotangentState, State, Stopped};
 pub use stepper::Stepper;
 pub use system::Clebsch;
+pub use table::{Row, Sample, Table};
 pub use tangent::{Sensitivity, Tangent, Variation};
 pub use time::{Clock, Time};
-pub use trajectory::{Crossing, Event, Events, Multiples, Timed, Trajectory};
+pub use trajectory::{Crossing, Event, Events, Multiples, Timed, Trajectory, WithTimes};
 pub use variational::{Carried, Differentiated, Edge, Ends, Momenta, Sensitive, Variational};

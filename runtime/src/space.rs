@@ -1,6 +1,6 @@
 //! The spaces that configurations, group elements and momenta live in: arrays of scalars, nested as declared.
 
-use crate::{Error, Mask, Scalar};
+use crate::{Columns, Error, Mask, Scalar};
 use core::fmt::Debug;
 use nalgebra::{Quaternion, SMatrix};
 
@@ -18,7 +18,7 @@ use nalgebra::{Quaternion, SMatrix};
 /// assert!(place.all_finite());
 /// assert_eq!(place.distance_squared(&Space::<f64>::origin()), 18.0);
 /// ```
-pub trait Space<T: Scalar>: Copy + Debug + PartialEq {
+pub trait Space<T: Scalar>: Columns<T> + Copy + Debug + PartialEq {
     /// One lane of it; the space itself if scalars are single numbers.
     type Lane: Space<T::Lane>;
 

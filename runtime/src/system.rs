@@ -2,7 +2,7 @@
 
 use crate::constraint::Violation;
 use crate::scheme::Scheme;
-use crate::{Error, Method, Scalar, Space, Stepper, Time};
+use crate::{Error, Method, Names, Scalar, Space, Stepper, Time};
 use core::fmt::Debug;
 use num_traits::Zero;
 
@@ -68,6 +68,8 @@ pub trait Clebsch: Sized {
 
     /// The name of the struct.
     const NAME: &'static str;
+    /// The names of the configuration, as the declared action has them; `q` as provided.
+    const CONFIGURATION_NAMES: Names = Names::One("q");
     /// Order of accuracy of a step. 4, 6 and 8 are composed of steps of second order; 16 collocates Hamilton's
     /// equations. Then [`legendre`](Self::legendre) and [`legendre_next`](Self::legendre_next) are the transforms of
     /// the declared step of second order.

@@ -4,7 +4,7 @@ mod events;
 mod times;
 
 pub use events::{Crossing, Event, Events};
-pub use times::{Multiples, Timed};
+pub use times::{Multiples, Timed, WithTimes};
 
 use crate::{Clebsch, Declared, Error, Method, State, Stepper};
 use core::fmt::{self, Debug, Formatter};

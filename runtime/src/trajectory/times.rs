@@ -180,6 +180,54 @@ impl<S: Clebsch<Scalar: Real>, M: Method<S>, I: FusedIterator<Item: Borrow<S::Sc
 {
 }
 
+/// The states of a [`Timed`] with their times, made by [`Timed::with_times`].
+///
+/// ```
+/// # use clebsch::{Clebsch, Multiples, WithTimes};
+/// # #[derive(Clebsch, Clone, Debug)]
+/// # #[clebsch(action = |a: Translation<1>, x: Vector1| x + a, cost = |h, a| self.mass * a.norm_squared() / (2 * h))]
+/// # struct Particle { mass: f64 }
+/// # use nalgebra::Vector1;
+/// let stepper = Particle { mass: 2.0 }.into_stepper(0.5)?;
+/// let start = stepper.state(Vector1::zeros(), Vector1::new(6.0))?;
+/// let timed: WithTimes<'_, Particle, Multiples<f64>> = stepper.trajectory(start).every(0.125).with_times();
+/// for pair in timed.take(100) {
+///     let (time, state) = pair?;
+///     assert_eq!(state.configuration().x, 3.0 * time);
+/// }
+/// # Ok::<(), clebsch::Error>(())
+/// ```
+pub struct WithTimes<'a, S: Clebsch, I, M: Method<S> = Declared>(Timed<'a, S, I, M>);
+
+impl<S: Clebsch<Scalar: Real>, M: Method<S>, I: Iterator<Item: Borrow<S::Scalar>>> Iterator for WithTimes<'_, S, I, M> {
+    type Item = Result<(S::Scalar, State<S, M>), Error>;
+
+    fn next(&mut self) -> Option<Self::Item> {
+        let state = self.0.next()?;
+        Some(state.map(|state| (self.0.last, state)))
+    }
+}
+
+impl<S: Clebsch<Scalar: Real>, M: Method<S>, I: FusedIterator<Item: Borrow<S::Scalar>>> FusedIterator
+    for WithTimes<'_, S, I, M>
+{
+}
+
+impl<S: Clebsch, M: Method<S>, I: Clone> Clone for WithTimes<'_, S, I, M> {
+    fn clone(&self) -> Self {
+        Self(self.0.clone())
+    }
+}
+
+debug_fields!(WithTimes<'_, S, I, M> where [S: Clebsch, I: Debug, M: Method<S>]: 0);
+
+impl<'a, S: Clebsch, M: Method<S>, I> Timed<'a, S, I, M> {
+    /// The same states, each with its time: `(time, state)`.
+    pub fn with_times(self) -> WithTimes<'a, S, I, M> {
+        WithTimes(self)
+    }
+}
+
 impl<S: Clebsch, M: Method<S>, I> Timed<'_, S, I, M> {
     /// The end of the last step that has been made: after an error, the state before the step that failed.
     pub fn state(&self) -> &State<S, M> {

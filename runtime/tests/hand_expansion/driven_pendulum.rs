@@ -125,6 +125,7 @@ const _: () = {
     #[automatically_derived]
     impl ::clebsch::Conserves for DrivenPendulum {
         type Conserved = ::clebsch::Conserved<f64, 1>;
+        const CONSERVED_NAMES: &'static [&'static str] = &["about e3"];
 
         /// N₃
         #[inline]

@@ -128,6 +128,7 @@ const _: () = {
     #[automatically_derived]
     impl ::clebsch::Conserves for HeavyTop {
         type Conserved = ::clebsch::Conserved<f64, 1>;
+        const CONSERVED_NAMES: &'static [&'static str] = &["about e3, spatial"];
 
         /// (R π)₃
         #[inline]

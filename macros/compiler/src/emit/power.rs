@@ -122,7 +122,7 @@ impl<'g> Emitter<'_, 'g> {
 
     /// The implementation of the trait `Clebsch` for all sites together.
     fn whole_power(&self, power: &Power<'g>, target: &Target) -> TokenStream {
-        let (name, length, order) = (&target.name, &self.length, power.order.number());
+        let (names, length, order) = (self.names_of(&target.name), &self.length, power.order.number());
         let places = [quote!([Q; #length]), quote!([F; #length]), quote!([Mu; #length])];
         let input = &self.input;
         let input = if power.has_own_inputs { quote!([#input; #length]) } else { input.clone() };
@@ -151,7 +151,7 @@ impl<'g> Emitter<'_, 'g> {
                 type Constants = runtime::SiteConstants<Self, #length>;
                 type Scheme = #scheme;
 
-                const NAME: &'static ::core::primitive::str = #name;
+                #names
                 const ORDER: ::core::primitive::u32 = #order;
                 const DERIVATION: &'static ::core::primitive::str = #derivation;
 

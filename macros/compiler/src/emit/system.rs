@@ -3,6 +3,7 @@
 use clebsch_symbolic::{Elements, Group, Property, Role, both};
 use proc_macro2::TokenStream;
 use quote::{format_ident, quote};
+use syn::ext::IdentExt;
 
 use super::block::{Target, matrix, time_type, types_of_system};
 use super::function::{Body, Function, no_words, number};
@@ -12,19 +13,19 @@ use super::{Emitter, SystemEmitter, flag};
 use crate::derive::{Id, Solution};
 use crate::lower::{Code, Kernel, Solve};
 use crate::model::LeafSpace;
+use crate::parse::Pattern;
 
 impl<'g> Emitter<'_, 'g> {
     /// The impl block.
     pub(super) fn system(&self) -> TokenStream {
-        let name = &self.target.name;
         // types that a person reads in the documentation are spelled
         let types = types_of_system(
             &self.types.clone().map(|ty| self.spelled(&ty)),
             &self.input,
             &time_type(self.formulas.is_timed()),
         );
-        let name = quote!(const NAME: &'static ::core::primitive::str = #name;);
-        let stepping = self.stepping(Some(name), &self.program.derivation());
+        let names = self.names_of(&self.target.name);
+        let stepping = self.stepping(Some(names), &self.program.derivation());
         self.target.derived(
             Some(quote!(runtime::Clebsch)),
             quote! {
@@ -32,6 +33,16 @@ impl<'g> Emitter<'_, 'g> {
                 #stepping
             },
         )
+    }
+
+    /// The names of the struct and of its configuration. A configuration `q` has the name that is provided.
+    pub(super) fn names_of(&self, name: &str) -> TokenStream {
+        let configuration = match &self.model.configuration_names {
+            Pattern::Name(name) if name == "q" => None,
+            names => Some(written(names)),
+        };
+        let configuration = configuration.map(|names| quote!(const CONFIGURATION_NAMES: runtime::Names = #names;));
+        quote!(const NAME: &'static ::core::primitive::str = #name; #configuration)
     }
 
     /// The items that depend on how the system is stepped, and for the declared dials those of the system.
@@ -121,7 +132,7 @@ impl<'g> Emitter<'_, 'g> {
                     #locals
                     #(sum[#places] += #spelled;)*
                 }
-                runtime::Conserved::new([#(#names),*], sum)
+                runtime::conserved(Self::CONSERVED_NAMES, sum)
             }
         } else {
             // all components of a long momentum are that momentum
@@ -129,7 +140,7 @@ impl<'g> Emitter<'_, 'g> {
             let is_whole =
                 self.keeps_matrices && entries.len() == self.dimension && entries.iter().enumerate().all(is_component);
             let values = if is_whole { quote!((*mu).into()) } else { quote!([#(#spelled),*]) };
-            quote!(#locals runtime::Conserved::new([#(#names),*], #values))
+            quote!(#locals runtime::conserved(Self::CONSERVED_NAMES, #values))
         };
         let title = is_power.then_some("The momenta that no step changes, sums over all sites.");
         let cost = (!is_power).then_some(kernel);
@@ -137,7 +148,11 @@ impl<'g> Emitter<'_, 'g> {
             self.functions(CONSERVES, (0, 0), &words, |_, _| Some(Body { title, cost, ..Body::from(code.clone()) }));
         self.declared().derived(
             Some(quote!(runtime::Conserves)),
-            quote!(type Conserved = runtime::Conserved<T, #count>; #functions),
+            quote! {
+                type Conserved = runtime::Conserved<T, #count>;
+                const CONSERVED_NAMES: &'static [&'static ::core::primitive::str] = &[#(#names),*];
+                #functions
+            },
         )
     }
 
@@ -262,6 +277,20 @@ impl<'g> Emitter<'_, 'g> {
         let entries: Vec<_> = entries.each(|entry| scope.code(entry, false));
         let rows = entries.chunks(shape.columns).map(|row| quote!([#(#row),*]));
         quote!(#locals runtime::#of_motions(&[#(#rows),*], mu))
+    }
+}
+
+/// Names as the runtime reads them.
+fn written(names: &Pattern) -> TokenStream {
+    match names {
+        Pattern::Name(name) => {
+            let name = name.unraw().to_string();
+            quote!(runtime::Names::One(#name))
+        }
+        Pattern::Tuple(parts, _) => {
+            let parts = parts.iter().map(written);
+            quote!(runtime::Names::Each(&[#(#parts),*]))
+        }
     }
 }
 

@@ -115,6 +115,7 @@ pub fn model<'g>(graph: &'g Graph, declaration: &Declaration, by_number: ByNumbe
         return Err(diagnostics);
     }
     let arguments = typed.arguments(graph, types.clone());
+    let configuration_names = types.configuration.clone();
     let power = sites.zip(typed.space.clone()).map(|(length, space)| {
         Sites::new(graph, length.clone(), space, types.configuration.spell(), fields.leaf_count())
     });
@@ -149,6 +150,7 @@ pub fn model<'g>(graph: &'g Graph, declaration: &Declaration, by_number: ByNumbe
         element: typed.element,
         configurations: space.leaves,
         configuration: space.layout,
+        configuration_names,
         action: formulas.action,
         inputs: formulas.input.leaves,
         input: formulas.input.layout,

@@ -8,7 +8,9 @@ use proc_macro2::Span;
 
 use super::power::{Joints, Length, SiteIndex, Term};
 use super::{Access, Layout};
-use crate::parse::{Dials, Discretization, Emit, Isotropy, Located, Opaque, Order, Promise, Signature, Summation};
+use crate::parse::{
+    Dials, Discretization, Emit, Isotropy, Located, Opaque, Order, Pattern, Promise, Signature, Summation,
+};
 
 /// The mathematics of a declaration, checked: names, shapes, groups, the laws of the action.
 pub enum Model<'g> {
@@ -40,6 +42,8 @@ pub struct System<'g> {
     pub configurations: Vec<Configuration<'g>>,
     /// How the leaves of the configuration nest.
     pub configuration: Layout,
+    /// The names of the configuration, as the action has them.
+    pub configuration_names: Pattern,
     /// Φ_F(q), one expression for each leaf of the configuration.
     pub action: Vec<Expr<'g>>,
     /// The leaves of the input u of a step; empty where nothing takes one.

@@ -20,6 +20,7 @@ mod places;
 mod plans;
 mod powers;
 mod public;
+mod recording;
 mod rotations;
 mod runs;
 mod scalars;

@@ -113,6 +113,12 @@ pub const PROPERTIES: &[(&str, &[Property])] = &[
         ("long_runs_are_watched",                      &["Drive::advance_watched", "Stepper::advance_or_stop"]),
         ("bobs_hit_walls",                             &["Trajectory::events"]),
     ]),
+    ("tests/laws/tests/properties/recording.rs", &[
+        ("rows_have_the_numbers_of_their_columns", &["Stepper::table", "Table::columns", "Table::row", "Table::energy", "Table::conserved", "conserved", "Table::with", "Columns::entry", "Form::width"]),
+        ("samples_know_their_times",               &["Timed::with_times", "Sample::time", "Sample::state"]),
+        ("files_are_read_back",                    &["Table::units", "Column::unit", "Recorder::csv", "Recorder::npy", "Recorder::record", "Recorder::record_all", "Recorder::rows", "Recorder::flush", "Recorder::finish", "Npz::new", "Recorder::npz", "Npz::finish"]),
+        ("failures_of_recordings_are_told",        &["Recorder::record_all"]),
+    ]),
     ("tests/laws/tests/properties/equations.rs", &[
         ("equations_are_solved_to_rounding",       &["solve", "solve_fixed_point", "orientation", "Equation::prepare", "Equation::predict", "Equation::linearize", "Equation::residual", "Equation::correct", "Equation::tolerance", "Equation::orientation"]),
         ("poles_are_no_solutions",                 &["Equation::has_poles"]),
