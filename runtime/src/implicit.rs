@@ -312,7 +312,8 @@ pub(crate) fn with_derivatives<T: Scalar, E: Equation<T, M, N>, const M: usize, 
     mut xi: SVector<T, M>,
 ) -> SVector<T, M> {
     let terms = equation.prepare(target);
-    for _ in 0..=T::DERIVATIVES.ilog2() {
+    // a number without derivatives needs no correction, and `ilog2` of 0 is a panic
+    for _ in 0..T::DERIVATIVES.checked_ilog2().map_or(0, |doublings| doublings + 1) {
         let (residual, jacobian) = equation.linearize(&terms, &xi);
         let Some((correction, _)) = E::correct(&jacobian, &residual) else { break };
         xi -= correction;

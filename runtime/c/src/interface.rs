@@ -1,0 +1,184 @@
+//! The functions behind the exported ones, the same for every system.
+
+use crate::numbers::{AtTime, Plain};
+use crate::{Message, Status};
+use clebsch::{Clebsch, Columns, Error, State, Stepper};
+use core::fmt::Write;
+use core::mem::{MaybeUninit, needs_drop};
+
+/// Systems with states that C can write down.
+pub trait Exported:
+    Clebsch<Configuration: Plain<Self::Scalar>, Momentum: Plain<Self::Scalar>, Time: AtTime<Self>>
+{
+}
+
+impl<S> Exported for S where
+    S: Clebsch<Configuration: Plain<Self::Scalar>, Momentum: Plain<Self::Scalar>, Time: AtTime<Self>>
+{
+}
+
+/// The count of the numbers of a state.
+pub const fn width<S: Exported>() -> usize {
+    <S::Time as AtTime<S>>::IS_TIMED as usize
+        + <S::Configuration as Columns<S::Scalar>>::FORM.width()
+        + <S::Momentum as Columns<S::Scalar>>::FORM.width()
+}
+
+/// A result as a status.
+fn status(result: Result<(), Status>) -> Status {
+    result.err().unwrap_or(Status::Ok)
+}
+
+/// A pointer that is not null.
+fn given<P>(pointer: Option<P>) -> Result<P, Status> {
+    pointer.ok_or(Status::Null)
+}
+
+/// A place in the memory of C that is large enough.
+fn place<V>(place: Option<&mut MaybeUninit<V>>, size: usize) -> Result<&mut MaybeUninit<V>, Status> {
+    const {
+        assert!(!needs_drop::<V>(), "C does not drop values: the system may not own memory");
+        assert!(align_of::<V>() <= 8, "values in C are aligned to eight bytes: the system may not have lanes");
+    }
+    let place = given(place)?;
+    if size == size_of::<V>().next_multiple_of(8) { Ok(place) } else { Err(Status::Size) }
+}
+
+/// `NAME_make`
+pub fn make<S: Exported>(
+    to: Option<&mut MaybeUninit<Stepper<S>>>,
+    size: usize,
+    system: Option<S>,
+    step_size: S::Scalar,
+) -> Status {
+    status((|| {
+        let to = place(to, size)?;
+        to.write(given(system)?.into_stepper(step_size)?);
+        Ok(())
+    })())
+}
+
+/// The state with these numbers.
+fn state_of<S: Exported>(stepper: &Stepper<S>, numbers: &[S::Scalar]) -> Result<State<S>, Status> {
+    state_or_error(stepper, numbers).ok_or(Status::Null)?.map_err(Status::from)
+}
+
+/// The same; `None` if there are too few numbers.
+fn state_or_error<S: Exported>(stepper: &Stepper<S>, numbers: &[S::Scalar]) -> Option<Result<State<S>, Error>> {
+    let mut numbers = numbers.iter().copied();
+    let time = if <S::Time as AtTime<S>>::IS_TIMED { numbers.next()? } else { stepper.step_size() };
+    let q = S::Configuration::read(&mut numbers)?;
+    let mu = S::Momentum::read(&mut numbers)?;
+    Some(<S::Time as AtTime<S>>::state(stepper, time, q, mu))
+}
+
+/// `NAME_start`
+pub fn start<S: Exported>(
+    stepper: Option<&Stepper<S>>,
+    to: Option<&mut MaybeUninit<State<S>>>,
+    size: usize,
+    numbers: Option<&[S::Scalar]>,
+) -> Status {
+    status((|| {
+        let to = place(to, size)?;
+        to.write(state_of(given(stepper)?, given(numbers)?)?);
+        Ok(())
+    })())
+}
+
+/// `NAME_step`
+pub fn step<S: Clebsch>(stepper: Option<&Stepper<S>>, state: Option<&mut State<S>>) -> Status {
+    status((|| {
+        let state = given(state)?;
+        *state = given(stepper)?.step(state)?;
+        Ok(())
+    })())
+}
+
+/// `NAME_step_with`
+pub fn step_with<S: Clebsch<Input: Plain<S::Scalar>>>(
+    stepper: Option<&Stepper<S>>,
+    state: Option<&mut State<S>>,
+    input: Option<&[S::Scalar]>,
+) -> Status {
+    status((|| {
+        let (stepper, state) = (given(stepper)?, given(state)?);
+        let input = given(S::Input::read(&mut given(input)?.iter().copied()))?;
+        *state = stepper.step_with(state, &input)?;
+        Ok(())
+    })())
+}
+
+/// `NAME_advance`
+pub fn advance<S: Clebsch>(stepper: Option<&Stepper<S>>, state: Option<&mut State<S>>, steps: usize) -> Status {
+    status((|| {
+        let state = given(state)?;
+        *state = given(stepper)?.advance(state, steps)?;
+        Ok(())
+    })())
+}
+
+/// `NAME_kick`
+pub fn kick<S: Exported>(
+    stepper: Option<&Stepper<S>>,
+    state: Option<&mut State<S>>,
+    impulse: Option<&[S::Scalar]>,
+) -> Status {
+    status((|| {
+        let (stepper, state) = (given(stepper)?, given(state)?);
+        let impulse = given(S::Momentum::read(&mut given(impulse)?.iter().copied()))?;
+        *state = stepper.kick(state, impulse)?;
+        Ok(())
+    })())
+}
+
+/// `NAME_read`
+pub fn read<S: Exported>(state: Option<&State<S>>, numbers: Option<&mut [S::Scalar]>) -> Status {
+    status((|| {
+        let (state, numbers) = (given(state)?, given(numbers)?);
+        let (q, mu) = (state.configuration(), state.momentum());
+        let of_q = (0..).map_while(|k| q.entry(k));
+        let of_mu = (0..).map_while(|k| mu.entry(k));
+        let all = <S::Time as AtTime<S>>::time(state).into_iter().chain(of_q).chain(of_mu);
+        numbers.iter_mut().zip(all).for_each(|(number, value)| *number = value);
+        Ok(())
+    })())
+}
+
+/// `NAME_energy`
+pub fn energy<S: Clebsch>(
+    stepper: Option<&Stepper<S>>,
+    state: Option<&State<S>>,
+    energy: Option<&mut S::Scalar>,
+) -> Status {
+    status((|| {
+        *given(energy)? = given(stepper)?.energy(given(state)?);
+        Ok(())
+    })())
+}
+
+/// `NAME_explain`
+pub fn explain<S: Exported<Input: Plain<S::Scalar>>>(
+    system: Option<S>,
+    step_size: S::Scalar,
+    numbers: Option<&[S::Scalar]>,
+    input: Option<&[S::Scalar]>,
+    message: Option<&mut Message>,
+) -> Status {
+    let attempt = |system: S| {
+        let stepper = system.into_stepper(step_size)?;
+        let Some(state) = numbers.and_then(|numbers| state_or_error(&stepper, numbers)) else { return Ok(()) };
+        match input.and_then(|input| S::Input::read(&mut input.iter().copied())) {
+            Some(input) => stepper.step_with(&state?, &input)?,
+            None => stepper.step(&state?)?,
+        };
+        Ok(())
+    };
+    let (Some(system), Some(message)) = (system, message) else { return Status::Null };
+    *message = Message::default();
+    let found: Result<(), Error> = attempt(system);
+    let Err(error) = found else { return Status::Ok };
+    // a message cuts a text that is too long, and does not fail
+    let _ = write!(message, "{error}");
+    error.into()
+}
