@@ -198,7 +198,7 @@ fn energy(formulas: &MechanicsFormulas<'_>, lowered: &Lowered) -> String {
         let square = if i == j { format!("{}²", names[*i]) } else { format!("{} {}", names[*i], names[*j]) };
         let size = text.strip_prefix('-').filter(|size| is_one_term(size));
         let text = size.unwrap_or(text);
-        let is_sum = text.contains(' ') || text.starts_with('-');
+        let is_sum = !is_one_term(text);
         let coefficient = if is_sum { format!("({text})") } else { text.to_string() };
         (size.is_some(), if text == "1" { square } else { format!("{coefficient} {square}") })
     };

@@ -5,6 +5,7 @@
 
 mod balance;
 mod code;
+mod collect;
 mod cost;
 mod entries;
 mod factors;

@@ -5,6 +5,7 @@ use std::fmt;
 
 use clebsch_symbolic::{Analytic, Elements, IntoList, Operation, Rational, integer, joined};
 
+use super::collect::collected;
 use super::{Callee, Code, Form, Input, Kernel, KernelTable, LARGEST_UNROLLED, MOST_UNKNOWNS, MatrixOperation};
 use super::{MechanicsProgram, Program, Solve, Whole};
 use crate::derive::{self, Id, Iteration, Lowered};
@@ -50,7 +51,7 @@ impl KernelTable {
         let upper = shape.positions().zip(entries).filter(|((i, j), _)| i <= j);
         let coefficients = upper.map(|((i, j), entry)| (i, j, inlined(kernel, entry)));
         let coefficients = coefficients.filter(|(_, _, code)| *code != Code::Number(integer(0)));
-        Some(coefficients.map(|(i, j, code)| (i, j, self.text(&code, 0))).into_list())
+        Some(coefficients.map(|(i, j, code)| (i, j, collected(&code, &|factor| self.text(factor, 2)))).into_list())
     }
 
     /// The text of a code; `place` is 0 in a sum, 1 in a product, 2 below a fraction bar.
