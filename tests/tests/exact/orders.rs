@@ -81,12 +81,20 @@ fn matrix(q: &Quaternion<f64>) -> Matrix3<f64> {
     Matrix3::identity() + hat(&v) * hat(&v) * 2.0 + hat(&v) * (2.0 * q.w)
 }
 
-/// One test for each order.
+/// One test for each order and system, with the numbers of steps. Each order has two systems or more, and each system two
+/// orders or more. The feature `heavy` adds all others.
 macro_rules! orders {
-    ($name:ident: bodies $bodies:expr, quaternions $quaternions:expr, satellite $satellite:expr, points $points:expr, opaque $opaque:expr) => {
+    ($name:ident:
+        $(#[$of_top:meta])? top $top:expr,
+        $(#[$of_quaternions:meta])? quaternions $quaternions:expr, mirrored $mirrored:expr,
+        $(#[$of_satellite:meta])? satellite $satellite:expr,
+        $(#[$of_flying:meta])? flying $flying:expr,
+        $(#[$of_points:meta])? points $points:expr, opaque $opaque:expr
+    ) => {
         mod $name {
             use super::*;
 
+            $(#[$of_top])?
             #[test]
             fn a_top() {
                 let turn = Random::new(7).attitude::<3>();
@@ -95,11 +103,12 @@ macro_rules! orders {
                 let (weight, center) = (3.0, Vector3::new(0.2, -0.1, 0.6));
                 let torque = |_: f64, r: &Matrix3<f64>| r.row(2).transpose().cross(&center) * weight;
                 let exact = body(inertia, torque, start(), DURATION);
-                assert_order(&systems::$name::Top { inertia, weight, center }, start(), &$bodies, |r, pi| {
+                assert_order(&systems::$name::Top { inertia, weight, center }, start(), &$top, |r, pi| {
                     off(r, pi, &exact)
                 });
             }
 
+            $(#[$of_quaternions])?
             #[test]
             fn quaternions_and_motions_from_the_left() {
                 let torque = |_: f64, r: &Matrix3<f64>| r.row(2).transpose().cross(&MOMENT);
@@ -110,9 +119,10 @@ macro_rules! orders {
                 assert_order(&top, (rotation, pi), &$quaternions, |q, pi| off(&matrix(q), pi, &exact));
                 // S = Rᵀ moves by S' = −ω^ S: its momentum is −π
                 let top = systems::$name::MirroredTop { moments: MOMENTS, moment: MOMENT };
-                assert_order(&top, (r.transpose(), -pi), &$bodies, |s, mu| off(&s.transpose(), &-mu, &exact));
+                assert_order(&top, (r.transpose(), -pi), &$mirrored, |s, mu| off(&s.transpose(), &-mu, &exact));
             }
 
+            $(#[$of_satellite])?
             #[test]
             fn a_satellite_that_the_time_turns() {
                 let rate = 0.7;
@@ -125,6 +135,7 @@ macro_rules! orders {
                 assert_order(&satellite, start(), &$satellite, |r, pi| off(r, pi, &exact));
             }
 
+            $(#[$of_flying])?
             #[test]
             fn a_body_that_flies() {
                 let (mass, hook, stiffness) = (1.5, Vector3::new(0.3, 0.1, -0.4), 2.0);
@@ -143,12 +154,13 @@ macro_rules! orders {
                 let exact = motion(velocity, begin, DURATION, 64_000);
                 let momentum = SVector::<f64, 6>::from_iterator(p.iter().chain(pi.iter()).copied());
                 let system = systems::$name::Flying { mass, moments: MOMENTS, hook, stiffness };
-                assert_order(&system, ((x, r), momentum), &$bodies, |(x, r), mu| {
+                assert_order(&system, ((x, r), momentum), &$flying, |(x, r), mu| {
                     let found = flat::<18>(&[x.as_slice(), &mu.as_slice()[..3], r.as_slice(), &mu.as_slice()[3..]]);
                     (found - exact).norm()
                 });
             }
 
+            $(#[$of_points])?
             #[test]
             fn a_pendulum() {
                 let (gravity, waves) = (2.0, 0.8);
@@ -169,11 +181,41 @@ macro_rules! orders {
     };
 }
 
-orders!(second: bodies [256, 512, 1024], quaternions [256, 512, 1024], satellite [256, 512, 1024], points [128, 256, 512], opaque [128, 256, 512]);
-orders!(fourth: bodies [32, 64, 128], quaternions [32, 64, 128], satellite [32, 64, 128], points [16, 32, 64], opaque [16, 32, 64]);
-orders!(sixth: bodies [16, 32, 64], quaternions [16, 32, 64], satellite [16, 32, 64], points [12, 24, 48], opaque [16, 32, 64]);
-orders!(eighth: bodies [16, 32], quaternions [16, 32], satellite [16, 32], points [12, 24, 48], opaque [12, 24, 48]);
-orders!(sixteenth: bodies [4, 5, 6, 7], quaternions [3, 4, 5], satellite [6, 7, 8], points [4, 5, 6, 7], opaque [4, 5, 6, 7]);
+orders! { second:
+    top [256, 512, 1024],
+    #[cfg(feature = "heavy")] quaternions [256, 512, 1024], mirrored [256, 512, 1024],
+    #[cfg(feature = "heavy")] satellite [256, 512, 1024],
+    #[cfg(feature = "heavy")] flying [256, 512, 1024],
+    points [128, 256, 512], opaque [128, 256, 512]
+}
+orders! { fourth:
+    top [32, 64, 128],
+    quaternions [32, 64, 128], mirrored [32, 64, 128],
+    #[cfg(feature = "heavy")] satellite [32, 64, 128],
+    flying [32, 64, 128],
+    points [16, 32, 64], opaque [16, 32, 64]
+}
+orders! { sixth:
+    top [16, 32, 64],
+    #[cfg(feature = "heavy")] quaternions [16, 32, 64], mirrored [16, 32, 64],
+    satellite [16, 32, 64],
+    #[cfg(feature = "heavy")] flying [16, 32, 64],
+    points [12, 24, 48], opaque [16, 32, 64]
+}
+orders! { eighth:
+    #[cfg(feature = "heavy")] top [16, 32],
+    quaternions [16, 32], mirrored [16, 32],
+    #[cfg(feature = "heavy")] satellite [16, 32],
+    flying [16, 32],
+    #[cfg(feature = "heavy")] points [12, 24, 48], opaque [12, 24, 48]
+}
+orders! { sixteenth:
+    top [4, 5, 6, 7],
+    #[cfg(feature = "heavy")] quaternions [3, 4, 5], mirrored [4, 5, 6, 7],
+    satellite [6, 7, 8],
+    #[cfg(feature = "heavy")] flying [4, 5, 6, 7],
+    points [4, 5, 6, 7], opaque [4, 5, 6, 7]
+}
 
 /// A free body has no error in h, whatever the step: turns of 0.02 to 9 rad a step.
 #[test]

@@ -3,6 +3,7 @@
 #[rustfmt::skip]
 macro_rules! systems {
     ($name:ident, $order:literal) => {
+        #[cfg_attr(not(feature = "heavy"), allow(dead_code, reason = "some are for the feature `heavy` alone"))]
         pub mod $name {
             use clebsch::Clebsch;
             use nalgebra::{Matrix3, Vector3};

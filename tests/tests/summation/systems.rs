@@ -4,6 +4,7 @@
 #[rustfmt::skip]
 macro_rules! systems {
     ($name:ident $(, $summation:ident)?) => {
+        #[cfg_attr(not(feature = "heavy"), allow(dead_code, reason = "some are for the feature `heavy` alone"))]
         pub mod $name {
             use clebsch::{Clebsch, Scalar};
             use nalgebra::Vector3;

@@ -1,4 +1,5 @@
-//! The same declaration gives the same tokens in another process: at other addresses, in another environment, with other hashes.
+//! The same declaration gives the same tokens in another process: at other addresses, in another environment, with other
+//! hashes, and after other declarations.
 
 use std::hash::{BuildHasher, RandomState};
 use std::process::Command;
@@ -12,13 +13,22 @@ const CHILD: &str = "CLEBSCH_CHILD";
 /// The text before the list in the child's output.
 const MARK: &str = "expansions:";
 
-/// A number for the expansion of every fixture that is the same in every process.
-fn expansions() -> Vec<String> {
+/// A number for the expansion of every fixture that is the same in every process, and in every order of expansion.
+fn expansions(backwards: bool) -> Vec<String> {
     let expand = |(name, text): (String, String)| {
         let item = verdict::declaration(text.parse().expect("tokens"));
         format!("{name} {:016x}", fingerprint(&expand(item).to_string()))
     };
-    ["fixtures/accept", "fixtures/reject"].iter().flat_map(|folder| seeds::of(folder)).map(expand).collect()
+    let mut fixtures: Vec<_> =
+        ["fixtures/accept", "fixtures/reject"].iter().flat_map(|folder| seeds::of(folder)).collect();
+    if backwards {
+        fixtures.reverse();
+    }
+    let mut found: Vec<String> = fixtures.into_iter().map(expand).collect();
+    if backwards {
+        found.reverse();
+    }
+    found
 }
 
 /// FNV-1a.
@@ -32,7 +42,7 @@ fn another_process_expands_to_the_same_tokens() {
     let moved = vec![1_u8; 1 << 20];
     let own = RandomState::new().hash_one(&moved);
     if std::env::var(CHILD).is_ok() {
-        println!("{MARK}{own:016x}|{}", expansions().join("|"));
+        println!("{MARK}{own:016x}|{}", expansions(true).join("|"));
         return;
     }
     let program = std::env::current_exe().expect("this program");
@@ -47,7 +57,7 @@ fn another_process_expands_to_the_same_tokens() {
     let (other, found) = list.split_once('|').expect("two parts");
     assert_ne!(other, format!("{own:016x}"), "the hashes of both processes are alike");
     let found: Vec<&str> = found.split('|').collect();
-    let expected = expansions();
+    let expected = expansions(false);
     assert!(expected.len() > 100, "only {} fixtures", expected.len());
     for (expected, found) in expected.iter().zip(&found) {
         assert_eq!(expected, found, "a fixture expands to other tokens in another process");

@@ -478,7 +478,7 @@ fn steps_of_chains_have_their_orders() -> Result<(), Error> {
     let sixth = |steps| error(|h| Sixth::<3>.into_stepper(h), steps);
     let eighth = |steps| error(|h| Eighth::<3>.into_stepper(h), steps);
     let found = [
-        order(second(80)?, second(160)?),
+        order(second(40)?, second(80)?),
         order(fourth(20)?, fourth(40)?),
         order(sixth(10)?, sixth(20)?),
         order(eighth(6)?, eighth(12)?),

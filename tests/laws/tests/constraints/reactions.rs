@@ -124,7 +124,7 @@ fn reactions_of_steps_are_means_over_steps_to_the_order_of_the_method() -> Resul
     let exact = |from, to| Vector1::new(mean(slope, start, (from, to)));
     let momentum = inertia * Vector3::new(0.9, -0.7, 0.0);
     let (body, place) = (Suslov { inertia }, Matrix3::identity());
-    let second = order_of_reactions::<_, Declared>(&body, (place, momentum), 80, exact)?;
+    let second = order_of_reactions::<_, Declared>(&body, (place, momentum), 40, exact)?;
     assert!((second - 2.0).abs() < 0.05, "order {second}");
     let fourth = order_of_reactions::<_, Fourth>(&body, (place, momentum), 8, exact)?;
     assert!((fourth - 4.0).abs() < 0.25, "order {fourth}");
@@ -136,7 +136,7 @@ fn reactions_of_steps_are_means_over_steps_to_the_order_of_the_method() -> Resul
     let bead = Bead { mass: 1.7 };
     let exact = |from: f64, to: f64| Vector1::new(2.0 * bead.mass * (to.cosh() - from.cosh()) / (to - from));
     let start = (Vector2::x(), Vector2::y() * bead.mass);
-    let second = order_of_reactions::<_, Declared>(&bead, start, 80, exact)?;
+    let second = order_of_reactions::<_, Declared>(&bead, start, 40, exact)?;
     assert!((second - 2.0).abs() < 0.05, "order {second}");
     let fourth = order_of_reactions::<_, declared::Fourth>(&bead, start, 8, exact)?;
     assert!((fourth - 4.0).abs() < 0.25, "order {fourth}");

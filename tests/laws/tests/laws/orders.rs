@@ -2,8 +2,6 @@
 //!
 //! Errors lie between 1e-7 and 1e-1: above round-off, and below where the next power of h shows by more than a tenth.
 
-#![allow(missing_docs)]
-
 use clebsch::Clebsch;
 use clebsch_tests::fixtures::first_order_top::FirstOrderTop;
 use clebsch_tests::fixtures::free_rigid_body::FreeRigidBody;

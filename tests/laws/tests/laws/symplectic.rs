@@ -3,8 +3,6 @@
 //! So these tests also run generic declarations on a scalar that the runtime does not know. D is exact up to round-off; entries
 //! of D and of the momenta are of order one and DᵀΩD sums products: 1e-13 allowed, 1e-15 measured.
 
-#![allow(missing_docs)]
-
 use clebsch::{Clebsch, Scalar};
 use clebsch_tests::fixtures::generic_body::GenericBody;
 use clebsch_tests::oracle::dual::Dual;

@@ -2,8 +2,6 @@
 //!
 //! Orders are slopes of the largest error over the run against exact motions, at step sizes that halve.
 
-#![allow(missing_docs)]
-
 use clebsch::{Clebsch, Error, State, Stepper};
 use clebsch_tests::fixtures::first_order_top::FirstOrderTop;
 use clebsch_tests::fixtures::free_rigid_body::FreeRigidBody;

@@ -1,7 +1,5 @@
 //! A cost that is not time-symmetric is composed with its derived adjoint: order 2 as declared, and it is said.
 
-#![allow(missing_docs)]
-
 use clebsch::{Clebsch, Stepper};
 use clebsch_tests::oracle::body;
 use clebsch_tests::oracle::motion::{motion, order};

@@ -1,7 +1,5 @@
 //! Momenta alone, `emit = [momentum]`: they move as those of the bodies whose attitude is stepped with them.
 
-#![allow(missing_docs)]
-
 use clebsch::{Clebsch, Error, F64x4, Scalar, Space, State, Stepper};
 use clebsch_tests::fixtures::free_rigid_body::FreeRigidBody;
 use clebsch_tests::fixtures::tumbling_momentum::TumblingMomentum;

@@ -3,8 +3,6 @@
 //! The declared steps are compared with an integrator that knows no vertical term. It solves F⁻ℓd(q, F) = N with the
 //! declared cost, whose Jacobian is singular, for any of the F that move q alike.
 
-#![allow(missing_docs)]
-
 use clebsch::Clebsch;
 use clebsch_tests::fixtures::double_pendulum::DoublePendulum;
 use clebsch_tests::fixtures::natural_pendulum::NaturalPendulum;

@@ -3,8 +3,6 @@
 //!
 //! Values agree to round-off, forces with central differences of fourth order to 1e-9 of their size.
 
-#![allow(missing_docs)]
-
 use clebsch::Clebsch;
 use clebsch_tests::oracle::random::Random;
 use clebsch_tests::stepping::Stepping;

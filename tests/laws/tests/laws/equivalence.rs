@@ -1,7 +1,5 @@
 //! One motion, declared in two ways: both sides, both Lagrangians of a body, any scalar.
 
-#![allow(missing_docs)]
-
 use clebsch::Clebsch;
 use clebsch_tests::fixtures::free_rigid_body::FreeRigidBody;
 use clebsch_tests::fixtures::generic_body::GenericBody;

@@ -1,7 +1,5 @@
 //! Spaces on which a group acts transitively, with kinetic energies of the velocity of the point alone.
 
-#![allow(missing_docs)]
-
 use clebsch::{Clebsch, Conserved, Conserves, Error};
 use clebsch_tests::fixtures::covariance_geodesic::CovarianceGeodesic;
 use clebsch_tests::oracle::motion::{assert_second_order, errors_of_halved_steps as errors, motion};

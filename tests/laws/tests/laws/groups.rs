@@ -1,8 +1,6 @@
 //! Group laws, one line per group, at the identity, very near it and at random: the assumptions of the derivation about
 //! a group.
 
-#![allow(missing_docs)]
-
 use clebsch::Clebsch;
 use clebsch_symbolic::{Block, Expr, Graph, Group, Matrix, Property, Role, Shape};
 use clebsch_tests::oracle::near::assert_near;
