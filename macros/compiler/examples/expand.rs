@@ -12,6 +12,9 @@ fn main() {
     let stage = arguments.next().unwrap_or_else(|| "formulas".into());
     let source = std::fs::read_to_string(path).expect("a readable file");
     let file = syn::parse_file(&source).expect("Rust source");
+    if stage == "latex" {
+        println!("% an appendix: \\usepackage{{amsmath, amssymb}}\n");
+    }
     for item in file.items {
         let syn::Item::Struct(item) = item else { continue };
         if !item.attrs.iter().any(|attribute| attribute.path().is_ident("clebsch")) {
@@ -38,7 +41,7 @@ fn show(stage: &str, item: TokenStream) -> Result<(), Diagnostics> {
         "declaration" => println!("{}", parse::parse(item)?),
         "model" => println!("{}", model(&graph, item)?),
         "formulas" => println!("{}", derive::derive(model(&graph, item)?)?),
-        "latex" => println!("{}", derive::derive(model(&graph, item)?)?.latex()),
+        "latex" => println!("{}", emit::appendix(&compile(&graph, item)?)),
         "program" => println!("{}", compile(&graph, item)?),
         "derivation" => println!("{}", emit::derivations(&compile(&graph, item)?)),
         _ => println!("{}", emit::generated(&compile(&graph, item)?)),

@@ -182,7 +182,11 @@ impl<'g> Printer<'g> {
         if !self.graph.shape(inner).is_column() {
             index = format!("{index}, {}", range(column, shape.columns));
         }
-        self.print(inner, Binding::Atom) + &self.enclosed(&index, ["[", "]"], ["_{", "}"])
+        let base = self.print(inner, Binding::Atom);
+        // LaTeX knows no second subscript
+        let is_lowered = self.notation == Notation::Latex && base.contains('_') && !base.ends_with("\\right)");
+        let base = if is_lowered { format!("{{{base}}}") } else { base };
+        base + &self.enclosed(&index, ["[", "]"], ["_{", "}"])
     }
 
     /// Positive terms first, plain numbers and identities last.

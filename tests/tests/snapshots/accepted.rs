@@ -46,11 +46,26 @@ fn stages(name: &str, declaration: &Declaration, program: &Program<'_>) {
     if IN_LATEX.contains(&name) {
         assert_snapshot!(format!("{name}.3_formulas_latex"), latex);
     }
+    check_appendix(&emit::appendix(program));
     assert_snapshot!(format!("{name}.4_program"), code_or_counts(program));
     assert_snapshot!(format!("{name}.5_derivation"), emit::derivations(program));
     if GENERATED.contains(&name) {
         assert_snapshot!(format!("{name}.6_generated"), emit::generated(program));
     }
+}
+
+/// An appendix is ASCII, and each bracket and environment ends. `.ci/latex` compiles them.
+fn check_appendix(appendix: &str) {
+    let other = appendix.lines().find(|line| !line.is_ascii());
+    assert_eq!(other, None, "a character that pdflatex does not read");
+    let plain = appendix.replace("\\{", "").replace("\\}", "");
+    let count = |part: &str| plain.matches(part).count();
+    let pairs = [("{", "}"), ("\\left", "\\right"), ("\\begin{", "\\end{")];
+    for (open, close) in pairs {
+        let others = if open == "\\left" { count("\\leftarrow") } else { 0 };
+        assert_eq!(count(open) - others, count(close), "{open} and {close}");
+    }
+    assert_eq!(plain.replace("\\$", "").matches('$').count() % 2, 0, "$");
 }
 
 /// A stage with the same of each method behind it.

@@ -109,17 +109,18 @@ impl<'g> Formula<'g> {
     }
 
     /// `symbol &= expression` in LaTeX, tuples in parentheses.
-    fn equation_in_latex(&self) -> String {
+    pub(super) fn equation_in_latex(&self) -> String {
         let symbol = match self.id {
             Id::Conserved(_) => format!("\\text{{{}}}", self.symbol),
             _ => latex::left_side(&self.symbol),
         };
         let text = self.right_side(Notation::Latex);
         let parts = text.parts(",\\quad ");
-        match text.sides.as_slice() {
+        let equation = match text.sides.as_slice() {
             [only] => format!("{symbol} &= {only}{parts}"),
             several => format!("{symbol} &= \\left({}\\right){parts}", several.join(", ")),
-        }
+        };
+        latex::in_ascii(&equation)
     }
 
     /// The text of the right side. It never uses up the budget of the expansion: a long one is written shorter.

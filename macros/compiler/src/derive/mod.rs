@@ -5,6 +5,7 @@
 //! Solve r(F) = T* ∂_F K − J(q, ∂_q K) = N + J(q, ∂U₀) for F, and move. Then N⁺ is the other trivialisation of ∂_F K
 //! plus J(q⁺, ∂U₁). If K does not depend on q, that trivialisation is Ad* of r.
 
+mod appendix;
 mod catalogue;
 mod cayley;
 mod choice;
@@ -58,6 +59,7 @@ use crate::diagnostic::{Diagnostics, bail};
 use crate::model::features::{self, Feature, Found};
 use crate::model::{Discretization, Kinetic, Mechanics, Model, Order, Steered, System};
 
+pub use appendix::appendix;
 pub use catalogue::{Entry, Heat, Id, Reference};
 pub use choice::{Choice, Endpoint, Jet, Steering, StepOfChoice};
 pub use collocation::Collocation;

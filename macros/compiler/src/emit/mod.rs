@@ -29,7 +29,7 @@ use proc_macro2::{Ident, Literal, TokenStream};
 use quote::{ToTokens, format_ident, quote};
 
 use crate::MethodProgram;
-use crate::derive::{FormulaTable, MechanicsFormulas, Symbols, SystemFormulas};
+use crate::derive::{self, FormulaTable, MechanicsFormulas, Symbols, SystemFormulas};
 use crate::lower::{KernelTable, MechanicsProgram, Program};
 use crate::model::{Item, Mechanics, Opaque, Power, System};
 use block::{Block, Target, anonymous, leaf, matrix};
@@ -86,6 +86,19 @@ pub fn derivations(program: &Program<'_>) -> String {
     let methods = program.mechanics().into_iter().flat_map(|program| &program.methods);
     let methods = methods.map(|method| format!("\n{}", method.program.derivation_by(&method.name)));
     methods.fold(program.derivation(), |text, method| text + &method)
+}
+
+/// The derivations of a program and of its methods as an appendix of a paper, in LaTeX.
+pub fn appendix(program: &Program<'_>) -> String {
+    let table = match program {
+        Program::Mechanics(program) => program.formulas.table(),
+        Program::Steered(program) => program.formulas.table(),
+    };
+    let methods = program.mechanics().into_iter().flat_map(|program| &program.methods);
+    let methods = methods.map(|MethodProgram { name, program }| {
+        format!("\n{}", derive::appendix(&program.derivation_by(name), program.formulas.table()))
+    });
+    methods.fold(derive::appendix(&program.derivation(), table), |text, method| text + &method)
 }
 
 /// The generated code of a program as text.
