@@ -8,6 +8,9 @@ use nalgebra::SVector;
 
 const H: f64 = 0.03;
 
+/// The random motions of a pair of systems.
+const MOTIONS: usize = if cfg!(feature = "heavy") { 5 } else { 2 };
+
 /// Every derived function is the same in both forms, and so are 20 steps of random motions from `rest`.
 pub fn agree<U, W, const M: usize>(unrolled: &U, matrices: &W, rest: U::Configuration, seed: u64)
 where
@@ -29,7 +32,7 @@ where
     let near = |distance: f64, what: &str| {
         assert!(distance < 2e-13, "{what}: {distance:.1e} apart for {}", U::NAME);
     };
-    for _ in 0..5 {
+    for _ in 0..MOTIONS {
         let (a, b) = (unrolled.stepper(H).expect("a regular system"), matrices.stepper(H).expect("the same"));
         let (before, after) =
             (unrolled.step_constants(H).expect("constants"), matrices.step_constants(H).expect("constants"));
@@ -93,7 +96,7 @@ where
     U::Configuration: Flat,
 {
     let mut random = Random::new(seed);
-    for _ in 0..5 {
+    for _ in 0..MOTIONS {
         let (a, b) = (unrolled.stepper(H).expect("a regular system"), matrices.stepper(H).expect("the same"));
         let mu = unrolled.project_momentum(&rest, &random.vector::<M>());
         let (mut x, mut y) = (a.state(rest, mu).expect("a state"), b.state(rest, mu).expect("a state"));
@@ -138,7 +141,7 @@ where
     let near = |distance: f64, what: &str| {
         assert!(distance < 1e-11, "{what}: {distance:.1e} apart for {}", U::NAME);
     };
-    for _ in 0..5 {
+    for _ in 0..MOTIONS {
         let mu = unrolled.project_momentum(&rest, &random.vector::<M>());
         let eta = random.vector::<M>() * 0.3;
         let d = unrolled.retraction(&eta);

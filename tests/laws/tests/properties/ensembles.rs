@@ -34,7 +34,7 @@ fn alone(
 }
 
 proptest! {
-    #![proptest_config(cases(16))]
+    #![proptest_config(cases(8))]
 
     /// Bit for bit, on one thread and on all; those that fail stay where they are and say why.
     #[test]

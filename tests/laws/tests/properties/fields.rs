@@ -152,7 +152,7 @@ fn sheet(n: usize, m: usize, shifts: &[Vector3<f64>], turned: &[bool]) -> (Vec<V
 }
 
 proptest! {
-    #![proptest_config(cases(32))]
+    #![proptest_config(cases(12))]
 
     #[test]
     fn meshes_have_edges_and_borders(

@@ -43,7 +43,7 @@ fn is_a_motion(boundary: &Boundary<'_, WatchedTop, 3>, extremal: &Extremal<'_, W
 }
 
 proptest! {
-    #![proptest_config(cases(16))]
+    #![proptest_config(cases(6))]
 
     /// From where a motion starts to where it ends: the extremal near it is that motion.
     #[test]

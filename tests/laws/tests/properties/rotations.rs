@@ -22,7 +22,7 @@ fn inertia(mass: &SVector<f64, 4>) -> SMatrix<f64, 6, 6> {
 }
 
 proptest! {
-    #![proptest_config(cases(64))]
+    #![proptest_config(cases(24))]
 
     /// Moments, momentum and time: the motion back undoes it, energy and spatial momentum stay, and the constants of a
     /// motion make the same turn.
