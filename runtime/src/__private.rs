@@ -61,6 +61,7 @@ pub use crate::rotation::{
     Diagonal, RotatingBody, RotationEquation, Symmetric, rotation_of_motion, scalar_of_motion, solve_rotation,
     turn_of_body, turn_of_motion,
 };
+pub use crate::rotation_4d::{RotatingBody4, RotationEquation4, solve_rotation_4d};
 pub use crate::scheme::kinds::*;
 pub use crate::scheme::{At, JoinedInStorage, Kicks, Scheme, Sizes, Stages, compose, split};
 pub use crate::sphere::{push, tangent, turn_freely, turn_great_circle, turned_in_plane};

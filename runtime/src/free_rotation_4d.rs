@@ -31,9 +31,9 @@ use nalgebra::{SMatrix, SVector};
 use setup::Constants;
 use turn::{composed, turn};
 
-mod flow;
+pub(crate) mod flow;
 mod setup;
-mod turn;
+pub(crate) mod turn;
 
 /// The most parts that a motion is made of.
 const PARTS: u32 = 1024;
@@ -280,7 +280,7 @@ fn momentum_of<T: Real>(inertia: &SMatrix<T, 6, 6>, h: T, f: &SMatrix<T, 4, 4>) 
 }
 
 /// The symmetric D of a quadratic form Σ with ΣΩ = DΩ + ΩD: from R_ij = Σ_k Σ(e_i∧e_k, e_j∧e_k) = 2D + tr D.
-fn mass<T: Scalar>(inertia: &SMatrix<T, 6, 6>) -> SMatrix<T, 4, 4> {
+pub(crate) fn mass<T: Scalar>(inertia: &SMatrix<T, 6, 6>) -> SMatrix<T, 4, 4> {
     // the component and the sign of e_i∧e_k
     let plane = |i: usize, k: usize| {
         let (low, high) = (i.min(k), i.max(k));

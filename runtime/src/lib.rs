@@ -188,6 +188,7 @@ mod power;
 pub mod record;
 mod root;
 mod rotation;
+mod rotation_4d;
 #[cfg(feature = "serde")]
 mod saved;
 mod scalar;

@@ -142,7 +142,7 @@ fn reach_of_series<T: Scalar>() -> T {
 }
 
 /// A power of two, times which `size` is about 1.
-fn unit_of<T: Scalar>(size: T) -> T {
+pub(crate) fn unit_of<T: Scalar>(size: T) -> T {
     let mut unit = power_of_two_near(size);
     let (one, two, half) = (T::one(), T::from_ratio(2, 1), T::from_ratio(1, 2));
     for _ in 0..16 {

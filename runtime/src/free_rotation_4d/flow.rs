@@ -5,67 +5,67 @@ use crate::{Real, Scalar, Space};
 use nalgebra::{SMatrix, SVector};
 
 /// The entries (i, j) above the diagonal, in the order of the components.
-pub(super) const PLANES: [(usize, usize); 6] = [(0, 1), (0, 2), (0, 3), (1, 2), (1, 3), (2, 3)];
+pub(crate) const PLANES: [(usize, usize); 6] = [(0, 1), (0, 2), (0, 3), (1, 2), (1, 3), (2, 3)];
 
 /// A matrix by rows.
-pub(super) type Matrix<T> = [[T; 4]; 4];
+pub(crate) type Matrix<T> = [[T; 4]; 4];
 
 /// One number for each of the [`PLANES`].
-pub(super) type Vector<T> = SVector<T, 6>;
+pub(crate) type Vector<T> = SVector<T, 6>;
 
 /// F − I of a motion, and the momentum after it.
-pub(super) type Moved<T> = (Matrix<T>, Vector<T>);
+pub(crate) type Moved<T> = (Matrix<T>, Vector<T>);
 
 /// The skew matrix with these entries above the diagonal.
-pub(super) fn skew<T: Scalar>(v: &Vector<T>) -> Matrix<T> {
+pub(crate) fn skew<T: Scalar>(v: &Vector<T>) -> Matrix<T> {
     let ([[a, b, c, d, e, f]], zero) = (v.data.0, T::zero());
     [[zero, a, b, c], [-a, zero, d, e], [-b, -d, zero, f], [-c, -e, -f, zero]]
 }
 
 /// The entries above the diagonal.
 #[inline]
-pub(super) fn above<T: Scalar>([[_, a, b, c], [_, _, d, e], [_, _, _, f], _]: &Matrix<T>) -> Vector<T> {
+pub(crate) fn above<T: Scalar>([[_, a, b, c], [_, _, d, e], [_, _, _, f], _]: &Matrix<T>) -> Vector<T> {
     SVector::from([*a, *b, *c, *d, *e, *f])
 }
 
 /// One of four numbers: indices are below 4, and no panic is left where the optimiser does not see that.
 #[inline(always)]
-pub(super) fn at<T: Copy>(numbers: &[T; 4], axis: usize) -> T {
+pub(crate) fn at<T: Copy>(numbers: &[T; 4], axis: usize) -> T {
     numbers[axis % 4]
 }
 
 /// An entry of a matrix, as [`at`] is of a vector.
 #[inline(always)]
-pub(super) fn entry<T: Copy>(matrix: &Matrix<T>, row: usize, column: usize) -> T {
+pub(crate) fn entry<T: Copy>(matrix: &Matrix<T>, row: usize, column: usize) -> T {
     matrix[row % 4][column % 4]
 }
 
 /// Its place.
 #[inline(always)]
-pub(super) fn place<T>(matrix: &mut Matrix<T>, row: usize, column: usize) -> &mut T {
+pub(crate) fn place<T>(matrix: &mut Matrix<T>, row: usize, column: usize) -> &mut T {
     &mut matrix[row % 4][column % 4]
 }
 
 /// ⋆v, the planes perpendicular to those of v.
 #[inline]
-pub(super) fn dual<T: Scalar>(v: &Vector<T>) -> Vector<T> {
+pub(crate) fn dual<T: Scalar>(v: &Vector<T>) -> Vector<T> {
     SVector::from([v[5], -v[4], v[3], v[2], -v[1], v[0]])
 }
 
 /// Pf v
 #[inline]
-pub(super) fn pfaffian<T: Scalar>(v: &Vector<T>) -> T {
+pub(crate) fn pfaffian<T: Scalar>(v: &Vector<T>) -> T {
     v[0] * v[5] - v[1] * v[4] + v[2] * v[3]
 }
 
 #[inline]
-pub(super) fn dot<'a, T: Scalar>(a: impl IntoIterator<Item = &'a T>, b: impl IntoIterator<Item = &'a T>) -> T {
+pub(crate) fn dot<'a, T: Scalar>(a: impl IntoIterator<Item = &'a T>, b: impl IntoIterator<Item = &'a T>) -> T {
     a.into_iter().zip(b).fold(T::zero(), |sum, (a, b)| sum + *a * *b)
 }
 
 /// A B
 #[inline]
-pub(super) fn product<T: Scalar>(a: &Matrix<T>, b: &Matrix<T>) -> Matrix<T> {
+pub(crate) fn product<T: Scalar>(a: &Matrix<T>, b: &Matrix<T>) -> Matrix<T> {
     let term = |i: usize, k: usize, j: usize| entry(a, i, k) * entry(b, k, j);
     core::array::from_fn(|i| {
         core::array::from_fn(|j| (term(i, 0, j) + term(i, 1, j)) + (term(i, 2, j) + term(i, 3, j)))
@@ -77,7 +77,7 @@ const TERMS: usize = 36;
 
 /// F − I and the momentum after the free motion from I in the time 1, Ω = `velocity`(M); `None` where the series has not ended.
 #[cold]
-pub(super) fn flow<T: Real>(velocity: impl Fn(&Vector<T>) -> Vector<T>, m: &Vector<T>) -> Option<Moved<T>> {
+pub(crate) fn flow<T: Real>(velocity: impl Fn(&Vector<T>) -> Vector<T>, m: &Vector<T>) -> Option<Moved<T>> {
     let zero = T::zero();
     let nothing = SVector::from_element(zero);
     let (mut rotations, mut momenta, mut velocities) = ([[[zero; 4]; 4]; TERMS], [nothing; TERMS], [nothing; TERMS]);

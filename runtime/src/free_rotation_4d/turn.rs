@@ -89,7 +89,7 @@ fn equation<T: Scalar>(
 
 /// The adjugate, by minors of the upper and the lower two rows.
 #[inline]
-fn adjugate<T: Scalar>(a: &Matrix<T>) -> Matrix<T> {
+pub(crate) fn adjugate<T: Scalar>(a: &Matrix<T>) -> Matrix<T> {
     let minor = |p: &[T; 4], q: &[T; 4], (r, s): (usize, usize)| at(p, r) * at(q, s) - at(q, r) * at(p, s);
     let [s0, s1, s2, s3, s4, s5] = PLANES.map(|columns| minor(&a[0], &a[1], columns));
     let [c0, c1, c2, c3, c4, c5] = PLANES.map(|columns| minor(&a[2], &a[3], columns));

@@ -1,7 +1,7 @@
 //! Only the code that a scene asks for: one rigid body, declared with less and less, costs less and less, and has
 //! nothing else.
 
-use clebsch_compiler::derive::Solution;
+use clebsch_compiler::derive::{RotatingBody, Solution};
 use clebsch_compiler::lower::{Cost, Program};
 
 use crate::fixture::Fixture;
@@ -55,8 +55,8 @@ fn operations(program: &Program<'_>) -> usize {
 /// The operations of the runtime with the tensor of a rotating body and its adjugate, each times a vector.
 fn of_tensors(solution: Solution) -> usize {
     match solution {
-        Solution::Rotation { has_principal_axes: true } => 2 * 3,
-        Solution::Rotation { has_principal_axes: false } => 2 * 15,
+        Solution::Rotation(RotatingBody::Principal) => 2 * 3,
+        Solution::Rotation(RotatingBody::Symmetric) => 2 * 15,
         _ => 0,
     }
 }

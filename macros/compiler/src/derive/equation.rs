@@ -49,6 +49,17 @@ pub struct Form {
     pub is_near: bool,
 }
 
+/// A body whose momentum equation has one scalar unknown.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum RotatingBody {
+    /// In space, with a diagonal inertia.
+    Principal,
+    /// In space, with any inertia.
+    Symmetric,
+    /// In four dimensions, with a distribution of mass.
+    FourSpace,
+}
+
 /// How an equation is solved.
 #[derive(Copy, Clone, PartialEq, Eq, Debug)]
 pub enum Solution {
@@ -58,11 +69,8 @@ pub enum Solution {
     ClosedForm,
     /// By the power series of the free motion of a rigid body.
     FreeRotation,
-    /// By the least root of a polynomial of degree four, the equation of a rotating body.
-    Rotation {
-        /// Whether the inertia is diagonal.
-        has_principal_axes: bool,
-    },
+    /// By a root of one scalar equation, that of a rotating body.
+    Rotation(RotatingBody),
     /// By one elimination, as the residual is affine in x.
     Linear,
     /// By Newton's method from the predictor.

@@ -177,7 +177,7 @@ impl MechanicsFormulas<'_> {
     /// Whether each step has the same scalars: those of bodies that turn freely, whose momenta move with them.
     pub fn keeps_scalars(&self) -> bool {
         let [substep] = self.substeps.as_slice() else { return false };
-        let is_scalar = |equation: &MomentumEquation<'_>| matches!(equation.solution, Solution::Rotation { .. });
+        let is_scalar = |equation: &MomentumEquation<'_>| matches!(equation.solution, Solution::Rotation(_));
         let is_solved = |equation: &MomentumEquation<'_>| {
             is_scalar(equation) || equation.solution == Solution::Explicit && equation.formula.is_none()
         };
@@ -201,7 +201,7 @@ impl MechanicsFormulas<'_> {
 
     /// Whether the motion of a factor is found by one scalar in all substeps, and steps alone take its coordinates.
     fn has_scalar_equation(&self, k: usize) -> bool {
-        let is_scalar = |equation: &MomentumEquation<'_>| matches!(equation.solution, Solution::Rotation { .. });
+        let is_scalar = |equation: &MomentumEquation<'_>| matches!(equation.solution, Solution::Rotation(_));
         let finds_coordinates = self.collocation.is_none() && self.constraint.is_none() && self.field.is_none();
         finds_coordinates
             && self.substeps.iter().all(|substep| {

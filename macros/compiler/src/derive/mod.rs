@@ -70,7 +70,7 @@ use discrete_lagrangian::Cost;
 pub use discrete_lagrangian::DiscreteLagrangian;
 pub use energy::Energy;
 use equation::Sources;
-pub use equation::{MomentumEquation, Solution, Structure};
+pub use equation::{MomentumEquation, RotatingBody, Solution, Structure};
 pub use field::{EdgeFormulas, FieldFormulas, expanded};
 pub use force::EdgeForce;
 pub use formula::{Formula, FormulaTable};

@@ -11,8 +11,7 @@ impl<'g> MechanicsFormulas<'g> {
     /// Whether an equation is started from, or solved by, a solution that is right to first order in h. This is so if Σ
     /// does not change, and nothing better is known.
     pub(super) fn is_predicted(&self, equation: &MomentumEquation<'g>) -> bool {
-        let is_known =
-            matches!(equation.solution, Solution::Linear | Solution::FreeRotation | Solution::Rotation { .. });
+        let is_known = matches!(equation.solution, Solution::Linear | Solution::FreeRotation | Solution::Rotation(_));
         equation.formula.is_none() && !is_known && !self.inertia_moves()
     }
 

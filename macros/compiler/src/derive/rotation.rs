@@ -1,11 +1,14 @@
 //! The momentum equation of a rotating body of any inertia, which has one scalar unknown.
 //!
-//! With A = Σ/(s·h) it is A x = μ + (μ·x) x ± μ × x for the Gibbs vector x, + for an action from the right. It is linear
+//! In space, with A = Σ/(s·h) it is A x = μ + (μ·x) x ± μ × x for the Gibbs vector x, + for an action from the right. It is linear
 //! in x once κ = μ·x is known, and κ is the least root of a polynomial of degree four.
+//!
+//! In four dimensions it is A X = M + (M X − X M) − X M X. That is M = F J − J Fᵀ with J = D/h, and the trace of F J is unknown.
 
 use clebsch_symbolic::{Chart, Expr, Graph, Group, Property, Role, Shape, identity};
 
-use super::equation::{MomentumEquation, Solution, Sources, is_diagonal};
+use super::equation::{MomentumEquation, RotatingBody, Solution, Sources, is_diagonal};
+use super::velocity;
 use crate::model::Side;
 
 /// The same equation, if it is that of a rotating body.
@@ -19,15 +22,29 @@ pub(super) fn rotating<'g>(
 ) -> Option<MomentumEquation<'g>> {
     let (model, block) = (sources.model, sources.symbols.blocks[i]);
     let factor = &model.factors[block.factor];
-    let is_rotation = match (factor.group, sources.symbols.charts[block.factor]) {
-        (Group::SpecialOrthogonal(3) | Group::UnitQuaternions, Chart::Cayley) => true,
-        (Group::SpecialEuclidean(3), Chart::Product) => block.offset == model.offset(block.factor),
-        _ => false,
-    };
-    if !is_rotation || equation.moves || sources.is_moving(sources.inertia) {
+    if equation.moves || sources.is_moving(sources.inertia) {
         return None;
     }
-    let inertia = sources.inertia.block(block.offset, block.offset, Shape::square(3));
+    let dimension = match (factor.group, sources.symbols.charts[block.factor]) {
+        (Group::SpecialOrthogonal(3) | Group::UnitQuaternions, Chart::Cayley) => 3,
+        (Group::SpecialEuclidean(3), Chart::Product) if block.offset == model.offset(block.factor) => 3,
+        (Group::SpecialOrthogonal(4), Chart::Cayley) => 6,
+        _ => return None,
+    };
+    let inertia = sources.inertia.block(block.offset, block.offset, Shape::square(dimension));
+    let body = match dimension {
+        6 => is_in_four_space(sources, equation, i, inertia).then_some(RotatingBody::FourSpace)?,
+        _ if !is_in_space(sources, equation, i, inertia) => return None,
+        _ if is_diagonal(inertia) => RotatingBody::Principal,
+        _ => RotatingBody::Symmetric,
+    };
+    Some(MomentumEquation { solution: Solution::Rotation(body), ..equation.clone() })
+}
+
+/// Whether this is the equation of a body in space.
+fn is_in_space<'g>(sources: &Sources<'_, 'g>, equation: &MomentumEquation<'g>, i: usize, inertia: Expr<'g>) -> bool {
+    let (model, block) = (sources.model, sources.symbols.blocks[i]);
+    let factor = &model.factors[block.factor];
     let (x, mu) = (block.coordinates, sources.momentum_of_block(i));
     let a = inertia / sources.chart_step(i, sources.divisor);
     let turned = if factor.side == Side::Left { x.cross(mu) } else { mu.cross(x) };
@@ -36,10 +53,49 @@ pub(super) fn rotating<'g>(
     let one = model.graph.integer(1);
     let by_quaternions = a * x + back - (one + x.norm_squared()) * mu;
     let is_that = |form: Expr<'g>| identity::equal(&[equation.residual], &[form]);
-    (is_that(by_matrices) || is_that(by_quaternions)).then(|| MomentumEquation {
-        solution: Solution::Rotation { has_principal_axes: is_diagonal(inertia) },
-        ..equation.clone()
-    })
+    is_that(by_matrices) || is_that(by_quaternions)
+}
+
+/// Whether this is the equation of a body in four dimensions.
+fn is_in_four_space<'g>(
+    sources: &Sources<'_, 'g>,
+    equation: &MomentumEquation<'g>,
+    i: usize,
+    inertia: Expr<'g>,
+) -> bool {
+    let block = sources.symbols.blocks[i];
+    let factor = &sources.model.factors[block.factor];
+    if velocity::mass_matrix(factor.group, inertia).is_none() {
+        return false;
+    }
+    let (x, mu) = (block.coordinates, sources.momentum_of_block(i));
+    let [hat, momentum] = [x, mu].map(|vector| factor.group.wedge(vector));
+    let commutator = momentum * hat - hat * momentum;
+    let turned = if factor.side == Side::Left { -commutator } else { commutator };
+    let form = inertia / sources.chart_step(i, sources.divisor) * x
+        - mu
+        - factor.group.projected_coordinates(turned - hat * momentum * hat);
+    identity::equal(&[equation.residual], &[form])
+}
+
+/// The scalar equation g(e₁) = 0 of a body in four dimensions, and its solution. The letters are e₁, e₄, S₂, S₄, S₆, N and G.
+pub(super) struct FourSpace<'g> {
+    /// g(e₁) = 2e₄e₂ − e₃² − S₆ with e₂ = (S₂ + e₁²)/2 and e₃ = (e₂² + 2e₄ − S₄)/(2e₁).
+    pub(super) polynomial: Expr<'g>,
+    /// x^ = (G + N)⁻¹(G − N).
+    pub(super) solution: Expr<'g>,
+}
+
+impl<'g> FourSpace<'g> {
+    pub(super) fn new(graph: &'g Graph) -> FourSpace<'g> {
+        let scalar = |name: &str| graph.symbol(name, Shape::scalar(), Role::Letter, Property::General);
+        let [e1, e4, s2, s4, s6] = ["e₁", "e₄", "S₂", "S₄", "S₆"].map(scalar);
+        let e2 = (s2 + e1 * e1) / 2;
+        let e3 = (e2 * e2 + 2 * e4 - s4) / (2 * e1);
+        let [n, g] = ["N", "G"].map(|name| graph.symbol(name, Shape::square(4), Role::Letter, Property::General));
+        let coordinates = Group::SpecialOrthogonal(4).projected_coordinates((g + n).inverse() * (g - n));
+        FourSpace { polynomial: 2 * e4 * e2 - e3 * e3 - s6, solution: coordinates }
+    }
 }
 
 /// The scalar equation f(κ) = 0, and r and p of its solution x = r/p.

@@ -7,7 +7,7 @@ use quote::{format_ident, quote};
 use super::block::matrix;
 use super::scope::{Scope, index, size};
 use super::{Emitter, SystemEmitter};
-use crate::derive::{Id, Solution};
+use crate::derive::{Id, RotatingBody, Solution};
 use crate::lower::{Kernel, Solve};
 use crate::model::{Access, Promise, Side};
 
@@ -51,12 +51,12 @@ impl Emitter<'_, '_> {
         let bodies = self.solves().filter_map(|solve| {
             let (name, inertia, part) =
                 (self.constant_of(solve), self.block_of_inertia(solve), self.part_of_step(solve));
-            let tensor = tensor(solve.solution)?;
-            Some([
-                quote!(#name),
-                quote!(runtime::RotatingBody<T, #tensor>),
-                quote!(: runtime::RotatingBody::new(&#inertia, #part)?),
-            ])
+            let (kind, parameters) = match tensor(solve.solution) {
+                Some(tensor) => (quote!(RotatingBody), quote!(T, #tensor)),
+                None if is_in_four_space(solve.solution) => (quote!(RotatingBody4), quote!(T)),
+                None => return None,
+            };
+            Some([quote!(#name), quote!(runtime::#kind<#parameters>), quote!(: runtime::#kind::new(&#inertia, #part)?)])
         });
         let formulas = &self.formulas;
         let is_scheduled = formulas.splitting.is_some() || formulas.collocation.is_some();
@@ -110,7 +110,7 @@ impl Emitter<'_, '_> {
     pub(super) fn constant_of(&self, solve: &Solve) -> Ident {
         let kind = match solve.solution {
             Solution::FreeRotation => "free_rotation",
-            Solution::Rotation { .. } => "body",
+            Solution::Rotation(_) => "body",
             _ => "orientation",
         };
         format_ident!("{kind}{}_{}", self.program.suffix(solve.substep), solve.number + 1)
@@ -209,11 +209,16 @@ impl Emitter<'_, '_> {
     }
 }
 
-/// The type of the inertia of a rotating body.
+/// Whether an equation is that of a rotating body in four dimensions.
+pub(super) fn is_in_four_space(solution: Solution) -> bool {
+    solution == Solution::Rotation(RotatingBody::FourSpace)
+}
+
+/// The type of the inertia of a rotating body in space.
 pub(super) fn tensor(solution: Solution) -> Option<TokenStream> {
     match solution {
-        Solution::Rotation { has_principal_axes: true } => Some(quote!(runtime::Diagonal<T>)),
-        Solution::Rotation { has_principal_axes: false } => Some(quote!(runtime::Symmetric<T>)),
+        Solution::Rotation(RotatingBody::Principal) => Some(quote!(runtime::Diagonal<T>)),
+        Solution::Rotation(RotatingBody::Symmetric) => Some(quote!(runtime::Symmetric<T>)),
         _ => None,
     }
 }

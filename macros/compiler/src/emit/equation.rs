@@ -5,12 +5,12 @@ use proc_macro2::{Ident, TokenStream};
 use quote::{format_ident, quote};
 
 use super::block::{Target, matrix};
-use super::constants::tensor;
+use super::constants::{is_in_four_space, tensor};
 use super::function::{self, Body, Function, Words};
 use super::functions::{EQUATION, SOLVER};
 use super::scope::{Scope, index, size};
 use super::{Emitter, flag};
-use crate::derive::{Id, Solution, Structure};
+use crate::derive::{Id, RotatingBody, Solution, Structure};
 use crate::lower::{Kernel, Solve};
 
 /// The type of an equation, while it is made.
@@ -68,7 +68,8 @@ impl<'e, 'a, 'g> EquationType<'e, 'a, 'g> {
         let of = match solve.solution {
             Solution::Newton => Some(quote!(runtime::Equation<T, #(#sizes),*>)),
             Solution::Linear => Some(quote!(runtime::LinearEquation<T, #(#sizes),*>)),
-            Solution::Rotation { .. } => Some(quote!(runtime::RotationEquation<T>)),
+            Solution::Rotation(RotatingBody::FourSpace) => Some(quote!(runtime::RotationEquation4<T>)),
+            Solution::Rotation(_) => Some(quote!(runtime::RotationEquation<T>)),
             _ => None,
         };
         let types = if solve.solution == Solution::Newton { Some(self.types()) } else { self.types_of_rotation() };
@@ -101,6 +102,7 @@ impl<'e, 'a, 'g> EquationType<'e, 'a, 'g> {
                 let kernel = self.emitter.program.find(self.solve.id(Id::SineSquared));
                 kernel.map(|kernel| self.scope.body_of_scalar(kernel))
             }
+            "Body" if is_in_four_space(self.solve.solution) => Some(quote!(&runtime::RotatingBody4<T>)),
             "Body" => Some(quote!(&runtime::RotatingBody<T, Self::Tensor>)),
             "Square" => Some(matrix(self.solve.dimension, self.solve.dimension)),
             _ => None,
@@ -121,7 +123,7 @@ impl<'e, 'a, 'g> EquationType<'e, 'a, 'g> {
     fn function(&self, function: &Function, kernel: Option<&'e Kernel>, words: &Words<'_>) -> Option<Body<'e>> {
         let EquationType { emitter, solve, scope, .. } = self;
         let is_newton = solve.solution == Solution::Newton;
-        let is_rotation = tensor(solve.solution).is_some();
+        let is_rotation = matches!(solve.solution, Solution::Rotation(_));
         // in matrix code the terms contain the momenta
         let target = (is_newton && emitter.keeps_matrices).then(|| quote!(let mu = &terms.0;));
         Some(match function.name {
@@ -244,9 +246,10 @@ impl<'e, 'a, 'g> EquationType<'e, 'a, 'g> {
 
     /// The type of the inertia of a rotating body, and whether it turns back.
     fn types_of_rotation(&self) -> Option<TokenStream> {
-        let tensor = tensor(self.solve.solution)?;
+        let Solution::Rotation(_) = self.solve.solution else { return None };
+        let tensor = tensor(self.solve.solution).map(|tensor| quote!(type Tensor = #tensor;));
         let is_left = self.emitter.is_left(self.solve).then(|| flag("IS_LEFT", true));
-        Some(quote!(type Tensor = #tensor; #is_left))
+        Some(quote!(#tensor #is_left))
     }
 
     /// The terms that Newton's method computes once.

@@ -7,7 +7,7 @@ use quote::{format_ident, quote};
 use super::Emitter;
 use super::constants::tensor;
 use super::scope::size;
-use crate::derive::{Id, Solution};
+use crate::derive::{Id, RotatingBody, Solution};
 use crate::lower::{Solve, Step};
 
 impl Emitter<'_, '_> {
@@ -37,10 +37,11 @@ impl Emitter<'_, '_> {
             Solution::ClosedForm if solve.has_multipliers => quote!(#name::constrained_form(&#equation, #target)),
             Solution::ClosedForm => quote!(#name::closed_form(&#equation, #target)),
             Solution::Explicit => quote!(#name::explicit(&#equation, #target #given)),
-            Solution::Rotation { .. } if self.weight_of(solve).is_some() => {
+            Solution::Rotation(RotatingBody::FourSpace) => quote!(runtime::solve_rotation_4d(&#equation, #target)),
+            Solution::Rotation(_) if self.weight_of(solve).is_some() => {
                 quote!(runtime::turn_of_body(&#equation, #target))
             }
-            Solution::Rotation { .. } => quote!(runtime::solve_rotation(&#equation, #target)),
+            Solution::Rotation(_) => quote!(runtime::solve_rotation(&#equation, #target)),
             Solution::Linear => quote!(runtime::solve_linear_equation(&#equation, #target)),
             Solution::Newton if self.program.find(solve.id(Id::Residual)).is_some() => {
                 quote!(runtime::solve_fixed_point(&#equation, #target))

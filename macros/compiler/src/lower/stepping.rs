@@ -112,14 +112,14 @@ impl<'g> Maker<'_, 'g> {
         let equation = &formulas.substeps[index].equations[number];
         let start = match (equation.formula, equation.solution) {
             (Some(formula), _) => Some(vec![formula]),
-            (None, Solution::Linear | Solution::FreeRotation | Solution::Rotation { .. }) => None,
+            (None, Solution::Linear | Solution::FreeRotation | Solution::Rotation(_)) => None,
             (None, _) if keeps_matrices => formulas.whole_predictor(index, number),
             (None, _) => formulas.table().value(Id::Predictor(index, number)).map(<[_]>::to_vec),
         };
         let solved = match equation.solution {
             Solution::ClosedForm => Id::ClosedForm(index, number),
             Solution::Explicit => Id::Explicit(index, number),
-            Solution::Newton | Solution::Linear | Solution::FreeRotation | Solution::Rotation { .. } => {
+            Solution::Newton | Solution::Linear | Solution::FreeRotation | Solution::Rotation(_) => {
                 Id::Predictor(index, number)
             }
         };
@@ -128,7 +128,7 @@ impl<'g> Maker<'_, 'g> {
         let mut kernels: Vec<(Id, Kernel)> = sine_squared.into_iter().into_list();
         let mut residual = None;
         match equation.solution {
-            Solution::Explicit | Solution::ClosedForm | Solution::FreeRotation | Solution::Rotation { .. } => {}
+            Solution::Explicit | Solution::ClosedForm | Solution::FreeRotation | Solution::Rotation(_) => {}
             Solution::Linear => {
                 let system = formulas.linear_system(equation, keeps_matrices);
                 let system = of_matrices(&mut self.scalars, &system, Hoisting::Constants(&mut self.hoisted));

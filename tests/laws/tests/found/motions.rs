@@ -19,7 +19,7 @@ use crate::{H, NEAR, assert_conserved, assert_reversible, assert_says, assert_sa
 #[test]
 fn rigid_body4() {
     let random = &mut Random::new(221);
-    assert_says::<RigidBody4>(&["from the right", "time-symmetric", "Cayley", "no potential"]);
+    assert_says::<RigidBody4>(&["from the right", "time-symmetric", "one scalar unknown", "no potential"]);
     let body = RigidBody4 { j_d: random.inertia() };
     let (r, f) = (random.attitude::<4>(), random.rotation::<4>(0.4));
     let expected: Vector6<f64> = components(&((f * body.j_d - body.j_d * f.transpose()) / H));

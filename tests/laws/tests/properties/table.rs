@@ -38,6 +38,9 @@ pub const PROPERTIES: &[(&str, &[Property])] = &[
         ("principal_axes_are_axes",               &["turn_of_body"]),
         ("free_bodies_keep_their_scalar",         &["scalar_of_motion", "turn_of_motion", "rotation_of_motion"]),
     ]),
+    ("runtime/src/rotation_4d/tests.rs", &[
+        ("rotations_solve_the_momentum_equation", &["RotatingBody4::new", "RotationEquation4::body", "solve_rotation_4d"]),
+    ]),
     ("tests/laws/tests/properties/constraints.rs", &[
         ("momenta_come_to_constraints",      &["constrained", "violation", "Violation::none"]),
         ("velocities_obey_constraints",      &["Stepper::state_moving", "Stepper::project_at", "Constrained::momentum_of_velocity", "Clebsch::constrained", "Clebsch::constraint_defect", "Method::constrained", "Method::constraint_defect"]),

@@ -341,7 +341,7 @@ impl Interpreted<'_, '_, '_> {
 impl Interpreted<'_, '_, '_> {
     /// Whether the program has no linearisation, as the runtime finds one scalar. Here it is Newton's method for x.
     fn is_rotation(&self) -> bool {
-        matches!(self.solve.solution, Solution::Rotation { .. })
+        matches!(self.solve.solution, Solution::Rotation(_))
     }
 
     /// ρ and Dρ by their formulas, for the momentum in the terms.

@@ -3,7 +3,7 @@
 use clebsch_symbolic::{Chart, Elements};
 
 use super::Iteration;
-use crate::derive::{MechanicsFormulas, MomentumEquation, Solution, Structure};
+use crate::derive::{MechanicsFormulas, MomentumEquation, RotatingBody, Solution, Structure};
 
 /// The factors of an equation, with the components that are meant where it holds not all of them.
 pub(super) fn part<'g>(formulas: &MechanicsFormulas<'g>, equation: &MomentumEquation<'g>) -> String {
@@ -55,7 +55,10 @@ pub(super) fn how(formulas: &MechanicsFormulas<'_>, equation: &MomentumEquation<
                 "is solved in closed form: the kinetic energy is bi-invariant, so the step turns one plane by θ, sin θ = h|μ|/Σ < 1{coordinates}"
             )
         }
-        Solution::Rotation { .. } => {
+        Solution::Rotation(RotatingBody::FourSpace) => {
+            "has one scalar unknown: B = F J, J = D/h with ΣΩ = DΩ + ΩD, obeys B² = M B + J², so e₁ = tr B gives the characteristic polynomial of B, and that gives F by one linear system of four equations; e₁ is found by Newton's method, and Hurwitz's criterion tells that it is the right root".to_string()
+        }
+        Solution::Rotation(_) => {
             "has one scalar unknown: A x = μ + (μ·x) x ± μ × x with A = 2Σ/h, x the Gibbs vector of the step, is linear in x once κ = μ·x is known; κ is the least root of a polynomial of degree four, by a series for short steps and by Newton's method".to_string()
         }
         Solution::Linear => format!("is linear in {chart}: solved by one elimination, no iteration"),

@@ -3,7 +3,7 @@
 use clebsch_symbolic::{Elements, Expr, IntoList, Property, Role, both};
 
 use super::Names;
-use crate::derive::{Formula, Id, MechanicsFormulas, Solution, rotation};
+use crate::derive::{Formula, Id, MechanicsFormulas, RotatingBody, Solution, rotation};
 
 impl<'g> MechanicsFormulas<'g> {
     /// Kicks are functions of the time at which the step starts, as their methods are.
@@ -129,8 +129,12 @@ impl<'g> MechanicsFormulas<'g> {
             Formula::new(Id::JacobianFactor(index, number), symbol, [factor])
         }));
         let coordinates = self.coordinates_of(&equation.components);
-        if let Solution::Rotation { .. } = equation.solution {
-            rows.extend(self.rows_of_rotation(index, number, (mu, &coordinates)));
+        match equation.solution {
+            Solution::Rotation(RotatingBody::FourSpace) => {
+                rows.extend(self.rows_of_rotation_4d(index, number, (mu, &coordinates)));
+            }
+            Solution::Rotation(_) => rows.extend(self.rows_of_rotation(index, number, (mu, &coordinates))),
+            _ => {}
         }
         rows.extend(equation.formula.map(|solution| {
             let row = Formula::new(Id::Solution(index, number), &coordinates, [solution]);
@@ -158,6 +162,20 @@ impl<'g> MechanicsFormulas<'g> {
             rows.push(row.computed_as(self.predictor(substep, equation)));
         }
         rows
+    }
+
+    /// The scalar equation of a rotating body in four dimensions, and its solution.
+    fn rows_of_rotation_4d(&self, index: usize, number: usize, (mu, x): (&str, &str)) -> [Formula<'g>; 2] {
+        let parts = rotation::FourSpace::new(self.model.graph);
+        let scalar = Formula::new(Id::ScalarEquation(index, number), "0 = g(e₁)", [parts.polynomial]).in_words(
+            format!("2·e₄·e₂ − e₃² − S₆, e₂ = (S₂ + e₁²)/2, e₃ = (e₂² + 2·e₄ − S₄)/(2·e₁), det(λ² − λ·m − K) = λ⁸ + S₂·λ⁶ + S₄·λ⁴ + S₆·λ² + e₄², m = {mu}^, K = J²"),
+            format!("2 e_4 e_2 - e_3^2 - S_6,\\quad e_2 = (S_2 + e_1^2)/2,\\quad e_3 = (e_2^2 + 2 e_4 - S_4)/(2 e_1),\\quad \\det(\\lambda^2 - \\lambda m - K) = \\lambda^8 + S_2 \\lambda^6 + S_4 \\lambda^4 + S_6 \\lambda^2 + e_4^2,\\quad m = {mu}^\\wedge,\\quad K = J^2"),
+        );
+        let solution = Formula::new(Id::Solution(index, number), x, [parts.solution]).in_words(
+            "⟨(G + N)⁻¹·(G − N), E⟩/2, N = m³ + K·m + m·K + e₂·m − e₁·(m² + K) − e₃, G = −(m² + K − e₁·m + e₂ + e₄·K⁻¹)·J".to_string(),
+            "\\langle (G + N)^{-1} (G - N), E \\rangle/2,\\quad N = m^3 + K m + m K + e_2 m - e_1 (m^2 + K) - e_3,\\quad G = -(m^2 + K - e_1 m + e_2 + e_4 K^{-1}) J".to_string(),
+        );
+        [scalar, solution]
     }
 
     /// The scalar equation of a rotating body, with A = Σ/(s·h), and its solution.
