@@ -85,7 +85,9 @@ impl Found {
 
     fn value(&mut self, key: &Ident, value: &[TokenTree]) {
         let words: Vec<Ident> = match value {
-            [word @ TokenTree::Ident(_)] => ident(word).into_iter().collect(),
+            [word @ TokenTree::Ident(_)] | [word @ TokenTree::Ident(_), TokenTree::Group(_)] => {
+                ident(word).into_iter().collect()
+            }
             [TokenTree::Group(list)] => list.stream().into_iter().filter_map(|word| ident(&word)).collect(),
             _ => Vec::new(),
         };

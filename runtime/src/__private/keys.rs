@@ -52,10 +52,16 @@ pub mod space {}
 /// Example: `controls = |u: Vector2| vector![u.x, u.y, 0]`
 pub mod controls {}
 
-/// The next configuration, by any map of a vector space. It replaces `action`. Its two typed arguments are the configuration and the input.
+/// The next configuration, by any map of a vector space. It replaces `action`. Its two typed arguments are the configuration and the input. A right-hand side of x′ = f(t, x, u) stands in the parentheses of a method: `rk4(|x: Vector2, u: Vector1| vector![x.y, u.x])`.
 ///
 /// Example: `dynamics = |h, x: Vector2, u: Vector1| x + h * vector![x.y, u.x]`
-pub mod dynamics {}
+pub mod dynamics {
+    /// The classical Runge–Kutta method, of order 4.
+    pub mod rk4 {}
+
+    /// The explicit midpoint rule, of order 2: x⁺ = x + h·f(t + h/2, x + h·f(t, x, u)/2, u).
+    pub mod midpoint {}
+}
 
 /// The price of the input of one step. Plans make the sum of these prices least.
 ///

@@ -223,14 +223,22 @@ fn a_group_from_the_right() {
     }
 }
 
+/// Places that are vectors.
+pub(super) fn check_vectors<S, const D: usize>(system: &S, x: &SVector<f64, D>, random: &mut Random)
+where
+    S: Controlled<D, 1, 0, Scalar = f64, Place = SVector<f64, D>>,
+{
+    let chart = Chart { moved: |x: &SVector<f64, D>, delta| x + delta, coordinates: |x, y| y - x };
+    check(system, &chart, x, random);
+}
+
 #[test]
 fn a_map_of_a_vector_space() {
     let random = &mut Random::new(502);
-    let chart = Chart { moved: |x: &Vector2<f64>, delta| x + delta, coordinates: |x, y| y - x };
     for _ in 0..5 {
         let system = Regulator { mass: 1.3, stiffness: 2.0, price: 0.4 };
         let x = random.vector::<2>();
-        check::<_, 2, 1, 0>(&system, &chart, &x, random);
+        check_vectors(&system, &x, random);
     }
     let system = Regulator { mass: 2.0, stiffness: 3.0, price: 0.4 };
     let x = system.follow(&0.5, 0.0, &Vector2::new(1.0, 4.0), &Vector1::new(5.0)).expect("a step");

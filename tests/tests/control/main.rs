@@ -5,3 +5,4 @@ mod closed_forms;
 mod derivatives;
 mod extremes;
 mod plans;
+mod right_hand_sides;

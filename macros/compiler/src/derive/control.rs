@@ -69,7 +69,7 @@ impl<'g> SystemFormulas<'g> {
 fn element<'g>(model: &Steered<'g>) -> Vec<Expr<'g>> {
     let (velocity, discretization) = match &model.motion {
         Motion::Controls { velocity, discretization } => (velocity, *discretization),
-        Motion::Dynamics(next) => {
+        Motion::Dynamics { next, .. } => {
             let leaves = model.configurations.iter().zip(next);
             return leaves.map(|(leaf, next)| *next - leaf.symbol).into_list();
         }

@@ -8,7 +8,7 @@ use clebsch_symbolic::{Elements, Group, IntoList, joined};
 
 use super::symbols::subscript;
 use super::{MechanicsFormulas, SteeredFormulas, Structure};
-use crate::model::{Discretization, Factor, Motion, System};
+use crate::model::{Discretization, Factor, Motion, RungeKutta, System};
 
 /// The results of lowering that the derivation reports.
 pub struct Lowered {
@@ -155,7 +155,13 @@ pub fn derivation_of_control(formulas: &SteeredFormulas<'_>, costs: &str) -> Str
         Motion::Controls { .. } => {
             "A step moves the configuration by F = (I − h/2 ξ(u))⁻¹(I + h/2 ξ(u)), of second order in h."
         }
-        Motion::Dynamics(_) => "A step moves the configuration to f(t, h, q, u), by the translation F = f − q.",
+        Motion::Dynamics { from: Some((_, RungeKutta::Classical)), .. } => {
+            "A step integrates q′ = f(t, q, u) by the classical Runge–Kutta method, of fourth order in h where the input stays as it is."
+        }
+        Motion::Dynamics { from: Some((_, RungeKutta::Midpoint)), .. } => {
+            "A step integrates q′ = f(t, q, u) by the explicit midpoint rule, of second order in h."
+        }
+        Motion::Dynamics { .. } => "A step moves the configuration to f(t, h, q, u), by the translation F = f − q.",
     };
     let bounds = bounds(model).map_or(String::new(), |bounds| format!(" and keep {bounds}"));
     format!(

@@ -115,7 +115,8 @@ impl<'g> SteeredFormulas<'g> {
         rows.push(Formula::new(Id::Advance, format!("{q}⁺"), self.at_increments(&self.model.action)));
         rows.push(match &self.model.motion {
             Motion::Controls { velocity, .. } => Formula::new(Id::Controls, format!("{xi}({u})"), velocity.clone()),
-            Motion::Dynamics(next) => Formula::new(Id::Controls, format!("{q}⁺"), next.clone()),
+            Motion::Dynamics { from: Some((rate, _)), .. } => Formula::new(Id::Controls, format!("{q}′"), [*rate]),
+            Motion::Dynamics { next, .. } => Formula::new(Id::Controls, format!("{q}⁺"), next.clone()),
         });
         rows.extend(self.rows_of_choice(&names));
         rows

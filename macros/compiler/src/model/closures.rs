@@ -46,7 +46,7 @@ impl<'g> Closures<'_, '_, 'g> {
             parse::Kinetic::Cost(closure) => self.cost(closure).map(Kinetic::Cost),
             parse::Kinetic::Lagrangian(closure) => self.lagrangian(closure),
             // closures of inputs that move the configuration are read with them
-            parse::Kinetic::Controls(_) | parse::Kinetic::Dynamics(_) => None,
+            parse::Kinetic::Controls(_) | parse::Kinetic::Dynamics(..) => None,
         }
     }
 

@@ -7,13 +7,15 @@ use super::closures::{chosen_discretization, optional, scalar, written};
 use super::elaborate::Elaborator;
 use super::features::{self, Feature, Found};
 use super::groups::without_cayley_map;
-use super::slots::{BOUNDS, CONTROLS, DYNAMICS, POTENTIAL, PRICE, Slot};
+use super::slots::{BOUNDS, CONTROLS, DYNAMICS, POTENTIAL, PRICE, RIGHT_HAND_SIDE, Slot};
 use super::space::{Space, new_value_of};
 use super::typed::ActedSystem;
 use super::value::Value;
 use super::{Bound, Discretization, InputChoice, Motion};
 use crate::diagnostic::{Diagnostic, Diagnostics, error, refuse};
-use crate::parse::{self, Argument, Closure, Declaration, Located, joined, parenthesized, shortened, spell, tail};
+use crate::parse::{
+    self, Argument, Closure, Declaration, Located, RungeKutta, joined, parenthesized, shortened, spell, tail,
+};
 
 impl<'g> ActedSystem<'_, '_, 'g> {
     /// The motion that inputs give, with the input; `None` with an error, which was reported.
@@ -26,14 +28,36 @@ impl<'g> ActedSystem<'_, '_, 'g> {
                 self.check_discretization(declaration.dials.discretization.as_ref())?;
                 Some((Motion::Controls { velocity, discretization }, input))
             }
-            parse::Kinetic::Dynamics(closure) => {
-                let (input, value) = self.with_input(closure, DYNAMICS)?;
-                let is = new_value_of(self.arguments.names.configuration);
+            parse::Kinetic::Dynamics(closure, method) => {
+                let slots = if method.is_some() { RIGHT_HAND_SIDE } else { DYNAMICS };
+                let (input, value) = self.with_input(closure, slots)?;
+                let names = &self.arguments.names;
+                let is = match method {
+                    Some(_) => format!("the rate of `{}`, which has its shape", names.configuration.spell()),
+                    None => new_value_of(names.configuration),
+                };
                 let place = (&closure.key, &closure.body);
                 let next = self.space.leaves_of(place, &value, &is, self.context.diagnostics)?;
-                Some((Motion::Dynamics(next), input))
+                // by construction: dynamics move one vector
+                let from = method.and_then(|method| Some((*next.first()?, method)));
+                let next = from.map_or(next, |(rate, method)| vec![self.integrated(rate, method)]);
+                Some((Motion::Dynamics { next, from }, input))
             }
             parse::Kinetic::Cost(_) | parse::Kinetic::Lagrangian(_) => None,
+        }
+    }
+
+    /// x after a step by an explicit Runge–Kutta method, x′ = `rate`.
+    fn integrated(&self, rate: Expr<'g>, method: RungeKutta) -> Expr<'g> {
+        let (x, t, h) = (self.space.leaves[0].symbol, self.arguments.time, self.arguments.step_size);
+        let later = |part: Expr<'g>, slope: Expr<'g>| rate.substitute(&[(x, x + part * slope), (t, t + part)]);
+        match method {
+            RungeKutta::Midpoint => x + h * later(h / 2, rate),
+            RungeKutta::Classical => {
+                let second = later(h / 2, rate);
+                let third = later(h / 2, second);
+                x + h / 6 * (rate + 2 * second + 2 * third + later(h, third))
+            }
         }
     }
 

@@ -36,7 +36,7 @@ impl<'g> ActedSystem<'_, '_, 'g> {
         let diagnostics = self.context.diagnostics;
         let q = self.arguments.names.configuration;
         let example = format!("|dx, {}, next|", q.spell());
-        for Argument { pattern, ty } in &closure.arguments {
+        for Argument { pattern, ty, .. } in &closure.arguments {
             if let Some(ty) = ty {
                 refuse!(diagnostics, ty, "`{}` has a type again", pattern.spell();
                     help "write `{}` without `: {}`", pattern.spell(), spell_type(ty);

@@ -94,7 +94,8 @@ impl fmt::Display for Steered<'_> {
             Motion::Controls { velocity, discretization } => {
                 velocity.iter().try_for_each(|part| writeln!(f, "  controls   {part}, by {discretization}"))?;
             }
-            Motion::Dynamics(next) => next.iter().try_for_each(|part| writeln!(f, "  dynamics   {part}"))?,
+            Motion::Dynamics { from: Some((rate, method)), .. } => writeln!(f, "  dynamics   {method} of {rate}")?,
+            Motion::Dynamics { next, .. } => next.iter().try_for_each(|part| writeln!(f, "  dynamics   {part}"))?,
         }
         self.system.print_inputs(f)?;
         self.system.print_dials(f)

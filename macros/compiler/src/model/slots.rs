@@ -31,6 +31,7 @@ pub(super) const FORCE: &[Slot] = &[Slot::Time, Slot::Configuration, Slot::Veloc
 pub(super) const CONSTRAINT: &[Slot] = &[Slot::Time, Slot::Configuration, Slot::Velocity];
 pub(super) const CONTROLS: &[Slot] = &[Slot::Time, Slot::Configuration, Slot::Input];
 pub(super) const DYNAMICS: &[Slot] = &[Slot::Time, Slot::Step, Slot::Configuration, Slot::Input];
+pub(super) const RIGHT_HAND_SIDE: &[Slot] = &[Slot::Time, Slot::Configuration, Slot::Input];
 pub(super) const PRICE: &[Slot] = &[Slot::Time, Slot::Step, Slot::Configuration, Slot::Chosen];
 pub(super) const BOUNDS: &[Slot] = &[Slot::Time, Slot::Configuration, Slot::Chosen];
 pub(super) const SYMMETRY: &[Slot] = &[Slot::Offered, Slot::Configuration, Slot::Element];
@@ -72,6 +73,7 @@ pub(crate) fn arguments_of(key: &str) -> Option<String> {
     };
     let also = match key {
         "cost" => "; with `controls` and `dynamics` the input in place of the group element",
+        "dynamics" => "; a right-hand side takes no step",
         "constraint" => "; without a velocity it is on the configuration",
         _ => "",
     };
@@ -335,10 +337,7 @@ impl<'d> Matched<'d> {
         let wanted = self.slots.iter().copied().filter(|slot| self.has(*slot) || Some(*slot) == meant);
         let given = |slot: Slot| -> Vec<String> {
             let arguments = self.arguments().filter(|(_, taken)| *taken == Some(slot));
-            let is_typed = matches!(slot, Slot::Offered | Slot::Input);
-            let spelled =
-                |(argument, _): (&Argument, _)| if is_typed { argument.spell() } else { argument.pattern.spell() };
-            arguments.map(spelled).into_list()
+            arguments.map(|(argument, _)| argument.spell()).into_list()
         };
         let names = |slot: Slot| if self.has(slot) { given(slot) } else { vec![self.names.names(slot).0] };
         format!("|{}|", joined(wanted.flat_map(names)))

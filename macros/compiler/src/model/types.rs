@@ -9,7 +9,7 @@ use proc_macro2::Span;
 use super::power::{Joints, Length, SiteIndex, Term};
 use super::{Access, Layout};
 use crate::parse::{
-    Dials, Discretization, Emit, Isotropy, Located, Opaque, Order, Pattern, Promise, Signature, Summation,
+    Dials, Discretization, Emit, Isotropy, Located, Opaque, Order, Pattern, Promise, RungeKutta, Signature, Summation,
 };
 
 /// The mathematics of a declaration, checked: names, shapes, groups, the laws of the action.
@@ -305,7 +305,12 @@ pub enum Motion<'g> {
         discretization: Discretization,
     },
     /// q⁺ = f(t, h, q, u), for each leaf of the configuration: translations by f − q.
-    Dynamics(Vec<Expr<'g>>),
+    Dynamics {
+        /// f, for each leaf.
+        next: Vec<Expr<'g>>,
+        /// The right-hand side of x′ that it comes from, and how it is integrated.
+        from: Option<(Expr<'g>, RungeKutta)>,
+    },
 }
 
 /// The kinetic part of the discrete Lagrangian.

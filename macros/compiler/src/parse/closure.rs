@@ -30,6 +30,8 @@ pub struct Argument {
     pub pattern: Pattern,
     /// Its type, where it introduces a space.
     pub ty: Option<Type>,
+    /// Its type as it was written, where another closure introduces the space.
+    pub written: Option<Type>,
 }
 
 /// Names, and tuples of them.
@@ -93,7 +95,11 @@ impl Closure {
                 Pat::Type(typed) => (&*typed.pat, Some(*typed.ty.clone())),
                 other => (other, None),
             };
-            arguments.extend(Pattern::read(pattern, diagnostics).map(|pattern| Argument { pattern, ty }));
+            arguments.extend(Pattern::read(pattern, diagnostics).map(|pattern| Argument {
+                pattern,
+                ty,
+                written: None,
+            }));
         }
         let is_readable = arguments.len() == closure.inputs.len();
         is_readable.then(|| Closure { key: key.clone(), arguments, head, body: *closure.body })
@@ -106,7 +112,8 @@ impl Closure {
 
 impl Argument {
     pub(crate) fn spell(&self) -> String {
-        let ty = self.ty.as_ref().map(|ty| format!(": {}", spell_type(ty))).unwrap_or_default();
+        let ty =
+            self.ty.as_ref().or(self.written.as_ref()).map(|ty| format!(": {}", spell_type(ty))).unwrap_or_default();
         self.pattern.spell() + &ty
     }
 }

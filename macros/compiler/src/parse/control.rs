@@ -66,13 +66,17 @@ fn moved(keys: &mut Keys, mut dynamics: Closure) -> Option<Kinetic> {
         // it has been refused with them
         return None;
     }
-    let example = "|h, x: Vector2, u: Vector1| x + h * vector![x.y, u.x]";
+    let example = match keys.integration {
+        Some(method) => format!("{method}(|x: Vector2, u: Vector1| vector![x.y, u.x])"),
+        None => "|h, x: Vector2, u: Vector1| x + h * vector![x.y, u.x]".to_string(),
+    };
     let typed: Vec<usize> = (0..dynamics.arguments.len()).filter(|&i| dynamics.arguments[i].ty.is_some()).into_list();
     let &[state, _] = typed.as_slice() else {
         refuse!(keys.diagnostics, dynamics.head, "the dynamics have to introduce a configuration and an input, each with its type";
             help "write `dynamics = {example}`");
     };
     let ty = dynamics.arguments[state].ty.take()?;
+    dynamics.arguments[state].written = Some(ty.clone());
     let pattern = dynamics.arguments[state].pattern.clone();
     let (Some(mut size), Pattern::Name(name)) = (length(&ty), &pattern) else {
         refuse!(keys.diagnostics, &ty, "dynamics move one vector";
@@ -90,13 +94,13 @@ fn moved(keys: &mut Keys, mut dynamics: Closure) -> Option<Kinetic> {
     let shift = Ident::new(&shift, span);
     let group: Type = parse_quote_spanned!(span=> Translation<#size>);
     let arguments = vec![
-        Argument { pattern: Pattern::Name(shift.clone()), ty: Some(group) },
-        Argument { pattern: pattern.clone(), ty: Some(ty) },
+        Argument { pattern: Pattern::Name(shift.clone()), ty: Some(group), written: None },
+        Argument { pattern: pattern.clone(), ty: Some(ty), written: None },
     ];
     let key = Ident::new("action", dynamics.key.span());
     let action = Closure { key, arguments, head: dynamics.head, body: parse_quote!(#name + #shift) };
     keys.closures.insert("action", action);
-    Some(Kinetic::Dynamics(dynamics))
+    Some(Kinetic::Dynamics(dynamics, keys.integration))
 }
 
 /// n of `VectorN`, `SVector<n>` and `SVector<f64, n>`.

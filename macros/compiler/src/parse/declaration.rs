@@ -7,7 +7,7 @@ use proc_macro2::Ident;
 use syn::ext::IdentExt;
 use syn::{DeriveInput, Expr, Generics, parse_quote_spanned};
 
-use super::dials::Dials;
+use super::dials::{Dials, RungeKutta};
 use super::keys::Keys;
 use super::spelling::{joined, spell, spell_type, tokens};
 use super::{
@@ -76,8 +76,8 @@ impl Potential {
 pub enum Kinetic {
     /// `controls = …`, the velocity that inputs give.
     Controls(Closure),
-    /// `dynamics = …`, the next configuration.
-    Dynamics(Closure),
+    /// `dynamics = …`, the next configuration, or a right-hand side and how it is integrated.
+    Dynamics(Closure, Option<RungeKutta>),
     /// `cost = …`, the kinetic part of the discrete Lagrangian.
     Cost(Closure),
     /// `lagrangian = …`, to be discretised.
@@ -105,7 +105,7 @@ impl Declaration {
 impl Kinetic {
     /// Whether inputs move the configuration.
     pub fn is_steered(&self) -> bool {
-        matches!(self, Kinetic::Controls(_) | Kinetic::Dynamics(_))
+        matches!(self, Kinetic::Controls(_) | Kinetic::Dynamics(..))
     }
 
     pub(crate) fn closure(&self) -> &Closure {
@@ -113,7 +113,7 @@ impl Kinetic {
             Kinetic::Cost(closure)
             | Kinetic::Lagrangian(closure)
             | Kinetic::Controls(closure)
-            | Kinetic::Dynamics(closure) => closure,
+            | Kinetic::Dynamics(closure, _) => closure,
         }
     }
 }
@@ -189,7 +189,7 @@ fn metric(action: &Closure) -> Closure {
         [only] => Pattern::Name(only.clone()),
         _ => Pattern::Tuple(names.iter().cloned().map(Pattern::Name).into_list(), action.head),
     };
-    let arguments = vec![Argument { pattern, ty: None }];
+    let arguments = vec![Argument { pattern, ty: None, written: None }];
     Closure {
         key: Ident::new("lagrangian", span),
         arguments,
@@ -233,7 +233,12 @@ impl fmt::Display for Declaration {
         };
         entry(f, &self.action)?;
         if !self.is_static {
-            entry(f, self.kinetic.closure())?;
+            match &self.kinetic {
+                Kinetic::Dynamics(closure, Some(method)) => {
+                    writeln!(f, "  {:<10} = {method}({})", closure.key.to_string(), closure.spell())?;
+                }
+                kinetic => entry(f, kinetic.closure())?,
+            }
         }
         match &self.potential {
             Some(Potential::Closure(closure)) => entry(f, closure)?,

@@ -116,6 +116,16 @@ words! {
 }
 
 words! {
+    /// How a right-hand side x′ = f(t, x, u) becomes a step, with the same input all along.
+    RungeKutta {
+        /// The classical Runge–Kutta method, of order 4.
+        Classical "rk4",
+        /// The explicit midpoint rule, of order 2: x⁺ = x + h·f(t + h/2, x + h·f(t, x, u)/2, u).
+        Midpoint "midpoint",
+    }
+}
+
+words! {
     /// How a step adds to q and N.
     Summation {
         /// Floating-point addition.

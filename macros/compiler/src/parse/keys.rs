@@ -5,8 +5,8 @@ use std::collections::BTreeMap;
 use proc_macro2::{Ident, Span};
 
 use super::dials::{
-    ChartChoice, CodeForm, Dials, Discretization, Isotropy, Meanings, Order, Promise, Signature, Solver, Summation,
-    emitted_meanings, meanings,
+    ChartChoice, CodeForm, Dials, Discretization, Isotropy, Meanings, Order, Promise, RungeKutta, Signature, Solver,
+    Summation, emitted_meanings, meanings,
 };
 use super::spelling::listed;
 use super::values::Reader;
@@ -55,6 +55,8 @@ pub(super) enum Kind {
     Potential,
     /// A closure, or a list of them.
     Closures,
+    /// A closure, or a method of integration with the closure of a right-hand side: `rk4(closure)`.
+    Motion,
     /// Any other key. It has a function that reads it, and one that prints it and gives its place, if it was given.
     /// Last are the values from which it chooses, with meanings.
     Dial(fn(&mut Dials, Reader) -> Result<(), Diagnostic>, fn(&Dials) -> Option<Located<String>>, fn() -> Meanings),
@@ -90,8 +92,8 @@ pub(super) const KEYS: [Key; 27] = [
         "The energy of an edge from a site to its neighbour, in joules: one closure for each direction of space. The declaration is that of one site. The number of sites and their boundary are said at run time: `field.grid([64, 64])`. The first argument is a new name for the spacing of the direction, the last one for the configuration of the neighbour."),
     key("controls", Kind::Closure, "|u: Vector2| vector![u.x, u.y, 0]", "", PRICE,
         "The velocity that an input gives, in the basis of the group. It moves the configuration directly, without mass or momentum."),
-    key("dynamics", Kind::Closure, "|h, x: Vector2, u: Vector1| x + h * vector![x.y, u.x]", "", PRICE,
-        "The next configuration, by any map of a vector space. It replaces `action`. Its two typed arguments are the configuration and the input."),
+    key("dynamics", Kind::Motion, "|h, x: Vector2, u: Vector1| x + h * vector![x.y, u.x]", "", PRICE,
+        "The next configuration, by any map of a vector space. It replaces `action`. Its two typed arguments are the configuration and the input. A right-hand side of x′ = f(t, x, u) stands in the parentheses of a method: `rk4(|x: Vector2, u: Vector1| vector![x.y, u.x])`."),
     key("effort", Kind::Closure, "|h, torque| h * torque.norm_squared() / 2", "nothing is chosen", "`force` or `force_on` with an input",
         "The price of the input of one step. Plans make the sum of these prices least."),
     key("bounds", Kind::Closure, "|u| [u.x <= 1, -1 <= u.x]", "none", CHOICE,
@@ -150,7 +152,11 @@ fn somewhere(value: String) -> Located<String> {
 impl Key {
     /// The values that it chooses from, each with its meaning; none where it takes others.
     fn values(&self) -> Meanings {
-        if let Dial(_, _, values) = self.kind { values() } else { Vec::new() }
+        match self.kind {
+            Dial(_, _, values) => values(),
+            Kind::Motion => meanings::<RungeKutta>(),
+            _ => Vec::new(),
+        }
     }
 }
 
@@ -176,6 +182,8 @@ pub(super) struct Keys<'d> {
     /// Those that are closures and could be read, by name.
     pub closures: BTreeMap<&'static str, Closure>,
     pub potential: Option<Potential>,
+    /// How the right-hand side of `dynamics` is integrated, where it is one.
+    pub integration: Option<RungeKutta>,
     /// The same of lists of closures.
     pub lists: BTreeMap<&'static str, Vec<Closure>>,
     pub groups: Vec<DeclaredGroup>,
@@ -193,6 +201,7 @@ impl<'d> Keys<'d> {
             diagnostics,
             closures: BTreeMap::new(),
             potential: None,
+            integration: None,
             lists: BTreeMap::new(),
             groups: Vec::new(),
             methods: Vec::new(),

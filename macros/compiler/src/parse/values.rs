@@ -9,7 +9,7 @@ use syn::parse::{Parse, ParseBuffer, ParseStream};
 use syn::punctuated::Punctuated;
 use syn::{Expr, Lit, Path, Token, bracketed, parenthesized};
 
-use super::dials::{EMITTED, Emit, Word};
+use super::dials::{EMITTED, Emit, RungeKutta, Word};
 use super::keys::{Key, Keys, Kind, Located};
 use super::spelling::tokens;
 use super::{Closure, Potential, closure, opaque};
@@ -23,6 +23,11 @@ pub(super) fn read(name: &Ident, key: &Key, stream: ParseStream, keys: &mut Keys
             help "write the {name} as a closure; `potential = opaque(Self::value, Self::gradient)` is for potentials";
             note "a step needs second derivatives of it, and two methods give a value and a gradient"),
         Kind::Closure => keys.closures.extend(reader.closure(stream)?.map(|closure| (key.name, closure))),
+        Kind::Motion => {
+            let (integration, closure) = reader.motion()?;
+            keys.integration = integration;
+            keys.closures.extend(closure.map(|closure| (key.name, closure)));
+        }
         Kind::Potential if opaque::comes_next(stream) => {
             keys.potential = Some(Potential::Opaque(opaque::read(stream)?));
         }
@@ -66,6 +71,21 @@ impl Reader<'_, '_> {
         }
         let closure = closure::parse(stream)?;
         Ok(Closure::read(self.name, closure, self.diagnostics))
+    }
+
+    /// A closure, or `rk4(closure)`.
+    fn motion(&mut self) -> Result<(Option<RungeKutta>, Option<Closure>), Diagnostic> {
+        if is_closure(self.stream) || !self.stream.peek2(syn::token::Paren) {
+            return Ok((None, self.closure(self.stream)?));
+        }
+        let word = self.stream.call(Ident::parse_any)?;
+        let content = parenthesis(self.stream)?;
+        let method = self.choose(&word, RungeKutta::WORDS);
+        let closure = self.closure(&content)?;
+        if !content.is_empty() {
+            bail!(content.span(), "`{word}` takes one closure"; help "write `{} = {word}(|x: Vector2, u: Vector1| …)`", self.name);
+        }
+        Ok((method, closure.filter(|_| method.is_some())))
     }
 
     /// A closure, or `[closure, …]`.
@@ -165,6 +185,12 @@ impl Reader<'_, '_> {
 
 pub(super) fn is_closure(stream: ParseStream) -> bool {
     stream.peek(Token![|]) || stream.peek(Token![||]) || stream.peek(Token![move])
+}
+
+fn parenthesis<'s>(stream: ParseStream<'s>) -> syn::Result<ParseBuffer<'s>> {
+    let content;
+    parenthesized!(content in stream);
+    Ok(content)
 }
 
 fn bracket<'s>(stream: ParseStream<'s>) -> syn::Result<ParseBuffer<'s>> {
