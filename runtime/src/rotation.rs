@@ -14,6 +14,9 @@
 //! e_k are the elementary symmetric functions of A. The solution that is connected to the identity belongs to the least
 //! root. There det Dρ = −f′(κ), so the branch ends where this root is double.
 //!
+//! Source: J. Moser and A. P. Veselov, *Discrete versions of some classical integrable systems and factorization of matrix polynomials*,
+//! Comm. Math. Phys. 139 (1991), for the equation; that it is linear in x for a given κ is our own.
+//!
 //! f is positive at 0 and falls. As long as 3e₁κ ≤ e₂ + 2m it is convex on all of [0, κ], so a root that is found there
 //! is the least one.
 

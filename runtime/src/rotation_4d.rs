@@ -21,12 +21,14 @@
 //!
 //! The solution that is connected to the identity has all eigenvalues of B right of the imaginary axis. By Hurwitz's criterion
 //! this is so where e₁, e₃ and H are positive. That polynomial is unique, so a root with H > 0 is the one.
+//!
+//! Source: J. Moser and A. P. Veselov, *Discrete versions of some classical integrable systems and factorization of matrix polynomials*,
+//! Comm. Math. Phys. 139 (1991), for the factorization; the scalar equation is our own.
 
 use crate::free_rotation::axes::Axes;
-use crate::free_rotation_4d::flow::{
-    Matrix, PLANES, Vector, above, at, dot, dual, entry, pfaffian, place, product, skew,
-};
-use crate::free_rotation_4d::{mass, turn::adjugate};
+use crate::free_rotation_4d::flow::{Matrix, PLANES, Vector, above, at, dot, entry, place, product, skew};
+use crate::free_rotation_4d::mass;
+use crate::free_rotation_4d::turn::{Powers, adjugate, equation};
 use crate::implicit::{Equation, solve, solve_at_last};
 use crate::linear::rows;
 use crate::orientation::Orientation;
@@ -180,27 +182,15 @@ fn at_last<T: Scalar, E: RotationEquation4<T>>(
     Ok(SVector::from_fn(|i, _| T::select(solved, x[i], found[i])))
 }
 
-/// The numbers of one momentum.
-struct Momentum<T> {
-    /// The entries above the diagonal.
-    m: Vector<T>,
-    /// |M|², Pf² − Σ m²(k_p + k_q), Σ m² k_p k_q
-    integrals: [T; 3],
-    pfaffian: T,
-}
-
 impl<T: Scalar> RotatingBody4<T> {
     /// The coordinates of the rotation, and in which lanes it is found.
     #[inline(always)]
     fn turn(&self, mu: &Vector<T>) -> (Vector<T>, T::Mask) {
         let momentum = self.in_principal_axes(mu);
-        let squares = momentum.component_mul(&momentum);
-        let [sums, products, start] =
-            [&self.planes.sums, &self.planes.products, &self.planes.start].map(|of_plane| dot(&squares, of_plane));
-        let pf = pfaffian(&momentum);
-        let [[a, b, c, d, e, f]] = squares.data.0;
-        let integrals = [(a + b) + (c + d) + (e + f), pf * pf - sums, products];
-        let momentum = Momentum { m: momentum, integrals, pfaffian: pf };
+        let powers = Powers::of(&momentum);
+        let [sums, products, start] = [&self.planes.sums, &self.planes.products, &self.planes.start]
+            .map(|of_plane| dot(&powers.squares, of_plane));
+        let integrals = [powers.square, powers.pf * powers.pf - sums, products];
         let (mut delta, mut solved, mut open) = (start, !T::Mask::everywhere(), T::Mask::everywhere());
         for _ in 0..MOST {
             T::iterated();
@@ -212,7 +202,7 @@ impl<T: Scalar> RotatingBody4<T> {
                 break;
             }
         }
-        (self.in_coordinates(&self.rotation(&momentum, delta)), solved)
+        (self.in_coordinates(&self.rotation((&momentum, &powers), &integrals, delta)), solved)
     }
 
     /// δ₂ and δ₃
@@ -242,27 +232,19 @@ impl<T: Scalar> RotatingBody4<T> {
 
     /// X = (G + N)⁻¹ (G − N)
     #[inline(always)]
-    fn rotation(&self, Momentum { m, integrals, pfaffian }: &Momentum<T>, delta: T) -> Vector<T> {
+    fn rotation(&self, (m, powers): (&Vector<T>, &Powers<T>), integrals: &[T; 3], delta: T) -> Vector<T> {
         let ([e1, e2, e3, _], j, k) = (self.invariants, &self.moments, &self.squares);
         let (second, third) = self.others(delta, integrals);
-        let (e1, e2, e3) = (e1 + delta, e2 + second, e3 + third);
-        let (of_square, diagonal) = square(m);
-        let (mut sum, mut difference) = ([[T::zero(); 4]; 4], [[T::zero(); 4]; 4]);
-        let (perpendicular, skew_part) = (dual(m), e2 - integrals[0]);
-        for ((&(row, column), m), (perpendicular, square)) in
-            PLANES.iter().zip(m.iter()).zip(perpendicular.iter().zip(of_square.iter()))
-        {
-            let skew = (skew_part + (at(k, row) + at(k, column))) * *m + *pfaffian * *perpendicular;
-            let (symmetric, along) = (e1 * *square, e1 * *m);
-            let (n, g) = (skew - symmetric, (along - *square) * at(j, column));
-            (*place(&mut sum, row, column), *place(&mut difference, row, column)) = (g + n, g - n);
-            let (n, g) = (-skew - symmetric, -(along + *square) * at(j, row));
-            (*place(&mut sum, column, row), *place(&mut difference, column, row)) = (g + n, g - n);
-        }
+        let e = [e1 + delta, e2 + second, e3 + third];
+        let (n, g) = equation(j, k, &e, m, (&powers.of_square, powers.square, powers.pf));
+        let entries = |combined: fn(T, T) -> T| -> Matrix<T> {
+            core::array::from_fn(|i| core::array::from_fn(|j| combined(entry(&g, i, j), entry(&n, i, j))))
+        };
+        let (mut sum, mut difference) = (entries(|g, n| g + n), entries(|g, n| g - n));
+        // those of G − N on the diagonal without the terms that cancel
         for i in 0..4 {
-            let n = -(e1 * (diagonal[i] + k[i]) + e3);
-            difference[i][i] = diagonal[i] * (e1 - j[i]) + (delta * k[i] - second * j[i] + third);
-            sum[i][i] = n + n + difference[i][i];
+            difference[i][i] = powers.of_square.1[i] * (e[0] - j[i]) + (delta * k[i] - second * j[i] + third);
+            sum[i][i] = n[i][i] + n[i][i] + difference[i][i];
         }
         let adjugate = adjugate(&sum);
         let term = |row: usize, k: usize, column: usize| entry(&adjugate, row, k) * entry(&difference, k, column);
@@ -295,14 +277,6 @@ impl<T: Scalar> RotatingBody4<T> {
             _ => -x,
         }
     }
-}
-
-/// M², above the diagonal and on it.
-#[inline(always)]
-fn square<T: Scalar>(m: &Vector<T>) -> (Vector<T>, [T; 4]) {
-    let ([[a, b, c, d, e, f]], [[aa, bb, cc, dd, ee, ff]]) = (m.data.0, m.component_mul(m).data.0);
-    let above = [-(b * d + c * e), a * d - c * f, a * e + b * f, -(a * b + e * f), d * f - a * c, -(b * c + d * e)];
-    (above.into(), [-(aa + bb + cc), -(aa + dd + ee), -(bb + dd + ff), -(cc + ee + ff)])
 }
 
 /// The same equation for the solver that follows the path from the identity.

@@ -33,18 +33,18 @@ pub(super) fn turn<T: Scalar>(constants: &Constants<T>, m: &Vector<T>) -> Option
 }
 
 /// m², and the other quadratic terms in m.
-struct Powers<T> {
-    squares: Vector<T>,
+pub(crate) struct Powers<T> {
+    pub squares: Vector<T>,
     /// |m|²
-    square: T,
-    pf: T,
+    pub square: T,
+    pub pf: T,
     /// m²: above the diagonal, and on it.
-    of_square: (Vector<T>, [T; 4]),
+    pub of_square: (Vector<T>, [T; 4]),
 }
 
 impl<T: Scalar> Powers<T> {
     #[inline]
-    fn of(m: &Vector<T>) -> Self {
+    pub fn of(m: &Vector<T>) -> Self {
         let squares = m.component_mul(m);
         let ([[a, b, c, d, e, f]], [[aa, bb, cc, dd, ee, ff]]) = (m.data.0, squares.data.0);
         let above = [-(b * d + c * e), a * d - c * f, a * e + b * f, -(a * b + e * f), d * f - a * c, -(b * c + d * e)];
@@ -56,7 +56,7 @@ impl<T: Scalar> Powers<T> {
 
 /// N = m³ + Km + mK + e₂m − e₁(m² + K) − e₃ and G = −(m² + K − e₁m + e₂ + e₄K⁻¹)J̃, with m³ = −|m|²m + Pf(m)⋆m.
 #[inline]
-fn equation<T: Scalar>(
+pub(crate) fn equation<T: Scalar>(
     j: &[T; 4],
     k: &[T; 4],
     e: &[T; 3],

@@ -80,7 +80,10 @@ impl Reader<'_, '_> {
         }
         let word = self.stream.call(Ident::parse_any)?;
         let content = parenthesis(self.stream)?;
-        let method = self.choose(&word, RungeKutta::WORDS);
+        let method = RungeKutta::WORDS.iter().find(|(known, _)| word == known).map(|(_, method)| *method);
+        if method.is_none() {
+            report!(self.diagnostics, &word, "`{word}` is no method of integration"; help "write `rk4` or `midpoint`");
+        }
         let closure = self.closure(&content)?;
         if !content.is_empty() {
             bail!(content.span(), "`{word}` takes one closure"; help "write `{} = {word}(|x: Vector2, u: Vector1| …)`", self.name);
