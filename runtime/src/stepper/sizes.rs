@@ -46,7 +46,8 @@ impl<S: Clebsch, M: Method<S>> Stepper<S, M> {
     /// It is for frames of an engine, for a time between two steps, and for the end of a run. Conserved momenta stay
     /// exact. The energy stays in its band for steps of one size only: over a long run of different sizes it drifts.
     ///
-    /// The constants of such a step are computed each time. That costs about as much as a step where the system is small. A
+    /// A step of the stepper's own size is [`step`](Self::step), to the last bit.
+    /// The constants of another one are computed each time. That costs about as much as a step where the system is small. A
     /// step that is the free motion itself needs none, as of a body with `discretization = exact`. Exact drifts with a potential
     /// take far longer than a step, for their series. There make a stepper [of that size](Self::with_step_size), once.
     ///
@@ -87,6 +88,9 @@ impl<S: Clebsch, M: Method<S>> Stepper<S, M> {
     pub fn step_for_with(&self, state: &State<S, M>, duration: S::Scalar, u: &S::Input) -> Result<State<S, M>, Error> {
         check_input::<S>(u)?;
         check_step_size(duration)?;
+        if duration == self.h {
+            return self.step_with(state, u);
+        }
         if M::IS_FREE_MOTION && size_of::<S::Time>() == 0 && S::Scalar::EPSILON.at_most((duration / self.h).abs()).all()
         {
             return self.moved_freely(state, duration);
