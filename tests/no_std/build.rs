@@ -48,7 +48,8 @@ const DIMENSIONS: [(&str, &str); 8] = [
 ];
 
 /// Studies have their systems in every order and discretization, and the pictures of the book have theirs; they are those of fixtures.
-const STUDIES: [&str; 3] = ["extremes", "figures", "work_precision"];
+/// The bodies of an engine need the standard library.
+const STUDIES: [&str; 4] = ["extremes", "figures", "rapier", "work_precision"];
 
 fn main() {
     let root = Path::new("../../..");
