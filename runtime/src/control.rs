@@ -219,22 +219,28 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: usize
     fn slope(&self) -> Result<(T, T), Error> {
         let Problem { system, constants, h, .. } = self.problem;
         let steps = self.stages.len();
-        let endpoint = system.endpoint_expanded(self.problem.time_after(steps), &self.last);
+        let endpoint = system.endpoint_expanded(constants, self.problem.time_after(steps), &self.last);
         let mut slope = endpoint.by_time * T::from_f64(steps as f64);
         let mut size = slope.abs();
+        // a(t₀ + kh, h, x, u) by h, by central differences. Few bounds depend on the time or on the step, and the zero of
+        // dV/dh needs few digits.
+        let third = T::EPSILON.powf(T::from_ratio(1, 3));
+        let apart = third * h.abs();
+        let pushed = C > 0 && self.stages.iter().any(|stage| stage.multipliers.iter().any(|z| *z > T::zero()));
+        let prepared = if pushed { Some((system.prepare(h + apart)?, system.prepare(h - apart)?)) } else { None };
         for (index, stage) in self.stages.iter().enumerate() {
             let t = self.problem.time_after(index);
             let k = T::from_f64(index as f64);
-            let mut part = system.price_of_time(constants, t, k, &stage.place, &stage.input, &stage.next_costate)?;
-            if C > 0 && index > 0 {
-                // z·∂a/∂t, by central differences: bounds that depend on the time are rare, and the zero of dV/dh needs few digits
-                let step = T::EPSILON.powf(T::from_ratio(1, 3)) * (t.abs() + h);
-                let after = system.bounds(t + step, &stage.place, &stage.input);
-                let before = system.bounds(t - step, &stage.place, &stage.input);
-                let pushing = (0..C).filter(|i| stage.multipliers[*i] > S::Scalar::zero());
-                let change =
-                    pushing.fold(S::Scalar::zero(), |sum, i| sum + stage.multipliers[i] * (after[i] - before[i]));
-                part += k * (change / (step + step));
+            let (x, u, z) = (&stage.place, &stage.input, &stage.multipliers);
+            let mut part = system.price_of_time(constants, t, k, x, u, &stage.next_costate)?;
+            if let Some((longer, shorter)) = &prepared {
+                let later = third * (t.abs() + h);
+                let by_time = (system.bounds(constants, t + later, x, u)?
+                    - system.bounds(constants, t - later, x, u)?)
+                    / (later + later);
+                let by_step = (system.bounds(longer, t, x, u)? - system.bounds(shorter, t, x, u)?) / (apart + apart);
+                let pushing = (0..C).filter(|i| z[*i] > T::zero());
+                part += pushing.fold(T::zero(), |sum, i| sum + z[i] * (k * by_time[i] + by_step[i]));
             }
             slope += part;
             size += part.abs();

@@ -6,12 +6,13 @@ use core::fmt::Debug;
 use nalgebra::{SMatrix, SVector};
 use num_traits::Zero;
 
-/// A system whose inputs are chosen. The step is x⁺ = f(t, h, x, u) at the price ℓ(t, h, x, u). The bounds are a(t, x,
-/// u) ≤ 0, and the end has the price φ(t, x).
+/// A system whose inputs are chosen. The step is x⁺ = f(t, h, x, u) at the price ℓ(t, h, x, u). The bounds are a(t, h,
+/// x, u) ≤ 0, and the end has the price φ(t, x).
 ///
 /// D is the dimension of places x, U that of inputs u, C the number of bounds. `#[derive(Clebsch)]` implements it for a
 /// struct with `controls` or `dynamics`, where x is the configuration. With `effort`, x is a state (q, N) and f the
-/// forced step.
+/// forced step. Price and bounds may then take the velocity ξ(F)/h of the step, and the price of the end that of the
+/// momentum there, Σ⁻¹N.
 ///
 /// # Coordinates
 /// Small changes of a place are written as δ of D components. For a configuration, δ is the motion η of the group that
@@ -31,7 +32,8 @@ use num_traits::Zero;
 /// # struct Cart { strongest: f64, price: f64 }
 /// let cart = Cart { strongest: 8.0, price: 0.0 };
 /// assert_eq!(Cart::BOUNDS, ["u.x <= self.strongest"]);
-/// assert_eq!(cart.bounds(0.0, &Vector2::zeros(), &Vector1::new(9.0)).x, 1.0); // violated by 1
+/// let constants = cart.prepare(0.1)?;
+/// assert_eq!(cart.bounds(&constants, 0.0, &Vector2::zeros(), &Vector1::new(9.0))?.x, 1.0); // violated by 1
 /// let control = cart.control(0.1)?;
 /// assert_eq!(control.follow(&Vector2::new(1.0, 2.0), &Vector1::new(5.0))?, Vector2::new(1.2, 2.5));
 /// # Ok::<(), clebsch::Error>(())
@@ -101,13 +103,16 @@ pub trait Controlled<const D: usize, const U: usize, const C: usize>: Sized {
     ) -> Result<Self::Place, Error>;
 
     /// ℓ(t, h, x, u)
+    ///
+    /// # Errors
+    /// Those of a step, where the price takes its velocity.
     fn price(
         &self,
         constants: &Self::Constants,
         t: Self::Scalar,
         x: &Self::Place,
         u: &SVector<Self::Scalar, U>,
-    ) -> Self::Scalar;
+    ) -> Result<Self::Scalar, Error>;
 
     /// The step with its derivatives, and the second derivatives of ℓ + λ·f, λ the costate at x⁺.
     ///
@@ -136,23 +141,41 @@ pub trait Controlled<const D: usize, const U: usize, const C: usize>: Sized {
         costate: &SVector<Self::Scalar, D>,
     ) -> Result<Self::Scalar, Error>;
 
-    /// a(t, x, u). No entry is positive if the bounds are satisfied.
-    fn bounds(&self, t: Self::Scalar, x: &Self::Place, u: &SVector<Self::Scalar, U>) -> SVector<Self::Scalar, C>;
+    /// a(t, h, x, u). No entry is positive if the bounds are satisfied.
+    ///
+    /// # Errors
+    /// Those of a step, where bounds take its velocity.
+    fn bounds(
+        &self,
+        constants: &Self::Constants,
+        t: Self::Scalar,
+        x: &Self::Place,
+        u: &SVector<Self::Scalar, U>,
+    ) -> Result<SVector<Self::Scalar, C>, Error>;
 
     /// a with its derivatives, and the second derivatives of z·a.
+    ///
+    /// # Errors
+    /// Those of a step, where bounds take its velocity.
     fn bounds_expanded(
         &self,
+        constants: &Self::Constants,
         t: Self::Scalar,
         x: &Self::Place,
         u: &SVector<Self::Scalar, U>,
         multipliers: &SVector<Self::Scalar, C>,
-    ) -> BoundsExpansion<Self::Scalar, D, U, C>;
+    ) -> Result<BoundsExpansion<Self::Scalar, D, U, C>, Error>;
 
     /// φ(t, x), 0 where no `endpoint` is declared.
-    fn endpoint(&self, t: Self::Scalar, x: &Self::Place) -> Self::Scalar;
+    fn endpoint(&self, constants: &Self::Constants, t: Self::Scalar, x: &Self::Place) -> Self::Scalar;
 
     /// φ with its derivatives.
-    fn endpoint_expanded(&self, t: Self::Scalar, x: &Self::Place) -> EndpointExpansion<Self::Scalar, D>;
+    fn endpoint_expanded(
+        &self,
+        constants: &Self::Constants,
+        t: Self::Scalar,
+        x: &Self::Place,
+    ) -> EndpointExpansion<Self::Scalar, D>;
 
     /// The difference between x and a target. With the motions G: η ↦ η_Q(q) it has the residual Gᵀ(q* − q) and the
     /// slope GᵀG; for momenta these are N* − N and I. A small change δ with slope·δ = residual goes there.
@@ -218,8 +241,10 @@ pub struct Expansion<X, T, const D: usize, const U: usize> {
 /// # )]
 /// # struct Cart { strongest: f64, price: f64 }
 /// # let cart = Cart { strongest: 8.0, price: 0.0 };
-/// let bounds = cart.bounds_expanded(0.0, &Vector2::zeros(), &Vector1::new(3.0), &Vector1::new(1.0));
+/// let constants = cart.prepare(0.1)?;
+/// let bounds = cart.bounds_expanded(&constants, 0.0, &Vector2::zeros(), &Vector1::new(3.0), &Vector1::new(1.0))?;
 /// assert_eq!((bounds.values.x, bounds.by_input.x), (-5.0, 1.0));
+/// # Ok::<(), clebsch::Error>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BoundsExpansion<T, const D: usize, const U: usize, const C: usize> {
@@ -251,8 +276,9 @@ pub struct BoundsExpansion<T, const D: usize, const U: usize, const C: usize> {
 /// # )]
 /// # struct Cart { strongest: f64, price: f64 }
 /// let cart = Cart { strongest: 8.0, price: 10.0 };
-/// let end = cart.endpoint_expanded(0.0, &Vector2::new(1.0, 2.0));
+/// let end = cart.endpoint_expanded(&cart.prepare(0.1)?, 0.0, &Vector2::new(1.0, 2.0));
 /// assert_eq!((end.price, end.slope), (25.0, Vector2::new(10.0, 20.0)));
+/// # Ok::<(), clebsch::Error>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct EndpointExpansion<T, const D: usize> {

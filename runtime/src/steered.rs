@@ -61,7 +61,7 @@ pub fn arrival_of_state<T: Scalar, const M: usize, const D: usize>(
     Arrival { residual: pair(approach, missing), slope }
 }
 
-/// The price of the end as a function of a place; q is the first part of the place.
+/// The price of the end as a function of a place, along its first M components.
 pub fn endpoint<T: Scalar, const M: usize, const D: usize>(
     price: T,
     by_time: T,
@@ -93,6 +93,21 @@ pub fn bounds<T: Scalar, const M: usize, const D: usize, const U: usize, const C
         mixed_curvature: embedded(mixed, 0, 0),
         input_curvature,
     }
+}
+
+/// The part of a slope along the W directions of an edge that is along the motions ζ of its end alone.
+#[inline]
+pub fn along_end<T: Scalar, const W: usize, const M: usize>(slope: &SVector<T, W>) -> SVector<T, M> {
+    slope.block(M, 0)
+}
+
+/// The same of z·a, for the slopes of bounds a.
+#[inline]
+pub fn pushed_along_end<T: Scalar, const C: usize, const W: usize, const M: usize>(
+    slopes: &SMatrix<T, C, W>,
+    z: &SVector<T, C>,
+) -> SVector<T, M> {
+    along_end(&times(&slopes.transpose(), z))
 }
 
 /// ℓ of a step with its derivatives along motions of q and along inputs.
@@ -130,18 +145,30 @@ pub struct Link<T, const M: usize, const U: usize> {
 
 impl<T: Scalar, const M: usize, const U: usize> Link<T, M, U> {
     /// The step over an edge, with ∂F⁻ℓd/∂u and ∂F⁺ℓd/∂u; `None` where ∂F⁻ℓd/∂η′ is singular.
+    #[inline]
     pub fn new<const D: usize>(
         edge: &Carried<T, M>,
         before: &SMatrix<T, M, U>,
         after: &SMatrix<T, M, U>,
         costate: &SVector<T, D>,
     ) -> Option<Self> {
+        Self::priced(edge, before, after, costate, &SVector::zeros())
+    }
+
+    /// The same where κ makes ℓ + α·η′ + β·F⁺ℓd + κ·(F⁻ℓd − N) stationary in η′, for a price with the slope ∂ℓ/∂η′.
+    pub fn priced<const D: usize>(
+        edge: &Carried<T, M>,
+        before: &SMatrix<T, M, U>,
+        after: &SMatrix<T, M, U>,
+        costate: &SVector<T, D>,
+        price: &SVector<T, M>,
+    ) -> Option<Self> {
         let tangent = of_edge(edge)?;
         let motion_by_input = -times(&tangent.motion_by_momentum, before);
         let momentum_by_input = after + times(&edge.after_by_end, &motion_by_input);
         let alpha: SVector<T, M> = costate.block(0, 0);
         let beta = costate.block(M, 0);
-        let wanted = alpha + times(&edge.after_by_end.transpose(), &beta);
+        let wanted = price + (alpha + times(&edge.after_by_end.transpose(), &beta));
         let mut multiplier: [[T; 1]; M] = from_fn(|i| [wanted[i]]);
         eliminate(rows(&edge.before_by_end.transpose()), &mut multiplier)?;
         let multiplier = SVector::from_fn(|i, _| -multiplier[i][0]);
@@ -159,6 +186,76 @@ impl<T: Scalar, const M: usize, const U: usize> Link<T, M, U> {
         bracket: &SMatrix<T, M, M>,
         price: &Price<T, M, U>,
     ) -> Expansion<X, T, D, U> {
+        let step = self.step(next, curvature, bracket);
+        Expansion {
+            price: price.price,
+            price_by_place: embedded(&price.by_motion, 0, 0),
+            price_by_input: price.by_input,
+            place_curvature: step.place_curvature + embedded(&price.motions, 0, 0),
+            mixed_curvature: step.mixed_curvature + embedded(&price.mixed, 0, 0),
+            input_curvature: step.input_curvature + price.inputs,
+            ..step
+        }
+    }
+
+    /// The same for a price that is a function of the edge, with its derivatives along the W directions.
+    pub fn expansion_of_edge<X, const W: usize, const D: usize>(
+        &self,
+        next: X,
+        curvature: &SMatrix<T, W, W>,
+        bracket: &SMatrix<T, M, M>,
+        (price, slope, bend): (T, &SVector<T, W>, &SMatrix<T, W, W>),
+    ) -> Expansion<X, T, D, U> {
+        let (by_place, by_input) = self.directions::<W, D>();
+        Expansion {
+            price,
+            price_by_place: times(&by_place.transpose(), slope),
+            price_by_input: times(&by_input.transpose(), slope),
+            ..self.step(next, &(curvature + bend), bracket)
+        }
+    }
+
+    /// Bounds that are functions of the edge, with their derivatives along the W directions. `curvature` contains those of
+    /// z·a + κ·F⁻ℓd, with the κ of the slope of z·a.
+    pub fn bounds<const W: usize, const D: usize, const C: usize>(
+        &self,
+        values: SVector<T, C>,
+        slopes: &SMatrix<T, C, W>,
+        curvature: &SMatrix<T, W, W>,
+    ) -> BoundsExpansion<T, D, U, C> {
+        let (by_place, by_input) = self.directions::<W, D>();
+        let (bent_places, bent_inputs) = (times(curvature, &by_place), times(curvature, &by_input));
+        let (places, inputs) = (by_place.transpose(), by_input.transpose());
+        BoundsExpansion {
+            values,
+            by_place: times(slopes, &by_place),
+            by_input: times(slopes, &by_input),
+            place_curvature: times(&places, &bent_places),
+            mixed_curvature: times(&inputs, &bent_places),
+            input_curvature: times(&inputs, &bent_inputs),
+        }
+    }
+
+    /// How η, ζ and the inputs change with (η, ν) and with u.
+    #[inline(always)]
+    fn directions<const W: usize, const D: usize>(&self) -> (SMatrix<T, W, D>, SMatrix<T, W, U>) {
+        let tangent = &self.tangent;
+        let carried = tangent.motion_by_motion - self.adjoint;
+        let by_place = embedded(&SMatrix::<T, M, M>::identity(), 0, 0)
+            + embedded(&carried, M, 0)
+            + embedded(&tangent.motion_by_momentum, M, M);
+        let by_input = embedded(&self.motion_by_input, M, 0) + embedded(&SMatrix::<T, U, U>::identity(), 2 * M, 0);
+        (by_place, by_input)
+    }
+
+    /// The step without its price.
+    #[inline(always)]
+    fn step<X, const W: usize, const D: usize>(
+        &self,
+        next: X,
+        curvature: &SMatrix<T, W, W>,
+        bracket: &SMatrix<T, M, M>,
+    ) -> Expansion<X, T, D, U> {
         // ± ½ α·[Ad η, ζ]
         let turned = times(&self.adjoint.transpose(), bracket);
         let curvature = &SMatrix::<T, W, W>::from_fn(|i, j| match (i < M, j < M) {
@@ -166,14 +263,8 @@ impl<T: Scalar, const M: usize, const U: usize> Link<T, M, U> {
             (false, true) if i < 2 * M => curvature[(i, j)] + turned[(j, i - M)],
             _ => curvature[(i, j)],
         });
-        // how η, ζ and the inputs change with (η, ν) and with u
         let tangent = &self.tangent;
-        let carried = tangent.motion_by_motion - self.adjoint;
-        let by_place: SMatrix<T, W, D> = embedded(&SMatrix::<T, M, M>::identity(), 0, 0)
-            + embedded(&carried, M, 0)
-            + embedded(&tangent.motion_by_momentum, M, M);
-        let by_input: SMatrix<T, W, U> =
-            embedded(&self.motion_by_input, M, 0) + embedded(&SMatrix::<T, U, U>::identity(), 2 * M, 0);
+        let (by_place, by_input) = self.directions::<W, D>();
         let (bent_places, bent_inputs) = (times(curvature, &by_place), times(curvature, &by_input));
         let (places, inputs) = (by_place.transpose(), by_input.transpose());
         Expansion {
@@ -187,12 +278,12 @@ impl<T: Scalar, const M: usize, const U: usize> Link<T, M, U> {
             by_input: SMatrix::from_fn(|i, j| {
                 if i < M { self.motion_by_input[(i, j)] } else { self.momentum_by_input[(i - M, j)] }
             }),
-            price: price.price,
-            price_by_place: embedded(&price.by_motion, 0, 0),
-            price_by_input: price.by_input,
-            place_curvature: times(&places, &bent_places) + embedded(&price.motions, 0, 0),
-            mixed_curvature: times(&inputs, &bent_places) + embedded(&price.mixed, 0, 0),
-            input_curvature: times(&inputs, &bent_inputs) + price.inputs,
+            price: T::zero(),
+            price_by_place: SVector::zeros(),
+            price_by_input: SVector::zeros(),
+            place_curvature: times(&places, &bent_places),
+            mixed_curvature: times(&inputs, &bent_places),
+            input_curvature: times(&inputs, &bent_inputs),
         }
     }
 }

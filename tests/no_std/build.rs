@@ -36,8 +36,9 @@ const DIRECTIONS: [(&str, &str); 6] = [
 const LANES: [&str; 2] = ["F64x4", "F64x8"];
 
 /// Dimensions of problems of optimal control: of places, of inputs, and the number of bounds.
-const DIMENSIONS: [(&str, &str); 8] = [
+const DIMENSIONS: [(&str, &str); 9] = [
     ("regulator", "2, 1, 0"),
+    ("rate_limited_body", "6, 3, 2"),
     ("steered_body", "6, 3, 2"),
     ("unicycle", "3, 2, 3"),
     ("plate_ball.Ball", "5, 2, 0"),

@@ -106,7 +106,8 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: usize
         let zero = T::zero();
         let mut bounds: usize = 0;
         for (index, stage) in self.stages.iter_mut().enumerate() {
-            stage.slack = -self.problem.system.bounds(self.problem.time_after(index), &stage.place, &stage.input);
+            let t = self.problem.time_after(index);
+            stage.slack = -self.problem.system.bounds(self.problem.constants, t, &stage.place, &stage.input)?;
             stage.excess = SVector::from_element(zero);
             for i in 0..C {
                 match stage.slack[i] {
@@ -230,7 +231,7 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: usize
         for (index, stage) in self.stages.iter_mut().enumerate().filter(|_| C > 0) {
             let t = self.problem.time_after(index);
             let step = system.expand(constants, t, &stage.place, &stage.input, &stage.next_costate)?;
-            let bounds = system.bounds_expanded(t, &stage.place, &stage.input, &stage.multipliers);
+            let bounds = system.bounds_expanded(constants, t, &stage.place, &stage.input, &stage.multipliers)?;
             let input = stage.shift + stage.by_multiplier * change + stage.gain * displacement;
             let moved = bounds.by_place * displacement + bounds.by_input * input;
             visit(stage, moved);
@@ -254,7 +255,9 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: usize
                 return false;
             }
             let (t, x, u) = (self.problem.time_after(index), &stage.place, &stage.input);
-            let bounds = self.problem.system.bounds_expanded(t, x, u, &stage.multipliers);
+            let Problem { system, constants, .. } = self.problem;
+            // bounds of a step that cannot be made are not satisfied
+            let Ok(bounds) = system.bounds_expanded(constants, t, x, u, &stage.multipliers) else { return true };
             let place = x.max_abs();
             // Written so that NaN is a violation.
             !(0..C).all(|i| {
@@ -269,7 +272,8 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: usize
     pub fn worst_bound(&self) -> Option<(usize, usize, T)> {
         let (mut most, mut worst) = (T::zero(), None);
         for (index, stage) in self.stages.iter().enumerate() {
-            let values = self.problem.system.bounds(self.problem.time_after(index), &stage.place, &stage.input);
+            let (Problem { system, constants, .. }, t) = (&self.problem, self.problem.time_after(index));
+            let Ok(values) = system.bounds(constants, t, &stage.place, &stage.input) else { continue };
             for i in 0..C {
                 let part = values[i] / stage.excess[i];
                 if part > most && stage.excess[i] > T::zero() {

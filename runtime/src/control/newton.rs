@@ -161,7 +161,9 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: usize
     /// The multipliers ν of the target, for an end with E. Eᵀν is nearest to this costate less the price of the end.
     fn multipliers(&self, end: &PlanEnd<T, D>, costate: &SVector<T, D>) -> SVector<T, D> {
         let Problem { system, lengths, .. } = &self.problem;
-        let slope = system.endpoint_expanded(self.problem.time_after(self.stages.len()), &self.last).slope;
+        let slope = system
+            .endpoint_expanded(self.problem.constants, self.problem.time_after(self.stages.len()), &self.last)
+            .slope;
         let covector: SVector<T, D> = costate - slope;
         SMatrix::<T, D, D>::from_fn(|i, j| end.slope[(i, j)] / lengths[j]) * covector.component_div(lengths)
     }

@@ -179,7 +179,7 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: usize
                 input += stage.gain * system.displacement(&stage.place, &x);
             }
             if C > 0 {
-                let bounds = system.bounds(t, &x, &input);
+                let bounds = system.bounds(constants, t, &x, &input)?;
                 for i in 0..C {
                     let (z, s) = (stage.multipliers[i], stage.slack[i]);
                     if is_none(s) {
@@ -205,11 +205,11 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: usize
                     }
                 }
             }
-            price += system.price(constants, t, &x, &input);
+            price += system.price(constants, t, &x, &input)?;
             (stage.next_place, stage.next_input) = (x, input);
             x = system.follow(constants, t, &x, &input)?;
         }
-        price += system.endpoint(self.problem.time_after(self.stages.len()), &x);
+        price += system.endpoint(constants, self.problem.time_after(self.stages.len()), &x);
         let end = self.problem.end(&x);
         let penalties = descent.penalty(change, &end) - descent.penalty(change, descent.end);
         let barriers = barrier * logarithms + fraction * excess_price;

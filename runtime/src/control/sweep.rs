@@ -143,7 +143,7 @@ impl<'a, T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: u
     pub fn eliminate(&mut self, end: &PlanEnd<T, D>, settings: &Settings<T, D>) -> Result<PlanSummary<T, D, U>, Error> {
         let Problem { system, constants, .. } = self.problem;
         let steps = self.stages.len();
-        let endpoint = system.endpoint_expanded(self.problem.time_after(steps), &self.last);
+        let endpoint = system.endpoint_expanded(constants, self.problem.time_after(steps), &self.last);
         let mut value = Value::of_end(&endpoint, end, settings);
         let zero = T::zero();
         let mut summary = PlanSummary {
@@ -166,15 +166,15 @@ impl<'a, T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: u
             let mut step = system.expand(constants, t, &stage.place, &stage.input, &(value.costate * settings.bend))?;
             if settings.is_last {
                 let bounds = self.bounds > zero;
-                let pushes = bounds.then(|| system.bounds_expanded(t, &stage.place, &stage.input, &stage.multipliers));
-                let pushes = pushes.map(|bounds| stage.pushes(&bounds.by_input));
+                let expanded = || system.bounds_expanded(constants, t, &stage.place, &stage.input, &stage.multipliers);
+                let pushes = bounds.then(expanded).transpose()?.map(|bounds| stage.pushes(&bounds.by_input));
                 summary.terms = larger(summary.terms, stage.terms(&step, &value.costate, pushes).max_abs());
             }
             let mut bounded = None;
             if self.bounds > zero {
                 let natural = step.input_curvature.diagonal();
                 let multipliers = stage.multipliers * settings.bend;
-                let mut bounds = system.bounds_expanded(t, &stage.place, &stage.input, &multipliers);
+                let mut bounds = system.bounds_expanded(constants, t, &stage.place, &stage.input, &multipliers)?;
                 let (violated, slopes) = stage.add_bounds(&mut step, &mut bounds, settings);
                 summary.violation += violated;
                 bounded = Some((natural, slopes));

@@ -134,8 +134,8 @@ impl<const U: usize> Controlled<3, U, 0> for Group<U> {
         Ok(x * self.exp((u * *h).as_slice()))
     }
 
-    fn price(&self, h: &f64, _: f64, _: &Matrix3<f64>, u: &SVector<f64, U>) -> f64 {
-        h * u.norm_squared() / 2.0
+    fn price(&self, h: &f64, _: f64, _: &Matrix3<f64>, u: &SVector<f64, U>) -> Result<f64, Error> {
+        Ok(h * u.norm_squared() / 2.0)
     }
 
     fn expand(
@@ -153,7 +153,7 @@ impl<const U: usize> Controlled<3, U, 0> for Group<U> {
             next: self.follow(h, t, x, u)?,
             by_place: Matrix3::from_fn(|i, j| change[i].slope[j]),
             by_input: SMatrix::from_fn(|i, j| change[i].slope[3 + j]),
-            price: self.price(h, t, x, u),
+            price: self.price(h, t, x, u)?,
             price_by_place: Vector3::zeros(),
             price_by_input: u * *h,
             place_curvature: curvature.fixed_view::<3, 3>(0, 0).into_owned(),
@@ -174,25 +174,26 @@ impl<const U: usize> Controlled<3, U, 0> for Group<U> {
         Ok(u.norm_squared() / 2.0 + (0..U).map(|j| u[j] * costate[j]).sum::<f64>())
     }
 
-    fn bounds(&self, _: f64, _: &Matrix3<f64>, _: &SVector<f64, U>) -> SVector<f64, 0> {
-        SVector::zeros()
+    fn bounds(&self, _: &f64, _: f64, _: &Matrix3<f64>, _: &SVector<f64, U>) -> Result<SVector<f64, 0>, Error> {
+        Ok(SVector::zeros())
     }
 
     fn bounds_expanded(
         &self,
+        _: &f64,
         _: f64,
         _: &Matrix3<f64>,
         _: &SVector<f64, U>,
         _: &SVector<f64, 0>,
-    ) -> BoundsExpansion<f64, 3, U, 0> {
-        crate::no_bounds()
+    ) -> Result<BoundsExpansion<f64, 3, U, 0>, Error> {
+        Ok(crate::no_bounds())
     }
 
-    fn endpoint(&self, _: f64, _: &Matrix3<f64>) -> f64 {
+    fn endpoint(&self, _: &f64, _: f64, _: &Matrix3<f64>) -> f64 {
         0.0
     }
 
-    fn endpoint_expanded(&self, _: f64, _: &Matrix3<f64>) -> EndpointExpansion<f64, 3> {
+    fn endpoint_expanded(&self, _: &f64, _: f64, _: &Matrix3<f64>) -> EndpointExpansion<f64, 3> {
         EndpointExpansion { price: 0.0, by_time: 0.0, slope: Vector3::zeros(), curvature: Matrix3::zeros() }
     }
 

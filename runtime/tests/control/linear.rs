@@ -57,8 +57,8 @@ impl<const D: usize, const U: usize, const C: usize, const M: usize> Controlled<
         Ok(self.a * x + self.b * u)
     }
 
-    fn price(&self, (): &(), _: f64, x: &SVector<f64, D>, u: &SVector<f64, U>) -> f64 {
-        x.dot(&(self.place_price * x)) / 2.0 + u.dot(&(self.input_price * u)) / 2.0
+    fn price(&self, (): &(), _: f64, x: &SVector<f64, D>, u: &SVector<f64, U>) -> Result<f64, Error> {
+        Ok(x.dot(&(self.place_price * x)) / 2.0 + u.dot(&(self.input_price * u)) / 2.0)
     }
 
     fn expand(
@@ -73,7 +73,7 @@ impl<const D: usize, const U: usize, const C: usize, const M: usize> Controlled<
             next: self.a * x + self.b * u,
             by_place: self.a,
             by_input: self.b,
-            price: self.price(&(), t, x, u),
+            price: self.price(&(), t, x, u)?,
             price_by_place: self.place_price * x,
             price_by_input: self.input_price * u,
             place_curvature: self.place_price,
@@ -94,27 +94,28 @@ impl<const D: usize, const U: usize, const C: usize, const M: usize> Controlled<
         Ok(0.0)
     }
 
-    fn bounds(&self, _: f64, x: &SVector<f64, D>, u: &SVector<f64, U>) -> SVector<f64, C> {
-        self.bound_place * x + self.bound_input * u - self.bound
+    fn bounds(&self, (): &(), _: f64, x: &SVector<f64, D>, u: &SVector<f64, U>) -> Result<SVector<f64, C>, Error> {
+        Ok(self.bound_place * x + self.bound_input * u - self.bound)
     }
 
     fn bounds_expanded(
         &self,
+        (): &(),
         t: f64,
         x: &SVector<f64, D>,
         u: &SVector<f64, U>,
         _: &SVector<f64, C>,
-    ) -> BoundsExpansion<f64, D, U, C> {
+    ) -> Result<BoundsExpansion<f64, D, U, C>, Error> {
         let (by_place, by_input) = (self.bound_place, self.bound_input);
-        BoundsExpansion { values: self.bounds(t, x, u), by_place, by_input, ..crate::no_bounds() }
+        Ok(BoundsExpansion { values: self.bounds(&(), t, x, u)?, by_place, by_input, ..crate::no_bounds() })
     }
 
-    fn endpoint(&self, _: f64, x: &SVector<f64, D>) -> f64 {
+    fn endpoint(&self, (): &(), _: f64, x: &SVector<f64, D>) -> f64 {
         x.dot(&(self.end_price * x)) / 2.0
     }
 
-    fn endpoint_expanded(&self, t: f64, x: &SVector<f64, D>) -> EndpointExpansion<f64, D> {
-        let (price, slope) = (self.endpoint(t, x), self.end_price * x);
+    fn endpoint_expanded(&self, (): &(), t: f64, x: &SVector<f64, D>) -> EndpointExpansion<f64, D> {
+        let (price, slope) = (self.endpoint(&(), t, x), self.end_price * x);
         EndpointExpansion { price, by_time: 0.0, slope, curvature: self.end_price }
     }
 

@@ -44,8 +44,8 @@ impl Controlled<2, 1, 2> for Pendulum {
         Ok(self.step(*h, x, u[0]).map(|jet| jet.value).into())
     }
 
-    fn price(&self, h: &f64, _: f64, _: &Vector2<f64>, u: &Vector1<f64>) -> f64 {
-        h * (self.hurry + u[0] * u[0] / 2.0)
+    fn price(&self, h: &f64, _: f64, _: &Vector2<f64>, u: &Vector1<f64>) -> Result<f64, Error> {
+        Ok(h * (self.hurry + u[0] * u[0] / 2.0))
     }
 
     fn expand(
@@ -62,7 +62,7 @@ impl Controlled<2, 1, 2> for Pendulum {
             next: Vector2::new(position.value, velocity.value),
             by_place: Matrix2::new(position.slope[0], position.slope[1], velocity.slope[0], velocity.slope[1]),
             by_input: Matrix2x1::new(position.slope[2], velocity.slope[2]),
-            price: self.price(h, t, x, u),
+            price: self.price(h, t, x, u)?,
             price_by_place: Vector2::zeros(),
             price_by_input: u * *h,
             place_curvature: curvature.fixed_view::<2, 2>(0, 0).into_owned(),
@@ -85,25 +85,30 @@ impl Controlled<2, 1, 2> for Pendulum {
         Ok(self.hurry + u[0] * u[0] / 2.0 + costate[0] * position + costate[1] * force)
     }
 
-    fn bounds(&self, _: f64, _: &Vector2<f64>, u: &Vector1<f64>) -> Vector2<f64> {
-        Vector2::new(u[0] - self.strength, -u[0] - self.strength)
+    fn bounds(&self, _: &f64, _: f64, _: &Vector2<f64>, u: &Vector1<f64>) -> Result<Vector2<f64>, Error> {
+        Ok(Vector2::new(u[0] - self.strength, -u[0] - self.strength))
     }
 
     fn bounds_expanded(
         &self,
+        h: &f64,
         t: f64,
         x: &Vector2<f64>,
         u: &Vector1<f64>,
         _: &Vector2<f64>,
-    ) -> BoundsExpansion<f64, 2, 1, 2> {
-        BoundsExpansion { values: self.bounds(t, x, u), by_input: Vector2::new(1.0, -1.0), ..crate::no_bounds() }
+    ) -> Result<BoundsExpansion<f64, 2, 1, 2>, Error> {
+        Ok(BoundsExpansion {
+            values: self.bounds(h, t, x, u)?,
+            by_input: Vector2::new(1.0, -1.0),
+            ..crate::no_bounds()
+        })
     }
 
-    fn endpoint(&self, _: f64, _: &Vector2<f64>) -> f64 {
+    fn endpoint(&self, _: &f64, _: f64, _: &Vector2<f64>) -> f64 {
         0.0
     }
 
-    fn endpoint_expanded(&self, _: f64, _: &Vector2<f64>) -> EndpointExpansion<f64, 2> {
+    fn endpoint_expanded(&self, _: &f64, _: f64, _: &Vector2<f64>) -> EndpointExpansion<f64, 2> {
         EndpointExpansion { price: 0.0, by_time: 0.0, slope: Vector2::zeros(), curvature: Matrix2::zeros() }
     }
 

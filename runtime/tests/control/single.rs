@@ -25,15 +25,15 @@ impl Controlled<1, 1, 2> for Tank {
     fn follow(&self, h: &f32, _: f32, x: &Level, u: &Level) -> Result<Level, Error> {
         Ok(x + u * *h)
     }
-    fn price(&self, h: &f32, _: f32, x: &Level, u: &Level) -> f32 {
-        h * (x[0] * x[0] + u[0] * u[0]) / 2.0
+    fn price(&self, h: &f32, _: f32, x: &Level, u: &Level) -> Result<f32, Error> {
+        Ok(h * (x[0] * x[0] + u[0] * u[0]) / 2.0)
     }
     fn expand(&self, h: &f32, t: f32, x: &Level, u: &Level, _: &Level) -> Result<Expansion<Level, f32, 1, 1>, Error> {
         Ok(Expansion {
             next: self.follow(h, t, x, u)?,
             by_place: Vector1::new(1.0),
             by_input: Vector1::new(*h),
-            price: self.price(h, t, x, u),
+            price: self.price(h, t, x, u)?,
             price_by_place: x * *h,
             price_by_input: u * *h,
             place_curvature: Vector1::new(*h),
@@ -44,23 +44,30 @@ impl Controlled<1, 1, 2> for Tank {
     fn price_of_time(&self, _: &f32, _: f32, _: f32, x: &Level, u: &Level, p: &Level) -> Result<f32, Error> {
         Ok((x[0] * x[0] + u[0] * u[0]) / 2.0 + p[0] * u[0])
     }
-    fn bounds(&self, _: f32, _: &Level, u: &Level) -> Vector2<f32> {
-        Vector2::new(u[0] - 1.0, -u[0] - 1.0)
+    fn bounds(&self, _: &f32, _: f32, _: &Level, u: &Level) -> Result<Vector2<f32>, Error> {
+        Ok(Vector2::new(u[0] - 1.0, -u[0] - 1.0))
     }
-    fn bounds_expanded(&self, t: f32, x: &Level, u: &Level, _: &Vector2<f32>) -> BoundsExpansion<f32, 1, 1, 2> {
-        BoundsExpansion {
-            values: self.bounds(t, x, u),
+    fn bounds_expanded(
+        &self,
+        h: &f32,
+        t: f32,
+        x: &Level,
+        u: &Level,
+        _: &Vector2<f32>,
+    ) -> Result<BoundsExpansion<f32, 1, 1, 2>, Error> {
+        Ok(BoundsExpansion {
+            values: self.bounds(h, t, x, u)?,
             by_place: Matrix2x1::zeros(),
             by_input: Matrix2x1::new(1.0, -1.0),
             place_curvature: Vector1::zeros(),
             mixed_curvature: Vector1::zeros(),
             input_curvature: Vector1::zeros(),
-        }
+        })
     }
-    fn endpoint(&self, _: f32, _: &Level) -> f32 {
+    fn endpoint(&self, _: &f32, _: f32, _: &Level) -> f32 {
         0.0
     }
-    fn endpoint_expanded(&self, _: f32, _: &Level) -> EndpointExpansion<f32, 1> {
+    fn endpoint_expanded(&self, _: &f32, _: f32, _: &Level) -> EndpointExpansion<f32, 1> {
         EndpointExpansion { price: 0.0, by_time: 0.0, slope: Vector1::zeros(), curvature: Vector1::zeros() }
     }
     fn arrival(&self, x: &Level, target: &Level) -> Arrival<f32, 1> {

@@ -73,9 +73,11 @@ fn holds_bounds<S, const D: usize, const U: usize, const C: usize>(
 where
     S: Controlled<D, U, C, Scalar = f64>,
 {
+    let constants = system.prepare(optimum.step_size()).map_err(|error| error.to_string())?;
     for (k, stage) in optimum.stages().iter().enumerate() {
         let (t, x, u) = (optimum.step_size() * k as f64, stage.place(), stage.input());
-        let bounds = system.bounds_expanded(t, x, u, stage.multipliers());
+        let bounds = system.bounds_expanded(&constants, t, x, u, stage.multipliers());
+        let bounds = bounds.map_err(|error| error.to_string())?;
         for i in 0..C {
             let of_input = bounds.by_input.row(i).iter().zip(u.iter()).map(|(slope, u)| (slope * u).abs()).sum::<f64>();
             let terms = of_input + bounds.by_place.row(i).abs().sum() * x.max_abs();

@@ -8,17 +8,17 @@ use clebsch_tests::fixtures::unicycle::Unicycle;
 use clebsch_tests::oracle::random::Random;
 use nalgebra::{Matrix3, SMatrix, SVector, Vector1, Vector2, Vector3};
 
-const H: f64 = 0.1;
-const T: f64 = 0.3;
+pub(super) const H: f64 = 0.1;
+pub(super) const T: f64 = 0.3;
 
 /// How places move in exponential coordinates, and back.
-struct Chart<X, const D: usize> {
-    moved: fn(&X, &SVector<f64, D>) -> X,
-    coordinates: fn(&X, &X) -> SVector<f64, D>,
+pub(super) struct Chart<X, const D: usize> {
+    pub moved: fn(&X, &SVector<f64, D>) -> X,
+    pub coordinates: fn(&X, &X) -> SVector<f64, D>,
 }
 
 /// exp A: the series of A/2⁸, squared eight times.
-fn exponential(a: &Matrix3<f64>) -> Matrix3<f64> {
+pub(super) fn exponential(a: &Matrix3<f64>) -> Matrix3<f64> {
     let scaled = a / 256.0;
     let (mut term, mut sum) = (Matrix3::identity(), Matrix3::identity());
     for k in 1..12 {
@@ -32,7 +32,7 @@ fn exponential(a: &Matrix3<f64>) -> Matrix3<f64> {
 }
 
 /// log(I + E) of a small E.
-fn logarithm(e: &Matrix3<f64>) -> Matrix3<f64> {
+pub(super) fn logarithm(e: &Matrix3<f64>) -> Matrix3<f64> {
     let mut power = *e;
     let mut sum = *e;
     for k in 2..=12 {
@@ -42,7 +42,7 @@ fn logarithm(e: &Matrix3<f64>) -> Matrix3<f64> {
     sum
 }
 
-fn check<S, const D: usize, const U: usize, const C: usize>(
+pub(super) fn check<S, const D: usize, const U: usize, const C: usize>(
     system: &S,
     chart: &Chart<S::Place, D>,
     x: &S::Place,
@@ -56,7 +56,7 @@ fn check<S, const D: usize, const U: usize, const C: usize>(
     let (u, costate, z) = (random.vector::<U>(), random.vector::<D>(), random.vector::<C>());
     let expansion = system.expand(&constants, T, x, &u, &costate).expect("a step");
     assert!((chart.coordinates)(&system.follow(&constants, T, x, &u).expect("a step"), &expansion.next).amax() < 1e-14);
-    assert!((expansion.price - system.price(&constants, T, x, &u)).abs() < 1e-14);
+    assert!((expansion.price - system.price(&constants, T, x, &u).expect("a step")).abs() < 1e-14);
 
     // along w = (δ, δu)
     let moved = |delta: &SVector<f64, D>, du: &SVector<f64, U>| ((chart.moved)(x, delta), u + du);
@@ -66,20 +66,20 @@ fn check<S, const D: usize, const U: usize, const C: usize>(
     };
     let price = |delta: &SVector<f64, D>, du: &SVector<f64, U>| {
         let (x, u) = moved(delta, du);
-        SVector::<f64, 1>::new(system.price(&constants, T, &x, &u))
+        SVector::<f64, 1>::new(system.price(&constants, T, &x, &u).expect("a step"))
     };
     let whole = |delta: &SVector<f64, D>, du: &SVector<f64, U>| {
         price(delta, du) + SVector::<f64, 1>::new(costate.dot(&next(delta, du)))
     };
     let bounds = |delta: &SVector<f64, D>, du: &SVector<f64, U>| {
         let (x, u) = moved(delta, du);
-        system.bounds(T, &x, &u)
+        system.bounds(&constants, T, &x, &u).expect("a step")
     };
     let name = S::NAME;
     for k in 0..D + U {
         let slope = first::<D, U, D>(&next, k);
         let (of_price, of_bounds) = (first::<D, U, 1>(&price, k)[0], first::<D, U, C>(&bounds, k));
-        let expanded = system.bounds_expanded(T, x, &u, &z);
+        let expanded = system.bounds_expanded(&constants, T, x, &u, &z).expect("a step");
         let (column, price_slope, bound_slope) = match k.checked_sub(D) {
             None => (expansion.by_place.column(k), expansion.price_by_place[k], expanded.by_place.column(k)),
             Some(k) => (expansion.by_input.column(k), expansion.price_by_input[k], expanded.by_input.column(k)),
@@ -159,7 +159,7 @@ fn of_time<S, const D: usize, const U: usize, const C: usize>(
         let constants = system.prepare(H + step).expect("regular");
         let t = T + k * step;
         let next = system.follow(&constants, t, x, u).expect("a step");
-        system.price(&constants, t, x, u) + costate.dot(&(chart.coordinates)(&reference, &next))
+        system.price(&constants, t, x, u).expect("a step") + costate.dot(&(chart.coordinates)(&reference, &next))
     };
     let expected = (at(1e-5) - at(-1e-5)) / 2e-5;
     let found = system.price_of_time(&system.prepare(H).expect("regular"), T, k, x, u, costate).expect("a step");
@@ -170,12 +170,13 @@ fn of_end<S, const D: usize, const U: usize, const C: usize>(system: &S, x: &S::
 where
     S: Controlled<D, U, C, Scalar = f64>,
 {
-    let end = system.endpoint_expanded(T, x);
-    assert!((end.price - system.endpoint(T, x)).abs() < 1e-14);
-    let by_time = (system.endpoint(T + 1e-5, x) - system.endpoint(T - 1e-5, x)) / 2e-5;
+    let constants = &system.prepare(H).expect("regular");
+    let end = system.endpoint_expanded(constants, T, x);
+    assert!((end.price - system.endpoint(constants, T, x)).abs() < 1e-14);
+    let by_time = (system.endpoint(constants, T + 1e-5, x) - system.endpoint(constants, T - 1e-5, x)) / 2e-5;
     assert!((end.by_time - by_time).abs() < 1e-8);
     let price = |delta: &SVector<f64, D>, _: &SVector<f64, 0>| {
-        SVector::<f64, 1>::new(system.endpoint(T, &(chart.moved)(x, delta)))
+        SVector::<f64, 1>::new(system.endpoint(constants, T, &(chart.moved)(x, delta)))
     };
     for k in 0..D {
         assert!((first::<D, 0, 1>(&price, k)[0] - end.slope[k]).abs() < 1e-8);
@@ -245,11 +246,9 @@ fn a_map_of_a_vector_space() {
     assert_eq!(x, Vector2::new(3.0, 4.5));
 }
 
-#[test]
-fn a_forced_body() {
-    let random = &mut Random::new(503);
-    type State = (Matrix3<f64>, Vector3<f64>);
-    let chart = Chart::<State, 6> {
+/// Attitudes that are turned from the right, with momenta.
+pub(super) fn chart_of_bodies() -> Chart<(Matrix3<f64>, Vector3<f64>), 6> {
+    Chart {
         moved: |(q, n), delta| {
             (q * exponential(&delta.fixed_rows::<3>(0).into_owned().cross_matrix()), n + delta.fixed_rows::<3>(3))
         },
@@ -258,7 +257,13 @@ fn a_forced_body() {
             let (eta, nu) = (Vector3::new(log[(2, 1)], log[(0, 2)], log[(1, 0)]), m - n);
             SVector::<f64, 6>::from_iterator(eta.iter().chain(nu.iter()).copied())
         },
-    };
+    }
+}
+
+#[test]
+fn a_forced_body() {
+    let random = &mut Random::new(503);
+    let chart = chart_of_bodies();
     for _ in 0..5 {
         let system = SteeredBody { inertia: random.inertia::<3>(), damping: 0.4, top: 1.0 };
         let x = (random.attitude::<3>(), random.vector::<3>());

@@ -97,7 +97,9 @@ fn judge<S: Case<D, U, C>, const D: usize, const U: usize, const C: usize>(
         if is_finite != [true; 4] {
             return Err(format!("stage {k}: input, costate, multipliers, gain are finite: {is_finite:?}"));
         }
-        let bounds = control.system().bounds(h * k as f64, stage.place(), stage.input());
+        let constants = control.system().prepare(h).map_err(|error| error.to_string())?;
+        let bounds = control.system().bounds(&constants, h * k as f64, stage.place(), stage.input());
+        let bounds = bounds.map_err(|error| error.to_string())?;
         // where numbers are lost relative to the bound
         let scale = 1.0 + stage.input().amax();
         if bounds.iter().any(|bound| *bound > 1e-12 * scale) {

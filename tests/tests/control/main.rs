@@ -6,3 +6,4 @@ mod derivatives;
 mod extremes;
 mod plans;
 mod right_hand_sides;
+mod velocities;

@@ -53,7 +53,7 @@ where
         let next = stages.get(k + 1).map_or(optimum.final_costate(), |next| next.costate());
         let expansion = system.expand(&constants, t, &x, stage.input(), next)?;
         let z = stage.multipliers();
-        let bounds = system.bounds_expanded(t, &x, stage.input(), z);
+        let bounds = system.bounds_expanded(&constants, t, &x, stage.input(), z)?;
         let costate =
             expansion.price_by_place + expansion.by_place.transpose() * next + bounds.by_place.transpose() * z;
         let off = (costate - stage.costate()).amax();

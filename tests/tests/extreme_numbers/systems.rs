@@ -72,8 +72,16 @@ clebsch_tests::every_scene!(modules);
 
 /// Systems that are not stepped here: `regulator` and `unicycle` are planned, in the tests of control, and
 /// `annotated_body` has private fields. `cosserat_rod`, `harmonic_map`, `sine_gordon` and `wave_map` are fields, whose tests step them on grids.
-const OTHERS: [&str; 7] =
-    ["annotated_body", "cosserat_rod", "harmonic_map", "regulator", "sine_gordon", "unicycle", "wave_map"];
+const OTHERS: [&str; 8] = [
+    "annotated_body",
+    "cosserat_rod",
+    "harmonic_map",
+    "rate_limited_body",
+    "regulator",
+    "sine_gordon",
+    "unicycle",
+    "wave_map",
+];
 
 #[test]
 fn no_fixture_is_left_out() {

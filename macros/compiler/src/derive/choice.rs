@@ -9,23 +9,35 @@ use super::{Bend, Id, InputStep, MatrixForm, MechanicsFormulas, SteeredFormulas,
 /// The direction in which symbols move.
 pub(super) type Direction<'g> = Vec<(Expr<'g>, Expr<'g>)>;
 
-/// The data for the choice of inputs.
+/// The data for the choice of inputs. Price and bounds have derivatives along the motions of q and the inputs. If they
+/// take the velocity of the step, they are functions of an edge, with derivatives along the motions of both its ends.
 pub struct Steering<'g> {
-    /// ℓ(t, h, q, u).
+    /// ℓ(t, h, q, u) or ℓ(t, h, q, F, u).
     pub price: Jet<'g>,
     /// The derivatives of ℓ with respect to h and t.
     pub price_of_time: [Expr<'g>; 2],
-    /// a(t, q, u), one after the other.
+    /// a(t, q, u) or a(t, h, q, F, u), one after the other.
     pub bounds: Vec<Jet<'g>>,
+    /// Whether the price is a function of an edge, and whether bounds are.
+    pub on_edge: OnEdge,
     /// The weights of the bounds.
     pub weights: Expr<'g>,
     /// The distance from q to q⁺: J(q, q⁺ − q).
     pub approach: Vec<Expr<'g>>,
 }
 
-/// The price of the end.
+/// The functions of inputs that take the velocity of a step.
+#[derive(Clone, Copy, Default)]
+pub struct OnEdge {
+    /// The price.
+    pub price: bool,
+    /// The bounds.
+    pub bounds: bool,
+}
+
+/// The price of the end. If it takes the velocity, its derivatives are along motions and along momenta.
 pub struct Endpoint<'g> {
-    /// φ(t, q).
+    /// φ(t, q) or φ(t, q, N).
     pub price: Jet<'g>,
     /// ∂φ/∂t.
     pub by_time: Expr<'g>,
@@ -117,9 +129,9 @@ impl<'g> MechanicsFormulas<'g> {
 }
 
 impl<'g> SystemFormulas<'g> {
-    /// φ, ∂φ/∂t, ∂φ/∂η, ∂²φ/∂η².
+    /// φ, ∂φ/∂t, ∂φ/∂δ, ∂²φ/∂δ², where δ is η or (η, ν).
     pub fn endpoint_expanded(&self, endpoint: &Endpoint<'g>) -> Vec<MatrixForm<'g>> {
-        let (at, jet, m) = (Inserted::of(self), &endpoint.price, self.model.dimension());
+        let (at, jet, m) = (Inserted::of(self), &endpoint.price, endpoint.price.slope.len());
         vec![
             MatrixForm::Whole(jet.value),
             MatrixForm::Whole(endpoint.by_time),
@@ -169,6 +181,14 @@ impl<'a, 'g> Choice<'a, 'g> {
             (Id::Bracket, StepOfChoice::Forced(bend)) => {
                 vec![at.entries(Shape::square(m), |i, j| bend.bracket[i][j])]
             }
+            (Id::PriceExpanded, _) if self.steering.on_edge.price => {
+                let w = price.slope.len();
+                vec![
+                    at.whole(price.value),
+                    at.entries(Shape::vector(w), |i, _| price.slope[i]),
+                    at.entries(Shape::square(w), of_price),
+                ]
+            }
             (Id::PriceExpanded, _) => {
                 let curvature = curvature(&of_price);
                 [price_and_slopes(), curvature].concat()
@@ -182,12 +202,21 @@ impl<'a, 'g> Choice<'a, 'g> {
             }
             (Id::BoundsExpanded, _) => {
                 let (bounds, weights) = (&self.steering.bounds, self.steering.weights);
-                let curvature = curvature(&|i, j| {
+                let weighted = |i, j| {
                     let bounds = bounds.iter().enumerate();
                     let weighted = bounds.map(|(k, bound)| weights.entry(k, 0) * symmetric(&bound.curvature, i, j));
                     self.formulas.model.graph.total(Shape::scalar(), weighted)
-                });
+                };
                 let c = bounds.len();
+                if self.steering.on_edge.bounds {
+                    let w = 2 * m + u;
+                    return vec![
+                        at.entries(Shape::vector(c), |i, _| bounds[i].value),
+                        at.entries(Shape::new(c, w), |i, j| bounds[i].slope[j]),
+                        at.entries(Shape::square(w), weighted),
+                    ];
+                }
+                let curvature = curvature(&weighted);
                 let values = [
                     at.entries(Shape::vector(c), |i, _| bounds[i].value),
                     at.entries(Shape::new(c, m), |i, j| bounds[i].slope[j]),

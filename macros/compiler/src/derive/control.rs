@@ -9,8 +9,11 @@
 use clebsch_symbolic::{Block, Chart, Elements, Expr, IntoList, Property, Role, Shape, both, indexed};
 
 use super::SystemFormulas;
-use super::choice::{Direction, Endpoint, Jet, Steering};
-use crate::model::{Discretization, Factor, Motion, Side, Steered, System};
+use super::choice::{Direction, Endpoint, Jet, OnEdge, Steering};
+use super::exact::{by_inertia, inertia_inverse};
+use super::variation::Source;
+use super::{Energy, cayley, force};
+use crate::model::{Discretization, EndPrice, Factor, Motion, Side, Steered, System};
 
 /// The step F(t, h, q, u), as a function of F too where it stands for its value.
 pub struct InputStep<'g> {
@@ -53,15 +56,81 @@ impl<'g> SystemFormulas<'g> {
             price: Jet::of(control.price, &all),
             price_of_time: self.by_time(control.price),
             bounds: control.bounds.each(|bound| Jet::of(bound.value, &all)),
+            on_edge: OnEdge::default(),
             weights: self.model.graph.symbol("z", count, Role::Weight, Property::General),
             approach: self.momenta_of(apart),
         })
     }
 
     pub(super) fn price_of_end(&self) -> Option<Endpoint<'g>> {
-        let price = self.model.endpoint?;
+        let price = self.model.endpoint.as_ref()?.value;
         let by_time = price.differential(&[(self.model.time, self.model.graph.integer(1))]);
         Some(Endpoint { price: Jet::of(price, &self.symbols.along_basis(&self.leaves_by_generator())), by_time })
+    }
+
+    /// The same price where it takes the velocity Σ⁻¹(N − A), as a function of q and N.
+    pub(super) fn price_of_end_velocity(&self, energy: &Energy<'g>, inertia: Expr<'g>) -> Option<Endpoint<'g>> {
+        let EndPrice { value, velocities, .. } = self.model.endpoint.as_ref()?;
+        if velocities.is_empty() {
+            return None;
+        }
+        let price = value.substitute(&self.velocities_of_momentum(velocities, energy, inertia));
+        let by_time = price.differential(&[(self.model.time, self.model.graph.integer(1))]);
+        let motions = self.symbols.along_basis(&self.leaves_by_generator());
+        let momenta = self.symbols.momenta.iter().flat_map(|mu| {
+            let units = mu.shape().positions().map(|(i, j)| mu.graph().unit(mu.shape(), i, j));
+            units.map(|unit| vec![(*mu, unit)]).into_list()
+        });
+        let all = [motions, momenta.into_list()].concat();
+        Some(Endpoint { price: Jet::of(price, &all), by_time })
+    }
+
+    /// The velocities as functions of the momentum.
+    fn velocities_of_momentum(
+        &self,
+        velocities: &[Expr<'g>],
+        energy: &Energy<'g>,
+        inertia: Expr<'g>,
+    ) -> Vec<(Expr<'g>, Expr<'g>)> {
+        let graph = self.model.graph;
+        let momentum = graph.below(&self.symbols.momenta) - self.symbols.slope(energy.gyroscopic);
+        let entries = momentum.entries();
+        let inverse = || match self.is_moving(inertia) {
+            true => inertia.inverse(),
+            false => inertia_inverse(graph, inertia.shape()),
+        };
+        let velocity = graph.stack(momentum.shape(), by_inertia(inertia, inverse, &entries));
+        let part = |(k, xi): (usize, &Expr<'g>)| (*xi, velocity.block(self.model.offset(k), 0, xi.shape()));
+        velocities.iter().enumerate().map(part).into_list()
+    }
+}
+
+impl<'g> Source<'_, 'g> {
+    /// The choice of inputs where price or bounds take the velocity ξ(F)/h of a step; `None` where none does.
+    pub(super) fn chosen_by_velocity(&self) -> Option<Steering<'g>> {
+        let (system, model) = (self.system, self.model);
+        let control = model.control.as_ref()?;
+        let on_edge = OnEdge {
+            price: control.velocities.iter().any(|xi| control.price.depends_on(*xi)),
+            bounds: control.velocities.iter().any(|xi| control.bounds.iter().any(|bound| bound.value.depends_on(*xi))),
+        };
+        let steering = system.chosen_by().filter(|_| on_edge.price || on_edge.bounds)?;
+        let of_step = force::velocities_of_step(model, model.step_size);
+        let moving: Vec<_> = control.velocities.iter().copied().zip(of_step).into_list();
+        let rational = cayley::replacements(model);
+        let moved = |value: Expr<'g>| value.substitute(&moving).substitute(&rational);
+        let all = [self.ends(), system.inputs()].concat();
+        let price = moved(control.price);
+        Some(Steering {
+            price: if on_edge.price { Jet::of(price, &all) } else { steering.price },
+            price_of_time: system.by_time(price),
+            bounds: match on_edge.bounds {
+                true => control.bounds.each(|bound| Jet::of(moved(bound.value), &all)),
+                false => steering.bounds,
+            },
+            on_edge,
+            ..steering
+        })
     }
 }
 

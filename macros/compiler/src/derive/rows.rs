@@ -88,12 +88,30 @@ impl<'g> SystemFormulas<'g> {
     /// Price, bounds and the price of the end.
     fn rows_of_choice(&self, Names { q, u, .. }: &Names) -> Vec<Formula<'g>> {
         let mut rows = Vec::new();
-        if let Some(control) = &self.model.control {
-            rows.push(Formula::new(Id::Price, format!("ℓ(h, {u})"), [control.price]));
+        if let (Some(control), Some(steering)) = (&self.model.control, &self.steering) {
+            let velocity = tuple(control.velocities.iter().map(Expr::to_string));
+            let read = if steering.on_edge.price { format!("{velocity}, {u}") } else { u.clone() };
+            let price = Formula::new(Id::Price, format!("ℓ(h, {read})"), [control.price]);
             let bounds: Vec<_> = control.bounds.each(|bound| bound.value);
-            rows.push(Formula::new(Id::Bounds, "0 ≥ a", bounds));
+            let bounds = Formula::new(Id::Bounds, "0 ≥ a", bounds);
+            let values: Vec<_> = steering.bounds.each(|bound| bound.value);
+            rows.push(match steering.on_edge.price {
+                true => price.computed_as(self.at_increments(&[steering.price.value])),
+                false => price,
+            });
+            rows.push(match steering.on_edge.bounds {
+                true => bounds.computed_as(self.at_increments(&values)),
+                false => bounds,
+            });
         }
-        rows.extend(self.model.endpoint.map(|price| Formula::new(Id::PriceOfEnd, format!("φ({q})"), [price])));
+        if let (Some(price), Some(endpoint)) = (&self.model.endpoint, &self.endpoint) {
+            let read = match price.velocities.as_slice() {
+                [] => q.clone(),
+                velocities => format!("{q}, {}", tuple(velocities.iter().map(Expr::to_string))),
+            };
+            let row = Formula::new(Id::PriceOfEnd, format!("φ({read})"), [price.value]);
+            rows.push(row.computed_as(vec![endpoint.price.value]));
+        }
         rows
     }
 }

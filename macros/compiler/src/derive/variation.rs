@@ -134,11 +134,7 @@ impl<'g> Source<'_, 'g> {
         derivatives.push(last.differential(&at_end));
         derivatives.extend(after_by_start);
         let adjoint: Vec<_> = indexed(model.factors.len(), |k| system.adjoint(k));
-        // how q and q⁺ move with η at q while F stays as it is: q⁺ by Ad η for each factor
-        let by_adjoint: Vec<_> = system.symbols.algebra.iter().copied().zip(adjoint.iter().copied()).into_list();
-        let images = self.images_by_generator().into_iter();
-        let mut together = system.leaves_by_generator();
-        together.extend(images.map(|(image, part)| (image, part.substitute(&by_adjoint))));
+        let together = self.together();
         let along = |quantity: &Quantity<'g>, momentum: Expr<'g>| {
             momentum.differential(&[(quantity.symbol, quantity.direction)])
         };
@@ -149,11 +145,25 @@ impl<'g> Source<'_, 'g> {
             carried: [model.graph.below(&adjoint), first.differential(&together), last.differential(&together)],
             constraint: constraint.map(|constraint| self.constraint(constraint, &together, ends)),
             slopes: (!self.quantities.is_empty()).then(|| both([first, last], slopes)),
-            bend: model.control.as_ref().map(|_| {
-                let ends = both([&together, &at_end], |motions| system.symbols.along_basis(motions));
-                control::bend(system, (first, last), ends.concat())
-            }),
+            bend: model.control.as_ref().map(|_| control::bend(system, (first, last), self.ends())),
         }
+    }
+
+    /// How q and q⁺ move with η at q while F stays as it is: q⁺ by Ad η for each factor.
+    fn together(&self) -> Direction<'g> {
+        let system = self.system;
+        let adjoint = indexed(system.model.factors.len(), |k| system.adjoint(k));
+        let by_adjoint: Vec<_> = system.symbols.algebra.iter().copied().zip(adjoint).into_list();
+        let images = self.images_by_generator().into_iter();
+        let mut together = system.leaves_by_generator();
+        together.extend(images.map(|(image, part)| (image, part.substitute(&by_adjoint))));
+        together
+    }
+
+    /// The motions η of q that leave F as it is, and then the motions of q⁺ alone, along each element of the basis.
+    pub(super) fn ends(&self) -> Vec<Direction<'g>> {
+        let ends = [self.together(), self.at_end()];
+        both(ends.each_ref(), |motions| self.system.symbols.along_basis(motions)).concat()
     }
 
     /// A function of q at q⁺.

@@ -1,15 +1,18 @@
 //! The implementation of the trait `Controlled`, for the choice of inputs.
 
-use clebsch_symbolic::{Elements, both};
+use clebsch_symbolic::{Elements, Role, Shape, both};
 use proc_macro2::TokenStream;
 use quote::quote;
 
 use super::SystemEmitter;
 use super::block::{Block, matrix};
 use super::function::Words;
-use super::functions::{CONTROLLED, FORCED, STEERED};
+use super::functions::{
+    BOUNDED, BOUNDED_ON_EDGE, ENDED, EXPANDED, EXPANDED_ON_EDGE, FORCED, PRICED, PRICED_ON_EDGE, STEERED,
+};
 use super::scope::size;
 use crate::derive::Id;
+use crate::lower::Input;
 
 /// The data for the types of `Controlled`.
 pub(super) struct ControlTypes<'a> {
@@ -76,7 +79,17 @@ impl SystemEmitter<'_, '_> {
         let scope = self.scope_of_system();
         let functions = |words: &Words<'_>| {
             let words = |word: &str| words(word).or_else(|| self.word_of_control(word, &types));
-            let tables = [CONTROLLED, if is_steered { STEERED } else { FORCED }];
+            let tables = [
+                if self.on_edge.price { PRICED_ON_EDGE } else { PRICED },
+                if self.on_edge.bounds { BOUNDED_ON_EDGE } else { BOUNDED },
+                ENDED,
+                if is_steered { STEERED } else { FORCED },
+                match self.on_edge.price {
+                    _ if is_steered => &[],
+                    true => EXPANDED_ON_EDGE,
+                    false => EXPANDED,
+                },
+            ];
             let written = tables.map(|table| {
                 self.functions(table, (0, 0), &words, |function, kernel| {
                     let body = function.written(&scope, kernel, &words)?;
@@ -109,10 +122,29 @@ impl SystemEmitter<'_, '_> {
             "Place" if types.is_steered => quote!(x),
             "Place" => quote!(&x.0),
             "End" => match self.kernels.find(Id::PriceOfEnd) {
-                Some(kernel) => self.scope_of_system().body_of_scalar(kernel),
+                Some(kernel) => {
+                    let (state, body) = (self.state_at_end(), self.scope_of_system().body_of_scalar(kernel));
+                    quote!(#state #body)
+                }
                 None => quote!(<T as runtime::Zero>::zero()),
             },
-            "EndExpanded" => self.endpoint_expanded().unwrap_or(quote!(runtime::no_endpoint())),
+            "EndExpanded" => match self.endpoint_expanded() {
+                Some(body) => {
+                    let state = self.state_at_end();
+                    quote!(#state #body)
+                }
+                None => quote!(runtime::no_endpoint()),
+            },
+            "PriceSlope" => {
+                let (scope, kernel) = (self.scope_of_system(), self.kernels.kernel(Id::PriceExpanded));
+                let (locals, slope) = (scope.locals(kernel), scope.output(kernel, 1));
+                quote!({ #locals #slope })
+            }
+            "Drifted" => quote! {
+                let (constants, h) = (&constants.0, constants.1);
+                let (q, n) = x;
+                let d = &runtime::Variational::drift(self, constants, 0, t, q, n, u)?;
+            },
             "Moved" => {
                 let scope = self.scope_of_system();
                 let [increment, advance] = both([Id::Increment, Id::Advance], |id| self.kernels.kernel(id));
@@ -124,22 +156,38 @@ impl SystemEmitter<'_, '_> {
                     let next = { #within #advance };
                 }
             }
-            "Passed" => {
+            "Crossed" => {
+                let drifted = self.word_of_control("Drifted", types);
                 let (scope, kernel) = (self.scope_of_system(), self.kernels.kernel(Id::ByInput));
                 let (locals, [before, after]) = (scope.locals(kernel), both([0, 1], |k| scope.output(kernel, k)));
                 quote! {
-                    let (constants, h) = (&constants.0, constants.1);
-                    let (q, n) = x;
-                    let d = &runtime::Variational::drift(self, constants, 0, t, q, n, u)?;
+                    #drifted
                     let next = &runtime::Variational::advance(self, q, d);
                     let edge = runtime::Variational::carried(self, constants, 0, t, (q, d, next, u));
                     let (before, after): (runtime::SMatrix<T, #m, #u>, runtime::SMatrix<T, #m, #u>) = { #locals (#before, #after) };
-                    let link = runtime::Link::new(&edge, &before, &after, costate).ok_or(runtime::Error::SingularTangent { step_size: runtime::Scalar::to_f64(h) })?;
-                    let (mu, kappa) = (&link.costate, &link.multiplier);
                 }
             }
+            "Linked" => linked(quote!(new(&edge, &before, &after, costate))),
+            "Pushed" => linked(quote!(priced(&edge, &before, &after, costate, &pushed))),
             _ => return None,
         })
+    }
+
+    /// Whether the price of the end takes the velocity there.
+    pub(super) fn prices_velocity_at_end(&self) -> bool {
+        self.model.endpoint.as_ref().is_some_and(|price| !price.velocities.is_empty())
+    }
+
+    /// The momentum at the end, and Σ⁻¹, where the price of the end takes the velocity.
+    fn state_at_end(&self) -> TokenStream {
+        if !self.prices_velocity_at_end() {
+            return TokenStream::new();
+        }
+        let is_inverse = |(input, _): (&Input, Shape)| input.role == Role::InertiaInverse;
+        let kernel = self.kernels.kernel(Id::PriceOfEndExpanded);
+        let constant = kernel.inputs().into_iter().any(is_inverse);
+        let constant = constant.then(|| quote!(let inertia_inverse = &constants.0.inertia_inverse;));
+        quote!(#constant let mu = &x.1;)
     }
 
     /// φ with its derivatives, at `q` and `t`.
@@ -148,5 +196,13 @@ impl SystemEmitter<'_, '_> {
         let (locals, [price, by_time]) = (scope.locals(kernel), both([0, 1], |k| scope.scalar(kernel, k)));
         let [slope, curvature] = both([2, 3], |k| scope.output(kernel, k));
         Some(quote!(#locals runtime::endpoint(#price, #by_time, &#slope, &#curvature)))
+    }
+}
+
+/// The linearised step over an edge, with the costate at its end and the multipliers of its equation.
+fn linked(made: TokenStream) -> TokenStream {
+    quote! {
+        let link = runtime::Link::#made.ok_or(runtime::Error::SingularTangent { step_size: runtime::Scalar::to_f64(h) })?;
+        let (mu, kappa) = (&link.costate, &link.multiplier);
     }
 }

@@ -494,12 +494,28 @@ functions! {
         fn follow(&self, constants: &(C, T), t: T, x: &(Q, Mu), u: &Input) -> Result<(Q, Mu), Error> { Id::Increment => Id::Controls } = {
             runtime::forced_step(self, &constants.0, t, x, u)
         }
+        /// (Gᵀ(q* − q), N* − N) and (GᵀG, I).
+        fn arrival(&self, x: &(Q, Mu), target: &(Q, Mu)) -> Arrival { Id::OrbitMetric => } = {
+            let approach = runtime::Variational::approach(self, &x.0, &target.0);
+            let metric = runtime::Variational::orbit_metric(self, &x.0);
+            runtime::arrival_of_state(&metric, &approach, &(target.1 - x.1))
+        }
+        /// The shortest motion that moves one configuration to another, to first order, and the change of the momentum.
+        fn displacement(&self, x: &(Q, Mu), y: &(Q, Mu)) -> Costates { Id::Approach } = {
+            let approach = runtime::Variational::approach(self, &x.0, &y.0);
+            let motion = runtime::displacement(&runtime::Variational::orbit_metric(self, &x.0), &approach);
+            runtime::pair(&motion, &(y.1 - x.1))
+        }
+    }
+
+    /// `Controlled`: a forced step with a price of places and inputs.
+    EXPANDED(false) {
         /// The forced step with its derivatives, and the second derivatives of ℓ + λ·(η′, N⁺). With the multipliers κ
         /// of the momentum equation they are those of α·η′ + β·F⁺ℓd + κ·(F⁻ℓd − N). η′ contributes ± ½ α·[Ad η, ζ].
         fn expand(&self, constants: &(C, T), t: T, x: &(Q, Mu), u: &Input, costate: &Costates) -> Result<Expansion, Error> {
             Id::PriceExpanded => Id::StepExpanded
         } = {
-            Passed
+            Crossed Linked
             let curvature: Curvature = Bend;
             let mu = &link.driving;
             let bracket: Square = Bracket;
@@ -516,39 +532,95 @@ functions! {
         fn price_of_time(&self, constants: &(C, T), t: T, k: T, x: &(Q, Mu), u: &Input, costate: &Costates) -> Result<T, Error> {
             Id::PriceOfTime
         } = {
-            Passed
+            Crossed Linked
             let slopes: runtime::SVector<T, 2> = { Locals Value0 };
             runtime::Ok(slopes[0] + k * slopes[1])
         }
-        /// (Gᵀ(q* − q), N* − N) and (GᵀG, I).
-        fn arrival(&self, x: &(Q, Mu), target: &(Q, Mu)) -> Arrival { Id::OrbitMetric => } = {
-            let approach = runtime::Variational::approach(self, &x.0, &target.0);
-            let metric = runtime::Variational::orbit_metric(self, &x.0);
-            runtime::arrival_of_state(&metric, &approach, &(target.1 - x.1))
+    }
+
+    /// `Controlled`: a forced step with a price that takes its velocity.
+    EXPANDED_ON_EDGE(false) {
+        /// The forced step with its derivatives, and the second derivatives of ℓ + λ·(η′, N⁺). With the multipliers κ
+        /// of the momentum equation they are those of ℓ + α·η′ + β·F⁺ℓd + κ·(F⁻ℓd − N). η′ contributes ± ½ α·[Ad η, ζ].
+        fn expand(&self, constants: &(C, T), t: T, x: &(Q, Mu), u: &Input, costate: &Costates) -> Result<Expansion, Error> {
+            Id::PriceExpanded => Id::StepExpanded
+        } = {
+            Crossed
+            let (price, slope, bend) = { Locals (Number0, Value1, Value2) };
+            let pushed = runtime::along_end(&slope);
+            Pushed
+            let curvature: Curvature = Bend;
+            let mu = &link.driving;
+            let bracket: Square = Bracket;
+            let next = runtime::check_reached((*next, edge.momentum))?;
+            runtime::Ok(link.expansion_of_edge(next, &curvature, &bracket, (price, &slope, &bend)))
         }
-        /// The shortest motion that moves one configuration to another, to first order, and the change of the momentum.
-        fn displacement(&self, x: &(Q, Mu), y: &(Q, Mu)) -> Costates { Id::Approach } = {
-            let approach = runtime::Variational::approach(self, &x.0, &y.0);
-            let motion = runtime::displacement(&runtime::Variational::orbit_metric(self, &x.0), &approach);
-            runtime::pair(&motion, &(y.1 - x.1))
+        /// d/dh (ℓ + λ·(η′, N⁺)), the start of the step moving with h.
+        fn price_of_time(&self, constants: &(C, T), t: T, k: T, x: &(Q, Mu), u: &Input, costate: &Costates) -> Result<T, Error> {
+            Id::PriceOfTime
+        } = {
+            Crossed
+            let pushed = runtime::along_end(&PriceSlope);
+            Pushed
+            let slopes: runtime::SVector<T, 2> = { Locals Value0 };
+            runtime::Ok(slopes[0] + k * slopes[1])
         }
     }
 
-    /// `Controlled`: price, bounds and the price of the end.
-    CONTROLLED(false) {
+    /// `Controlled`: the price of a step.
+    PRICED(false) {
         /// The price of a step.
-        fn price(&self, constants: &Self::Constants, t: T, x: &Self::Place, u: &Input) -> T { Id::Price } = { let (h, q) = (StepSize, Place); Locals Number0 }
-        /// The bounds.
-        fn bounds(&self, t: T, x: &Self::Place, u: &Input) -> Bounds { Id::Bounds } = { let q = Place; Locals Value0 }
-        /// The bounds with their derivatives, and the second derivatives of z·a.
-        fn bounds_expanded(&self, t: T, x: &Self::Place, u: &Input, z: &Bounds) -> BoundsExpansion { Id::BoundsExpanded } = {
-            let q = Place; Locals
-            runtime::bounds(Value0, &Value1, Value2, &Value3, &Value4, Value5)
+        fn price(&self, constants: &Self::Constants, t: T, x: &Self::Place, u: &Input) -> Result<T, Error> { Id::Price } = {
+            let (h, q) = (StepSize, Place); Locals runtime::Ok(Number0)
         }
+    }
+
+    /// `Controlled`: the price of a step that takes its velocity.
+    PRICED_ON_EDGE(false) {
+        /// The price of a step.
+        fn price(&self, constants: &Self::Constants, t: T, x: &Self::Place, u: &Input) -> Result<T, Error> { Id::Price } = {
+            Drifted Locals runtime::Ok(Number0)
+        }
+    }
+
+    /// `Controlled`: bounds of places and inputs.
+    BOUNDED(false) {
+        /// The bounds.
+        fn bounds(&self, constants: &Self::Constants, t: T, x: &Self::Place, u: &Input) -> Result<Bounds, Error> { Id::Bounds } = {
+            let q = Place; Locals runtime::Ok(Value0)
+        }
+        /// The bounds with their derivatives, and the second derivatives of z·a.
+        fn bounds_expanded(&self, constants: &Self::Constants, t: T, x: &Self::Place, u: &Input, z: &Bounds) -> Result<BoundsExpansion, Error> { Id::BoundsExpanded } = {
+            let q = Place; Locals
+            runtime::Ok(runtime::bounds(Value0, &Value1, Value2, &Value3, &Value4, Value5))
+        }
+    }
+
+    /// `Controlled`: bounds that take the velocity of a step.
+    BOUNDED_ON_EDGE(false) {
+        /// The bounds.
+        fn bounds(&self, constants: &Self::Constants, t: T, x: &Self::Place, u: &Input) -> Result<Bounds, Error> { Id::Bounds } = {
+            Drifted Locals runtime::Ok(Value0)
+        }
+        /// The bounds with their derivatives, and the second derivatives of z·a, those of z·a + κ·(F⁻ℓd − N) with the
+        /// multipliers κ of the momentum equation.
+        fn bounds_expanded(&self, constants: &Self::Constants, t: T, x: &Self::Place, u: &Input, z: &Bounds) -> Result<BoundsExpansion, Error> { Id::BoundsExpanded } = {
+            let costate: &Costates = &runtime::Space::origin();
+            Crossed
+            let (values, slopes, bend) = { Locals (Value0, Value1, Value2) };
+            let pushed = runtime::pushed_along_end(&slopes, z);
+            Pushed
+            let curvature: Curvature = Bend;
+            runtime::Ok(link.bounds(values, &slopes, &(curvature + bend)))
+        }
+    }
+
+    /// `Controlled`: the price of the end.
+    ENDED(false) {
         /// The price of the end.
-        fn endpoint(&self, t: T, x: &Self::Place) -> T { Id::PriceOfEnd } = { let q = Place; End }
+        fn endpoint(&self, constants: &Self::Constants, t: T, x: &Self::Place) -> T { Id::PriceOfEnd } = { let q = Place; End }
         /// The price of the end with its derivatives.
-        fn endpoint_expanded(&self, t: T, x: &Self::Place) -> EndpointExpansion { Id::PriceOfEndExpanded } = { let q = Place; EndExpanded }
+        fn endpoint_expanded(&self, constants: &Self::Constants, t: T, x: &Self::Place) -> EndpointExpansion { Id::PriceOfEndExpanded } = { let q = Place; EndExpanded }
     }
 }
 

@@ -29,7 +29,7 @@ use proc_macro2::{Ident, Literal, TokenStream};
 use quote::{ToTokens, format_ident, quote};
 
 use crate::MethodProgram;
-use crate::derive::{self, FormulaTable, MechanicsFormulas, Symbols, SystemFormulas};
+use crate::derive::{self, FormulaTable, MechanicsFormulas, OnEdge, Symbols, SystemFormulas};
 use crate::lower::{KernelTable, MechanicsProgram, Program};
 use crate::model::{Item, Mechanics, Opaque, Power, System};
 use block::{Block, Target, anonymous, leaf, matrix};
@@ -131,6 +131,8 @@ struct SystemEmitter<'a, 'g> {
     symbols: &'a Symbols<'g>,
     rows: &'a FormulaTable<'g>,
     kernels: &'a KernelTable,
+    /// The functions of inputs that take the velocity of a step.
+    on_edge: OnEdge,
     keeps_matrices: bool,
     /// Whether it is the site of a field. Sites do not wait for each other: the number of operations counts, not their chain.
     is_of_field: bool,
@@ -261,6 +263,7 @@ impl<'a, 'g> SystemEmitter<'a, 'g> {
             symbols,
             rows,
             kernels,
+            on_edge: formulas.steering.as_ref().map(|steering| steering.on_edge).unwrap_or_default(),
             keeps_matrices: false,
             is_of_field: false,
             power,

@@ -8,7 +8,7 @@ use quote::{ToTokens, quote};
 use super::block::{Block, Target, anonymous, leaf, matrix, time_type, types_of_system};
 use super::control::ControlTypes;
 use super::function::{Body, Function, Words, no_words};
-use super::functions::{CONTROLLED, FORCED, STEERED, SYSTEM};
+use super::functions::{BOUNDED, ENDED, EXPANDED, FORCED, PRICED, STEERED, SYSTEM};
 use super::names::Names;
 use super::scope::nested_type;
 use crate::model::Outline;
@@ -88,6 +88,7 @@ fn controlled(block: &Block<'_>, declaration: &Declaration, outline: &Outline) -
         inputs: outline.input.1.iter().map(|(shape, _)| shape.len()).sum(),
         bounds: vec![""; bounds],
     };
-    let table = if types.is_steered { STEERED } else { FORCED };
-    Some(types.implementation(block, |words| uncalled(block, table.iter().chain(CONTROLLED), words)))
+    let step = if types.is_steered { [STEERED, &[]] } else { [FORCED, EXPANDED] };
+    let functions = step.into_iter().chain([PRICED, BOUNDED, ENDED]).flatten();
+    Some(types.implementation(block, |words| uncalled(block, functions, words)))
 }

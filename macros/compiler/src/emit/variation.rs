@@ -120,6 +120,8 @@ impl Emitter<'_, '_> {
                 let code = quote!(runtime::Clebsch::momentum_map(self, q, &(#difference)));
                 return Some(Body::from(code));
             }
+            // a price of the velocity is one of states, and no path is priced by it
+            "endpoint" if self.prices_velocity_at_end() => return None,
             "endpoint" => {
                 return Some(Body::from(self.endpoint_expanded()?).inlined(quote!()));
             }

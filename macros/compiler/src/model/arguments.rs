@@ -8,7 +8,7 @@ use super::power::Length;
 use super::scope::check_reserved;
 use super::shapes::{const_generic, last_name, number, plain, vectors};
 use crate::diagnostic::{Diagnostic, Diagnostics, bail, error, refuse, report};
-use crate::parse::{Argument, Declaration, Kinetic, Pattern, spell, spell_type};
+use crate::parse::{Argument, Closure, Declaration, Kinetic, Pattern, spell, spell_type};
 
 /// How a product by a number, `[SE<3>; 4]`, is read.
 #[derive(Copy, Clone, PartialEq, Eq)]
@@ -30,7 +30,7 @@ pub(super) struct TypedArguments<'d> {
     pub sites: Option<Length>,
     /// The input, as the closure that introduces it calls it.
     pub input: Option<&'d Pattern>,
-    /// The velocity, as the Lagrangian calls it.
+    /// The velocity, as the Lagrangian calls it, or else a force.
     pub velocity: Option<&'d Pattern>,
     pub diagnostics: &'d Diagnostics,
 }
@@ -72,7 +72,11 @@ pub(super) fn of_action<'d>(
     let input = declaration.input().map(|argument| &argument.pattern);
     let velocity = match &declaration.kinetic {
         Kinetic::Lagrangian(lagrangian) => lagrangian.arguments.last().map(|argument| &argument.pattern),
-        _ => None,
+        _ => {
+            let forces = declaration.force.iter().chain(&declaration.force_on);
+            let untyped = |force: &'d Closure| force.arguments.iter().rfind(|argument| argument.ty.is_none());
+            forces.filter_map(untyped).map(|argument| &argument.pattern).next()
+        }
     };
     let (group, space) = (group?, space?);
     let types = TypedArguments { element, group, configuration, space, sites: None, input, velocity, diagnostics };

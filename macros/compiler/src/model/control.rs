@@ -1,17 +1,20 @@
 //! The choice of inputs: the closures `controls` and `dynamics`, the price, the bounds and the price of the end.
 
-use clebsch_symbolic::Expr;
+use clebsch_symbolic::{Expr, IntoList};
 use syn::{BinOp, Expr as Syntax};
 
 use super::closures::{chosen_discretization, optional, scalar, written};
 use super::elaborate::Elaborator;
 use super::features::{self, Feature, Found};
 use super::groups::without_cayley_map;
-use super::slots::{BOUNDS, CONTROLS, DYNAMICS, POTENTIAL, PRICE, RIGHT_HAND_SIDE, Slot};
+use super::scope::Scope;
+use super::slots::{
+    BOUNDS, BOUNDS_OF_FORCES, CONTROLS, DYNAMICS, EFFORT, END, Matched, POTENTIAL, PRICE, RIGHT_HAND_SIDE, Slot,
+};
 use super::space::{Space, new_value_of};
-use super::typed::ActedSystem;
+use super::typed::{ActedSystem, Velocity, part};
 use super::value::Value;
-use super::{Bound, Discretization, InputChoice, Motion};
+use super::{Bound, Discretization, EndPrice, InputChoice, Motion};
 use crate::diagnostic::{Diagnostic, Diagnostics, error, refuse};
 use crate::parse::{
     self, Argument, Closure, Declaration, Located, RungeKutta, joined, parenthesized, shortened, spell, tail,
@@ -94,7 +97,7 @@ impl<'g> ActedSystem<'_, '_, 'g> {
     }
 
     /// The price and the bounds; `None` if one has an error.
-    pub fn choice(&mut self, control: &parse::Choice, input: &Space<'g>) -> Option<InputChoice<'g>> {
+    pub fn choice(&mut self, control: &parse::Choice, input: &Space<'g>, is_steered: bool) -> Option<InputChoice<'g>> {
         let diagnostics = self.context.diagnostics;
         let [leaf] = input.leaves.as_slice() else {
             refuse!(diagnostics, control.price.head, "the input has to be one vector";
@@ -105,20 +108,64 @@ impl<'g> ActedSystem<'_, '_, 'g> {
             refuse!(diagnostics, control.price.head, "the input has to be a vector, and `{name}` is {shape}";
                 help "write `u: Vector3`");
         }
-        let matched = self.arguments.matched(&control.price, PRICE);
-        let scope = self.arguments.scope(&matched, &[(Slot::Chosen, Some(input.value()))]);
-        let price = scalar(self.context, &control.price, scope, "a price is a scalar");
-        let bounds = optional(control.bounds.as_ref(), |closure| self.bounds(closure, input));
-        Some(InputChoice { price: price?, bounds: bounds?.unwrap_or_default(), written: written(&control.price) })
+        let matched = self.arguments.matched(&control.price, if is_steered { PRICE } else { EFFORT });
+        let priced = self.with_velocity(&matched, Some(input)).and_then(|(scope, velocities)| {
+            let price = scalar(self.context, &control.price, scope, "a price is a scalar")?;
+            Some((price, velocities))
+        });
+        let bounded = optional(control.bounds.as_ref(), |closure| self.bounds(closure, input, is_steered));
+        let ((price, velocities), bounded) = (priced?, bounded?);
+        let (mut bounds, of_bounds) = bounded.unwrap_or_default();
+        // price and bounds speak of one velocity, each under its own name
+        if !velocities.is_empty() {
+            let names: Vec<_> = of_bounds.iter().copied().zip(velocities.iter().copied()).into_list();
+            bounds.iter_mut().for_each(|bound| bound.value = bound.value.substitute(&names));
+        }
+        let velocities = if velocities.is_empty() { of_bounds } else { velocities };
+        Some(InputChoice { price, velocities, bounds, written: written(&control.price) })
     }
 
-    /// The price of the end; `None` if it has an error.
-    pub fn endpoint(&mut self, closure: &Closure) -> Option<Expr<'g>> {
-        scalar(self.context, closure, self.arguments.scope_of(closure, POTENTIAL), "a price is a scalar")
+    /// The price of the end, with the velocity there, one for each factor, where it takes one; `None` if it has an
+    /// error.
+    pub fn endpoint(&mut self, closure: &Closure, is_steered: bool) -> Option<EndPrice<'g>> {
+        let matched = self.arguments.matched(closure, if is_steered { POTENTIAL } else { END });
+        let (scope, velocities) = self.with_velocity(&matched, None)?;
+        let value = scalar(self.context, closure, scope, "a price is a scalar")?;
+        Some(EndPrice { value, velocities, written: written(closure) })
     }
 
-    /// `[a <= b, …]` as a − b ≤ 0.
-    fn bounds(&mut self, closure: &Closure, input: &Space<'g>) -> Option<Vec<Bound<'g>>> {
+    /// The scope of a price, and the symbols of the velocity, one for each factor; none if it takes no velocity.
+    fn with_velocity(
+        &mut self,
+        matched: &Matched<'_>,
+        input: Option<&Space<'g>>,
+    ) -> Option<(Scope<'g>, Vec<Expr<'g>>)> {
+        let velocity =
+            Velocity { graph: self.context.graph, factors: self.factors, diagnostics: self.context.diagnostics };
+        let pattern = matched.argument(Slot::Velocity).map(|argument| &argument.pattern);
+        let (value, velocities) = optional(pattern, |pattern| {
+            // a part of the velocity is found in all of it
+            let all = self.arguments.names.declared_velocity().filter(|all| all.holds(pattern)).unwrap_or(pattern);
+            let (value, symbols) = velocity.of(all, self.element)?;
+            Some((part(all, &value, pattern)?, symbols))
+        })?
+        .unzip();
+        let velocities = velocities.unwrap_or_default();
+        let introduced = [(Slot::Velocity, value), (Slot::Chosen, input.map(Space::value))];
+        let mut scope = self.arguments.scope(matched, &introduced);
+        if !velocities.is_empty() {
+            scope.set_velocities(&velocities, self.factors);
+        }
+        Some((scope, velocities))
+    }
+
+    /// `[a <= b, …]` as a − b ≤ 0, with the velocity, one for each factor, where it is taken.
+    fn bounds(
+        &mut self,
+        closure: &Closure,
+        input: &Space<'g>,
+        is_steered: bool,
+    ) -> Option<(Vec<Bound<'g>>, Vec<Expr<'g>>)> {
         let diagnostics = self.context.diagnostics;
         let body = tail(&closure.body);
         let Syntax::Array(list) = body else {
@@ -127,12 +174,13 @@ impl<'g> ActedSystem<'_, '_, 'g> {
                 help "write `bounds = |{}| [{}]`", joined(closure.arguments.iter().map(Argument::spell)), conjuncts(body).unwrap_or(format!("-1 <= {name}.x, {name}.x <= 1")));
         };
         // arguments are matched once, so that a mistake in them is told once
-        let matched = self.arguments.matched(closure, BOUNDS);
+        let matched = self.arguments.matched(closure, if is_steered { BOUNDS } else { BOUNDS_OF_FORCES });
         if matched.has_error() {
             return None;
         }
+        let (_, velocities) = self.with_velocity(&matched, Some(input))?;
         let mut side = |side: &Syntax| {
-            let scope = self.arguments.scope(&matched, &[(Slot::Chosen, Some(input.value()))]);
+            let (scope, _) = self.with_velocity(&matched, Some(input))?;
             let value = Elaborator::new(self.context, "bounds", scope).elaborate(side)?;
             let Some(scalar) = value.matrix().filter(|value| value.shape().is_scalar()) else {
                 let (text, is) = (shortened(side), value.describe());
@@ -148,7 +196,8 @@ impl<'g> ActedSystem<'_, '_, 'g> {
             }
             Some(Bound { value: side(lower)? - side(upper)?, text: spell(inequality) })
         };
-        list.elems.iter().map(bound).collect()
+        let bounds = list.elems.iter().map(bound).collect::<Option<Vec<_>>>()?;
+        Some((bounds, velocities))
     }
 }
 

@@ -234,7 +234,7 @@ struct ClosureValues<'g> {
     edges: Vec<EdgeEnergy<'g>>,
     input: Space<'g>,
     control: Option<InputChoice<'g>>,
-    endpoint: Option<Expr<'g>>,
+    endpoint: Option<EndPrice<'g>>,
 }
 
 impl<'g> ClosureValues<'g> {
@@ -259,7 +259,8 @@ impl<'g> ClosureValues<'g> {
         let offered = declaration.symmetries.iter().enumerate();
         let symmetries = offered.filter_map(|symmetry| system.symmetry(symmetry)).into_list();
         forces::check_dials(declaration, diagnostics);
-        let endpoint = optional(declaration.endpoint.as_ref(), |closure| system.endpoint(closure));
+        let is_steered = declaration.kinetic.is_steered();
+        let endpoint = optional(declaration.endpoint.as_ref(), |closure| system.endpoint(closure, is_steered));
         let forces = system.forces(declaration);
         let is_power = system.context.power.is_some();
         let edges = if is_power { Some(Vec::new()) } else { system.edges(declaration) };
@@ -269,11 +270,11 @@ impl<'g> ClosureValues<'g> {
         let (mover, (force, input)) = match system.motion(declaration) {
             Some((motion, input)) => (Some(Mover::Inputs(motion)), (None, input)),
             // the moving closure has an error, and without it nothing is known of the input
-            None if declaration.kinetic.is_steered() => return None,
+            None if is_steered => return None,
             None => (kinetic.map(Mover::Momenta), forces?),
         };
         let edges = edges?;
-        let control = optional(declaration.control.as_ref(), |control| system.choice(control, &input))?;
+        let control = optional(declaration.control.as_ref(), |control| system.choice(control, &input, is_steered))?;
         Some(ClosureValues {
             action,
             laws: laws?,

@@ -132,7 +132,7 @@ impl System<'_> {
             writeln!(f, "  price      {}", control.price)?;
             control.bounds.iter().try_for_each(|bound| writeln!(f, "  bound      {} <= 0", bound.value))?;
         }
-        self.endpoint.iter().try_for_each(|price| writeln!(f, "  endpoint   {price}"))
+        self.endpoint.iter().try_for_each(|price| writeln!(f, "  endpoint   {}", price.value))
     }
 
     fn print_dials(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {

@@ -33,7 +33,10 @@ pub(super) const CONTROLS: &[Slot] = &[Slot::Time, Slot::Configuration, Slot::In
 pub(super) const DYNAMICS: &[Slot] = &[Slot::Time, Slot::Step, Slot::Configuration, Slot::Input];
 pub(super) const RIGHT_HAND_SIDE: &[Slot] = &[Slot::Time, Slot::Configuration, Slot::Input];
 pub(super) const PRICE: &[Slot] = &[Slot::Time, Slot::Step, Slot::Configuration, Slot::Chosen];
+pub(super) const EFFORT: &[Slot] = &[Slot::Time, Slot::Step, Slot::Configuration, Slot::Velocity, Slot::Chosen];
 pub(super) const BOUNDS: &[Slot] = &[Slot::Time, Slot::Configuration, Slot::Chosen];
+pub(super) const BOUNDS_OF_FORCES: &[Slot] = &[Slot::Time, Slot::Configuration, Slot::Velocity, Slot::Chosen];
+pub(super) const END: &[Slot] = &[Slot::Time, Slot::Configuration, Slot::Velocity];
 pub(super) const SYMMETRY: &[Slot] = &[Slot::Offered, Slot::Configuration, Slot::Element];
 
 /// The arguments of the closure of each key.
@@ -47,9 +50,9 @@ const ARGUMENTS: [(&str, &[Slot]); 12] = [
     ("constraint", CONSTRAINT),
     ("controls", CONTROLS),
     ("dynamics", DYNAMICS),
-    ("effort", PRICE),
-    ("bounds", BOUNDS),
-    ("endpoint", POTENTIAL),
+    ("effort", EFFORT),
+    ("bounds", BOUNDS_OF_FORCES),
+    ("endpoint", END),
 ];
 
 /// The arguments that the closure of a key may take, in their order, as the docs say it; `None` for a key without.
@@ -75,6 +78,7 @@ pub(crate) fn arguments_of(key: &str) -> Option<String> {
         "cost" => "; with `controls` and `dynamics` the input in place of the group element",
         "dynamics" => "; a right-hand side takes no step",
         "constraint" => "; without a velocity it is on the configuration",
+        "bounds" | "endpoint" => "; with `controls` and `dynamics` no velocity",
         _ => "",
     };
     Some(format!("{}{also}", joined(slots.iter().map(name))))
@@ -88,7 +92,9 @@ impl<'d> TypedArguments<'d> {
             Slot::Step => ("h".into(), "the step"),
             Slot::Configuration => (self.configuration.spell(), "the configuration"),
             Slot::Element => (self.element.spell(), "the group element"),
-            Slot::Velocity => ("omega".into(), "the velocity a new name"),
+            Slot::Velocity => {
+                (self.declared_velocity().map_or("omega".into(), Pattern::spell), "the velocity a new name")
+            }
             Slot::Input => ("u: Vector3".into(), "the input, a new name and its type"),
             Slot::Chosen => (self.input.map_or("u".into(), Pattern::spell), "the input"),
             Slot::Offered => ("S: SO<3>".into(), "an element of the symmetry, a new name and its group"),
@@ -111,6 +117,11 @@ impl<'d> TypedArguments<'d> {
             (Slot::Step, Pattern::Name(ident)) => ident == "h",
             _ => self.pattern(slot).is_some_and(|known| known.holds(pattern)),
         })
+    }
+
+    /// The velocity as the Lagrangian or a force calls it.
+    pub(super) fn declared_velocity(&self) -> Option<&'d Pattern> {
+        self.velocity.filter(|pattern| !self.is_known(pattern))
     }
 
     /// Whether a pattern has a meaning in some closure.
@@ -160,7 +171,8 @@ impl<'d> Matched<'d> {
         if slots.contains(&Slot::Offered) && arguments.first().is_some_and(introduces) {
             taken[0] = Some(Slot::Offered);
         }
-        let matched = Matched { closure, names, slots, taken };
+        let mut matched = Matched { closure, names, slots, taken };
+        matched.check_velocity_of_price();
         (0..arguments.len()).for_each(|position| matched.check_argument(position));
         matched.check_order();
         if closure.key == "lagrangian" && !matched.has(Slot::Velocity) && !matched.has_error() {
@@ -168,6 +180,39 @@ impl<'d> Matched<'d> {
                 help "write `{} …`", matched.head(Some(Slot::Velocity)));
         }
         matched
+    }
+
+    /// Whether this is a price or a bound of inputs of forces, or the price of the end.
+    fn is_price(&self) -> bool {
+        self.slots.contains(&Slot::Velocity) && (self.slots.contains(&Slot::Chosen) || self.closure.key == "endpoint")
+    }
+
+    /// In a price a new name may be a slip of the pen for another argument. It is the velocity where the Lagrangian or
+    /// a force calls it so, and where all others are there.
+    fn check_velocity_of_price(&mut self) {
+        let Some(position) = self.taken.iter().position(|slot| *slot == Some(Slot::Velocity)) else { return };
+        let pattern = &self.closure.arguments[position].pattern;
+        let is_declared = self.names.declared_velocity().is_some_and(|velocity| velocity.holds(pattern));
+        let is_free = |slot: &Slot| matches!(slot, Slot::Configuration | Slot::Chosen) && !self.has(*slot);
+        if self.is_price() && !is_declared && self.slots.iter().any(is_free) {
+            self.taken[position] = None;
+        }
+    }
+
+    /// The advice for a new name in a price that may be the velocity.
+    fn of_velocity_of_price(&self, position: usize) -> Option<String> {
+        let pattern = &self.closure.arguments[position].pattern;
+        let is_declared = self.names.declared_velocity().is_some();
+        if !self.is_price() || is_declared || self.has(Slot::Velocity) || self.names.is_known(pattern) {
+            return None;
+        }
+        let all = |slot: &&Slot| !matches!(slot, Slot::Time | Slot::Step) || self.has(**slot);
+        let name = |slot: &Slot| match slot {
+            Slot::Velocity => pattern.spell(),
+            slot => self.names.names(*slot).0,
+        };
+        let all = self.slots.iter().filter(all).map(name);
+        Some(format!("a new name is the velocity where all other arguments are there: `|{}|`", joined(all)))
     }
 
     /// Whether an argument has an error, which was reported.
@@ -244,21 +289,9 @@ impl<'d> Matched<'d> {
         }
     }
 
-    /// The error for a velocity where a price is one of places and inputs.
-    fn price_of_velocity(&self, position: usize) -> Option<Diagnostic> {
-        let Argument { pattern, .. } = &self.closure.arguments[position];
-        let key = &self.closure.key;
-        let is_velocity = self.names.velocity.is_some_and(|velocity| velocity.matches(pattern));
-        let is_price = self.slots == PRICE || self.slots == BOUNDS || key == "endpoint";
-        (is_velocity && is_price).then(|| {
-            let name = pattern.spell();
-            error!(pattern.place(), "the {key} cannot depend on the velocity `{name}`"; help "leave `{name}` out: {}", self.dependence())
-        })
-    }
-
     /// The advice if the potential reads the velocity and this is its pattern in the Lagrangian.
     fn of_velocity(&self) -> Option<(&'d Pattern, String)> {
-        let velocity = self.names.velocity.filter(|_| self.slots == POTENTIAL)?;
+        let velocity = self.names.declared_velocity().filter(|_| self.slots == POTENTIAL)?;
         let name = velocity.spell();
         let q = self.names.configuration.spell();
         Some((
@@ -273,7 +306,7 @@ impl<'d> Matched<'d> {
     fn unknown(&self, position: usize) -> Diagnostic {
         let Argument { pattern, .. } = &self.closure.arguments[position];
         let (name, key) = (pattern.spell(), &self.closure.key);
-        if let Some(error) = self.price_of_velocity(position).or_else(|| self.without_type(position)) {
+        if let Some(error) = self.without_type(position) {
             return error;
         }
         if let Some((_, help)) = self.of_velocity().filter(|(velocity, _)| velocity.matches(pattern)) {
@@ -287,6 +320,9 @@ impl<'d> Matched<'d> {
         let meant = self.meant(position);
         let head = self.head(meant);
         let error = error.help(match meant.map(|slot| (slot, self.names.names(slot))) {
+            Some((Slot::Velocity, (name, _))) if self.is_price() && self.names.declared_velocity().is_some() => {
+                format!("the velocity is called `{name}`: write `{head}`")
+            }
             Some((Slot::Velocity, (_, meaning))) => format!("give {meaning}: write `{head}`"),
             Some((_, (known, meaning))) => format!("the action calls {meaning} `{known}`: write `{head}`"),
             None => format!("write `{head}`"),
@@ -297,6 +333,10 @@ impl<'d> Matched<'d> {
             (Slot::Input, _) => "a new name with its type (input)".to_string(),
             (Slot::Offered, _) => "a new name with its group (symmetry)".to_string(),
             (_, (name, meaning)) => format!("`{name}` ({})", meaning.trim_start_matches("the ")),
+        };
+        let error = match self.of_velocity_of_price(position) {
+            Some(advice) => error.note(advice),
+            None => error,
         };
         let order = if self.slots.len() > 1 { ", in this order" } else { "" };
         error.note(format!("arguments go by name: {}{order}", joined(self.slots.iter().map(describe))))
@@ -372,7 +412,12 @@ impl<'d> Matched<'d> {
         let of_velocity = self.of_velocity().into_iter().flat_map(|(velocity, help)| {
             velocity.names().into_iter().map(move |ident| (ident.unraw().to_string(), help.clone()))
         });
-        missing.chain(of_velocity).into_list()
+        let velocity = self.names.declared_velocity().filter(|_| self.is_price() && !self.has(Slot::Velocity));
+        let of_price = velocity.into_iter().flat_map(|velocity| {
+            let help = format!("take it as an argument: write `{}`", self.head(Some(Slot::Velocity)));
+            velocity.names().into_iter().map(move |ident| (ident.unraw().to_string(), help.clone()))
+        });
+        missing.chain(of_velocity).chain(of_price).into_list()
     }
 
     /// The arguments on which the closure may depend.
@@ -381,7 +426,10 @@ impl<'d> Matched<'d> {
         let has = |slot| self.slots.contains(&slot);
         if has(Slot::Chosen) || (has(Slot::Input) && !has(Slot::Velocity)) {
             let step = if has(Slot::Step) { "the step `h`, " } else { "" };
-            return format!("the {key} may depend on the time `t`, {step}the configuration `{q}` and the input alone");
+            let velocity = if has(Slot::Velocity) { ", the velocity" } else { "" };
+            return format!(
+                "the {key} may depend on the time `t`, {step}the configuration `{q}`{velocity} and the input alone"
+            );
         }
         if has(Slot::Offered) {
             let f = self.names.element.spell();

@@ -130,7 +130,7 @@ impl<'d, 'g> Arguments<'d, 'g> {
 }
 
 /// The value of a pattern, or of a part of it.
-fn part<'g>(whole: &Pattern, value: &Value<'g>, wanted: &Pattern) -> Option<Value<'g>> {
+pub(super) fn part<'g>(whole: &Pattern, value: &Value<'g>, wanted: &Pattern) -> Option<Value<'g>> {
     match (whole, value) {
         _ if whole.matches(wanted) => Some(value.clone()),
         (Pattern::Tuple(patterns, _), Value::Tuple(values)) => {

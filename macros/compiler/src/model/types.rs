@@ -52,8 +52,8 @@ pub struct System<'g> {
     pub input: Layout,
     /// The choice of the inputs; `None` if there is no choice.
     pub control: Option<InputChoice<'g>>,
-    /// φ(t, q), the price of the end; `None` if there is none.
-    pub endpoint: Option<Expr<'g>>,
+    /// The price of the end; `None` if there is none.
+    pub endpoint: Option<EndPrice<'g>>,
     /// The dials that the user turns and that the model is not made of.
     pub dials: Dials,
     /// The items that are emitted with the integrator.
@@ -398,15 +398,27 @@ pub struct Equation {
 
 /// The choice of inputs.
 pub struct InputChoice<'g> {
-    /// ℓ(t, h, q, u), the price of a step.
+    /// ℓ(t, h, q, ξ, u), the price of a step.
     pub price: Expr<'g>,
+    /// ξ for each factor, the velocity of the step; none where neither price nor bounds take it.
+    pub velocities: Vec<Expr<'g>>,
     /// The conditions that have to be satisfied.
     pub bounds: Vec<Bound<'g>>,
     /// The price as written.
     pub written: Written,
 }
 
-/// a(t, q, u) ≤ 0.
+/// φ(t, q, ξ), the price of the end.
+pub struct EndPrice<'g> {
+    /// φ.
+    pub value: Expr<'g>,
+    /// ξ for each factor, the velocity at the end; none if the price takes none.
+    pub velocities: Vec<Expr<'g>>,
+    /// The price as written.
+    pub written: Written,
+}
+
+/// a(t, q, ξ, u) ≤ 0.
 pub struct Bound<'g> {
     /// a.
     pub value: Expr<'g>,

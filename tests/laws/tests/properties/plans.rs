@@ -60,8 +60,10 @@ where
         assert!(place.distance_squared(stage.place()).sqrt() < 1e-11, "the place {k}");
         assert!((control.feedback(stage, stage.place()) - u).amax() < 1e-13, "nothing to correct");
         let next = stages.get(k + 1).map_or(optimum.final_costate(), |next| next.costate());
-        let (step, bounds) =
-            (system.expand(&constants, t, &place, u, next)?, system.bounds_expanded(t, &place, u, stage.multipliers()));
+        let (step, bounds) = (
+            system.expand(&constants, t, &place, u, next)?,
+            system.bounds_expanded(&constants, t, &place, u, stage.multipliers())?,
+        );
         let slope =
             step.price_by_input + step.by_input.transpose() * next + bounds.by_input.transpose() * stage.multipliers();
         assert!(slope.amax() < 1e-8 * size, "stage {k}: {:e}", slope.amax());
@@ -71,11 +73,11 @@ where
             assert!(z >= 0.0 && bound < 1e-9 && (z * bound).abs() < 1e-8 * size, "bound {i} at {k}: {z}, {bound}");
             assert!(stage.active()[i] == (z > -bound) || (z + bound).abs() < 1e-12);
         }
-        price += system.price(&constants, t, &place, u);
+        price += system.price(&constants, t, &place, u)?;
         place = system.follow(&constants, t, &place, u)?;
         t += h;
     }
-    price += system.endpoint(t, &place);
+    price += system.endpoint(&constants, t, &place);
     assert!((optimum.price() - price).abs() < 1e-10 * (1.0 + price.abs()), "{} is not {price}", optimum.price());
     assert!(place.distance_squared(optimum.end()).sqrt() < 1e-11, "the end");
     let gap = target.map_or(0.0, |target| target.distance_squared(optimum.end()).sqrt());
@@ -102,11 +104,11 @@ proptest! {
         assert_near(&next, &moved(&x, &Vector3::new(H * u.x, H * u.y, 0.0)), NEAR, "x exp(hû)");
         let control = system.clone().control(H)?.starting_at(t)?;
         prop_assert_eq!(control.follow(&x, &u)?, next);
-        let price = |s: f64| system.price(&constants, t, &place(s), &(u + du * s));
+        let price = |s: f64| system.price(&constants, t, &place(s), &(u + du * s)).expect("a price");
         prop_assert!((price(0.0) - H * (system.turn_price * u.x.powi(2) + u.y.powi(2)) / 2.0).abs() < NEAR);
-        let bounds = |s: f64| system.bounds(t, &place(s), &(u + du * s));
+        let bounds = |s: f64| system.bounds(&constants, t, &place(s), &(u + du * s)).expect("bounds");
         assert_near(&bounds(0.0), &Vector3::new(-system.top_turn - u.x, u.x - system.top_turn, -u.y), NEAR, "a ≤ 0");
-        let endpoint = |s: f64| system.endpoint(t, &place(s));
+        let endpoint = |s: f64| system.endpoint(&constants, t, &place(s));
         let miss = x.fixed_view::<2, 1>(0, 2) - system.goal;
         prop_assert!((endpoint(0.0) - system.time_price * t - system.miss_price * miss.norm_squared() / 2.0).abs() < NEAR);
 
@@ -118,10 +120,10 @@ proptest! {
         assert_near(&change, &displaced, 1e-8, "A δ + B δu");
         prop_assert!((change_of_price - (price(STEP) - price(-STEP)) / (2.0 * STEP)).abs() < 1e-8);
         prop_assert!(step.next == next && step.price == price(0.0));
-        let expanded = system.bounds_expanded(t, &x, &u, &z);
+        let expanded = system.bounds_expanded(&constants, t, &x, &u, &z)?;
         assert_near(&expanded.values, &bounds(0.0), NEAR, "a");
         assert_near(&(expanded.by_place * delta + expanded.by_input * du), &((bounds(STEP) - bounds(-STEP)) / (2.0 * STEP)), 1e-8, "slopes of a");
-        let end = system.endpoint_expanded(t, &x);
+        let end = system.endpoint_expanded(&constants, t, &x);
         prop_assert!((end.price - endpoint(0.0)).abs() < NEAR && (end.by_time - system.time_price).abs() < NEAR);
         prop_assert!((end.slope.dot(&delta) - (endpoint(STEP) - endpoint(-STEP)) / (2.0 * STEP)).abs() < 1e-8);
         let second = (endpoint(1e-3) - 2.0 * endpoint(0.0) + endpoint(-1e-3)) / 1e-6;
@@ -179,11 +181,12 @@ proptest! {
             prop_assert_eq!(stage.input(), &u);
         }
         let constants = control.system().prepare(H)?;
-        let known: f64 = plan.iter().map(|stage| control.system().price(&constants, 0.0, &start, stage.input())).sum();
+        let prices = plan.iter().map(|stage| control.system().price(&constants, 0.0, &start, stage.input()));
+        let known = prices.sum::<Result<f64, Error>>()?;
         let optimum = control.solve(&start, Target::Place(target), &mut plan)?;
         is_optimal(&control, &start, Some(&target), &optimum)?;
         prop_assert!(optimum.is_minimum());
-        prop_assert!(optimum.price() <= known + control.system().endpoint(H * STEPS as f64, &target) + 1e-9);
+        prop_assert!(optimum.price() <= known + control.system().endpoint(&constants, H * STEPS as f64, &target) + 1e-9);
     }
 
     /// A later start costs its time, and changes nothing else.

@@ -3,7 +3,7 @@
 use super::{bounds, inputs};
 use clebsch_symbolic::{Elements, IntoList};
 
-use crate::derive::{ConstraintFormulas, MOST_LISTED, MechanicsFormulas, Substep};
+use crate::derive::{ConstraintFormulas, MOST_LISTED, MechanicsFormulas, OnEdge, Substep};
 use crate::model::{Constraint, Isotropy, Joint, Order, VelocityRows};
 
 pub(super) fn forces(formulas: &MechanicsFormulas<'_>) -> String {
@@ -28,6 +28,20 @@ pub(super) fn forces(formulas: &MechanicsFormulas<'_>) -> String {
         text += &format!(
             "`control` chooses inputs of least price {bounds}: the step is differentiated twice, by the multipliers of its momentum equation.\n"
         );
+        let OnEdge { price, bounds } = formulas.steering.as_ref().map(|steering| steering.on_edge).unwrap_or_default();
+        let taken = match (price, bounds) {
+            (true, true) => Some("Price and bounds take"),
+            (true, false) => Some("The price takes"),
+            (false, true) => Some("The bounds take"),
+            (false, false) => None,
+        };
+        text += &taken.map_or(String::new(), |taken| {
+            format!("{taken} the velocity ξ(F)/h of the step, and are differentiated through its equation.\n")
+        });
+        let is_moving = model.endpoint.as_ref().is_some_and(|price| !price.velocities.is_empty());
+        if is_moving {
+            text += "The price of the end takes the velocity Σ⁻¹(N − A) of the momentum there.\n";
+        }
     }
     text
 }

@@ -53,6 +53,7 @@ features! {
     Effort "`effort`",
     Bounds "`bounds`",
     Endpoint "`endpoint`",
+    VelocityOfEnd "a velocity in `endpoint`",
     Isotropy "`isotropy`",
     Signature "`signature`",
     Order "`order`",

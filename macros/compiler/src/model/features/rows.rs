@@ -15,7 +15,7 @@ const WITHOUT_MATRICES: &[Feature] =
 
 /// The refused features, the others, the message, the reason, and the replacement.
 #[rustfmt::skip]
-pub(super) const ROWS: [Row; 83] = [
+pub(super) const ROWS: [Row; 85] = [
     // inputs move the configuration
     row(&[Dynamics], &[Controls],
         "there are `controls` and `dynamics`, but one thing moves a configuration", "",
@@ -68,6 +68,14 @@ pub(super) const ROWS: [Row; 83] = [
         "{beside} needs a potential that is a formula",
         "it differentiates forces, and an opaque potential gives a value and a gradient, no second derivatives",
         "write the potential as a closure, or leave out the effort"),
+    row(&[VelocityOfEnd], &[Boundary],
+        "the end of a path of least action has no price of the velocity `{name}`",
+        "where an end is free, least action itself says which momentum it has: J(q, ∂φ/∂q)",
+        "leave `{name}` out, or choose inputs with `effort`"),
+    row(&[VelocityOfEnd], &[GeneralLagrangian],
+        "a price of the velocity `{name}` at the end needs a Lagrangian that is quadratic in it",
+        "the velocity there is Σ⁻¹(N − A), a formula of the momentum only for such a Lagrangian",
+        "leave `{name}` out of `endpoint`; `effort` and `bounds` take the velocity of each step"),
     row(&[OpaquePotential], &[Tangent, Boundary],
         "{beside} needs a potential that is a formula",
         "it differentiates forces, and an opaque potential gives a value and a gradient, no second derivatives",
