@@ -50,7 +50,7 @@ const DIMENSIONS: [(&str, &str); 9] = [
 
 /// Studies have their systems in every order and discretization, and the pictures of the book have theirs; they are those of fixtures.
 /// The bodies of an engine need the standard library.
-const STUDIES: [&str; 4] = ["extremes", "figures", "rapier", "work_precision"];
+const STUDIES: [&str; 5] = ["avian", "extremes", "figures", "rapier", "work_precision"];
 
 fn main() {
     let root = Path::new("../../..");
