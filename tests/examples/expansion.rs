@@ -1,5 +1,5 @@
 //! Times the expansion of every accepted fixture with the compiler built as this program is, by
-//! `cargo run -p clebsch-tests --example expansion [-- --json]`. This is without optimisation, as cargo builds macros
+//! `cargo run -p clebsch-tests --features heavy --example expansion [-- --json]`. This is without optimisation, as cargo builds macros
 //! by default, or with `--release`.
 
 #[path = "../benches/steps/expansion.rs"]

@@ -1,7 +1,7 @@
 //! The cost of a declaration against its size, in both forms of code: time of the expansion, lines of the output, and
 //! time of `cargo build`.
 //!
-//! `cargo run -p clebsch-tests --example growth`, with the compiler as cargo builds macros by default, without
+//! `cargo run -p clebsch-tests --features heavy --example growth`, with the compiler as cargo builds macros by default, without
 //! optimisation. With `-- --compile` a crate of each declaration is built too, by default settings, after its
 //! dependencies. The time is that of expansion and compilation of the struct with a function that makes a step, in the
 //! profile `release`.

@@ -81,10 +81,8 @@ macro_rules! scenes_of_each_kind {
     ($scenes:ident $($more:tt)*) => {
         $scenes! {
             a_collocated_top: collocated_top::CollocatedTop { moments: principal(), weight: 1.3 }, quaternion(), 0.1;
-            a_compensated_top: compensated_top::CompensatedTop { mass_matrix: inertia(), weight: 1.3, center: centre() }, turned(), 0.05;
             a_double_pendulum: double_pendulum::DoublePendulum { mass: [1.0, 0.7], length: [1.0, 0.8], gravity: 9.81 }, [unit(), Vector3::x()], 0.05;
             an_exact_body: exact_body::ExactBody { moments: principal() }, turned(), 0.1;
-            a_first_order_top: first_order_top::FirstOrderTop { mass_matrix: inertia(), weight: 1.3, center: centre() }, turned(), 0.05;
             a_flying_body: flying_body::FlyingBody { mass: 1.2, mass_matrix: inertia().cast(), hook: centre().cast(), stiffness: 2.0 },
                 (Vector3::new(0.5, 0.2, -0.3), turned().cast()), 0.05;
             a_generic_body_in_single_precision: generic_body::GenericBody<f32> { mass_matrix: inertia().cast(), weight: 1.3, center: centre().cast() },
@@ -93,7 +91,6 @@ macro_rules! scenes_of_each_kind {
             a_growing_shape: growing_shape::GrowingShape { stiffness: 1.2 }, Matrix3::identity(), 0.05;
             harmonics: harmonics::Harmonics { mass: 1.2 , coefficients: [[0.1, 0.2, 0.1, 0.05]; 4] }, centre(), 0.05;
             a_heavy_top: heavy_top::HeavyTop { mass_matrix: inertia(), weight: 1.3, center: centre() }, turned(), 0.05;
-            a_reduced_heavy_top: heavy_top_reduced::HeavyTopReduced { mass_matrix: inertia(), moment: centre() }, unit(), 0.05;
             a_spherical_pendulum: spherical_pendulum::SphericalPendulum { mass: 0.7, length: 1.3, gravity: 9.81 }, unit(), 0.05;
             a_spin_chain: spin_chain::SpinChain<3> { exchange: 0.7, field: centre() }, [unit(), Vector3::x(), -unit()], 0.05;
             a_rolling_ball: rolling_ball::RollingBall { mass: 1.3, inertia: 0.7, radius: 0.5, table_rate: 0.9 }, Vector2::new(0.3, -0.2), 0.05;
@@ -111,6 +108,9 @@ macro_rules! every_scene {
     ($scenes:ident) => {
         $crate::scenes_of_each_kind! {
             $scenes
+            a_compensated_top: compensated_top::CompensatedTop { mass_matrix: inertia(), weight: 1.3, center: centre() }, turned(), 0.05;
+            a_first_order_top: first_order_top::FirstOrderTop { mass_matrix: inertia(), weight: 1.3, center: centre() }, turned(), 0.05;
+            a_reduced_heavy_top: heavy_top_reduced::HeavyTopReduced { mass_matrix: inertia(), moment: centre() }, unit(), 0.05;
             a_damped_body: damped_body::DampedBody { inertia: inertia(), damping: 0.1 }, turned(), 0.1;
             an_exact_body_in_four_dimensions: exact_body4::ExactBody4 { mass: four() }, Matrix4::identity(), 0.1;
             a_planar_pendulum: planar_pendulum::PlanarPendulum { 0: 1.2, 1: 0.8 }, Vector2::new(0.6, -0.8), 0.05;

@@ -1,5 +1,5 @@
 //! The documentation of generated code shows the formulas that are computed: each formula as the table has it, by its
-//! id.
+//! id. One fixture in three is read, and all of them where `CLEBSCH_FUZZ` is set.
 
 use std::path::Path;
 
@@ -170,8 +170,11 @@ fn differences(table: &FormulaTable<'_>, program: Option<&MechanicsProgram<'_>>,
 fn methods_show_the_formulas_that_they_compute() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../tests/fixtures/accept");
     let (mut count, mut different) = (0, Vec::new());
-    for entry in std::fs::read_dir(folder).expect("a folder of fixtures") {
-        let path = entry.expect("a file").path();
+    let files = std::fs::read_dir(folder).expect("a folder of fixtures");
+    let mut files: Vec<_> = files.map(|entry| entry.expect("a file").path()).collect();
+    files.sort();
+    let step = if std::env::var_os("CLEBSCH_FUZZ").is_some() { 1 } else { 3 };
+    for path in files.into_iter().step_by(step) {
         let source = std::fs::read_to_string(&path).expect("a readable fixture");
         let file = syn::parse_file(&source).expect("Rust source");
         for item in file.items {
@@ -200,5 +203,5 @@ fn methods_show_the_formulas_that_they_compute() {
         }
     }
     assert!(different.is_empty(), "{}", different.join("\n"));
-    assert!(count >= 50, "only {count} fixtures");
+    assert!(count >= 20, "only {count} fixtures");
 }

@@ -40,23 +40,20 @@ fn item(file: &Path) -> TokenStream {
     item.to_token_stream()
 }
 
-/// Dρ(x)·δ, which the tangent of a chart may have given, is the derivative of ρ, for all numbers.
-#[test]
-fn jacobians_are_derivatives() {
+/// Dρ(x)·δ, which the tangent of a chart may have given, is the derivative of ρ, for all numbers. Returns the equations, and those
+/// whose derivative has another form.
+fn jacobians_are_derivatives(file: &Path, program: &Program<'_>) -> (usize, usize) {
+    let Program::Mechanics(program) = program else { return (0, 0) };
     let (mut count, mut other_forms) = (0, 0);
-    for file in fixtures("accept") {
-        let graph = Graph::new();
-        let Ok(Program::Mechanics(program)) = compile(&graph, item(&file)) else { continue };
-        let symbols = &program.formulas.symbols;
-        for equation in program.formulas.substeps.iter().flat_map(|substep| &substep.equations) {
-            let own = symbols.blocks_of(&equation.components).into_iter().map(|i| symbols.blocks[i]);
-            let directions: Vec<_> = own.map(|block| (block.coordinates, block.direction)).collect();
-            let derivative = equation.residual.differential(&directions);
-            (count, other_forms) = (count + 1, other_forms + usize::from(equation.directional != derivative));
-            assert!(identity::equal(&[equation.directional], &[derivative]), "{}", file.display());
-        }
+    let symbols = &program.formulas.symbols;
+    for equation in program.formulas.substeps.iter().flat_map(|substep| &substep.equations) {
+        let own = symbols.blocks_of(&equation.components).into_iter().map(|i| symbols.blocks[i]);
+        let directions: Vec<_> = own.map(|block| (block.coordinates, block.direction)).collect();
+        let derivative = equation.residual.differential(&directions);
+        (count, other_forms) = (count + 1, other_forms + usize::from(equation.directional != derivative));
+        assert!(identity::equal(&[equation.directional], &[derivative]), "{}", file.display());
     }
-    assert!(count > 60 && other_forms > 3, "{other_forms} of {count} equations");
+    (count, other_forms)
 }
 
 #[test]
@@ -188,18 +185,23 @@ fn numbered_constants(file: &Path, program: &Program<'_>) -> Vec<String> {
     names.iter().filter(|name| is_numbered(name)).cloned().collect()
 }
 
+/// Their constants are named by their formulas too.
 #[test]
-fn accepted_fixtures_compile_to_constants_that_are_named_by_their_formulas() {
+fn accepted_fixtures_compile_to_derivatives_of_their_equations() {
     assert_eq!(signed_terms("a*(b + c) - d"), [(false, "a*(b+c)".to_string()), (true, "d".to_string())]);
     let files = fixtures("accept");
     assert!(files.len() >= 14, "only {} fixtures", files.len());
     let (mut seen, mut numbered) = (0, Vec::new());
+    let (mut count, mut other_forms) = (0, 0);
     for file in files {
         let graph = Graph::new();
         let program = compile(&graph, item(&file)).unwrap_or_else(|errors| panic!("{}: {errors}", file.display()));
         seen += no_constant_is_the_negative_of_another(&file, &program);
         numbered.extend(numbered_constants(&file, &program).into_iter().map(|name| (file.clone(), name)));
+        let (equations, others) = jacobians_are_derivatives(&file, &program);
+        (count, other_forms) = (count + equations, other_forms + others);
     }
+    assert!(count > 60 && other_forms > 3, "{other_forms} of {count} equations");
     assert!(seen > 300, "{seen} constants");
     assert!(numbered.len() <= 33, "{numbered:?}");
 }

@@ -80,7 +80,9 @@ fn weighted(group: &str, n: usize, keys: &str) -> String {
     )
 }
 
+/// Where `CLEBSCH_FUZZ` is set there are more of those that are made at random.
 fn declarations() -> Vec<String> {
+    let is_long = std::env::var_os("CLEBSCH_FUZZ").is_some();
     let moving = "(1 + q[(0, 0)] * q[(0, 1)])";
     let mut all = vec![
         metric("SL<3>", 8, moving, ""),
@@ -101,13 +103,13 @@ fn declarations() -> Vec<String> {
         weighted("SO<5>", 5, "emit = [tangent]"),
         particle(&format!("force = |v| ({}) * v", product(30, &mut Numbers(3)).replace("x.", "v."))),
     ];
-    for seed in 3..7 {
+    for seed in 3..if is_long { 7 } else { 5 } {
         let product = product(14, &mut Numbers(seed));
         all.push(particle(&format!("potential = |x| {product}, emit = [tangent]")));
     }
     let mut numbers = Numbers(1);
     let mut potentials = vec![product(20, &mut numbers), nest(40, &mut numbers), nest(400, &mut numbers)];
-    for _ in 0..3 {
+    for _ in 0..if is_long { 3 } else { 1 } {
         let (n, terms, depth) = (8 + numbers.below(16), 10 + numbers.below(40), 5 + numbers.below(300));
         potentials.extend([product(n, &mut numbers), polynomial(terms, &mut numbers), nest(depth, &mut numbers)]);
     }

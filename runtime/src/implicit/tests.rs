@@ -64,9 +64,9 @@ impl Equation<f64, 3> for Unpredicted {
 }
 
 /// A scalar equation from its residual and slope, with 0 as the predictor.
-struct Curve<F: Fn(f64, f64) -> (f64, f64)>(F, Cell<u32>);
+struct Curve<'a>(&'a dyn Fn(f64, f64) -> (f64, f64), Cell<u32>);
 
-impl<F: Fn(f64, f64) -> (f64, f64)> Equation<f64, 1> for Curve<F> {
+impl Equation<f64, 1> for Curve<'_> {
     type Terms = f64;
     type Jacobian = SMatrix<f64, 1, 1>;
 
@@ -82,7 +82,7 @@ impl<F: Fn(f64, f64) -> (f64, f64)> Equation<f64, 1> for Curve<F> {
 }
 
 fn curve(target: f64, residual: impl Fn(f64, f64) -> (f64, f64)) -> (Result<f64, Error>, u32) {
-    let curve = Curve(residual, Cell::new(0));
+    let curve = Curve(&residual, Cell::new(0));
     let solution = solve(&curve, &Vector1::new(target)).map(|xi| xi.x);
     (solution, curve.1.get())
 }

@@ -31,8 +31,8 @@ fn bits(x: f64) -> u64 {
 /// f in all lanes, and in a single number of each.
 fn agree<L: Scalar<Lane = f64>>(
     name: &str,
-    lanes: impl Fn(L, L) -> L,
-    single: impl Fn(f64, f64) -> f64,
+    lanes: &dyn Fn(L, L) -> L,
+    single: &dyn Fn(f64, f64) -> f64,
     x: [f64; 8],
     y: [f64; 8],
 ) {
@@ -47,7 +47,7 @@ fn agree<L: Scalar<Lane = f64>>(
 fn all_agree<L: Scalar<Lane = f64>>(x: [f64; 8], y: [f64; 8]) {
     macro_rules! operations {
         ($($name:literal |$a:ident, $b:ident| $body:expr;)*) => {$(
-            agree::<L>($name, |$a, $b| $body, |$a, $b| $body, x, y);
+            agree::<L>($name, &|$a, $b| $body, &|$a, $b| $body, x, y);
         )*};
     }
     operations! {

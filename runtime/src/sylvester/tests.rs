@@ -28,7 +28,8 @@ fn orthogonal(seed: &mut u64) -> SMatrix<f64, 6, 6> {
 fn is_that_of_its_matrix<const N: usize, const M: usize>(factor: SMatrix<f64, N, N>, seed: &mut u64) {
     let map = Sylvester::new(factor);
     let matrix: SMatrix<f64, M, M> = matrix_of(|x| map.times(x));
-    let condition = matrix.norm() * matrix.try_inverse().expect("a regular map").norm();
+    let inverse: SMatrix<f64, M, M> = matrix_of(|x| solve_dense(&matrix, x).expect("a regular map").0);
+    let condition = matrix.norm() * inverse.norm();
     let near = |a: &SVector<f64, M>, b: &SVector<f64, M>| (a - b).norm() < 1e-13 * condition * b.norm();
     let [right, column] = [draw(seed), draw(seed)];
 

@@ -3,7 +3,7 @@
 //! For each scene the time of a step, next to the same scheme written by hand and the classical Runge–Kutta method. All
 //! are timed in turn in the same run. Then drifts, the work of a step, and the cost of each fixture's expansion. With
 //! `--json` one line for each of these. The expansion without optimisation, as macros are built by default:
-//! `cargo run -p clebsch-tests --example expansion`.
+//! `cargo run -p clebsch-tests --features heavy --example expansion`.
 
 mod counted;
 mod engine;

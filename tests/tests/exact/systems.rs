@@ -2,13 +2,20 @@
 
 #[rustfmt::skip]
 macro_rules! systems {
-    ($name:ident, $order:literal) => {
-        #[cfg_attr(not(feature = "heavy"), allow(dead_code, reason = "some are for the feature `heavy` alone"))]
+    ($name:ident, $order:literal:
+        $(#[$of_top:meta])? top,
+        $(#[$of_quaternions:meta])? quaternions,
+        $(#[$of_mirrored:meta])? mirrored,
+        $(#[$of_satellite:meta])? satellite,
+        $(#[$of_flying:meta])? flying,
+        $(#[$of_points:meta])? points
+    ) => {
         pub mod $name {
             use clebsch::Clebsch;
             use nalgebra::{Matrix3, Vector3};
 
             /// A heavy top with any inertia tensor.
+            $(#[$of_top])?
             #[derive(Clebsch, Clone, Debug)]
             #[clebsch(
                 action         = |F: SO<3>, R: SO<3>| R * F,
@@ -25,6 +32,7 @@ macro_rules! systems {
             }
 
             /// The same with principal axes, by quaternions.
+            $(#[$of_quaternions])?
             #[derive(Clebsch, Clone, Debug)]
             #[clebsch(
                 action         = |F: SU<2>, Q: SU<2>| Q * F,
@@ -39,6 +47,7 @@ macro_rules! systems {
             }
 
             /// The same seen from the other side: the inverse attitude, moved from the left.
+            $(#[$of_mirrored])?
             #[derive(Clebsch, Clone, Debug)]
             #[clebsch(
                 action         = |F: SO<3>, S: SO<3>| F * S,
@@ -53,6 +62,7 @@ macro_rules! systems {
             }
 
             /// A satellite on a circular orbit: the time matters within a step.
+            $(#[$of_satellite])?
             #[derive(Clebsch, Clone, Debug)]
             #[clebsch(
                 action         = |F: SO<3>, R: SO<3>| R * F,
@@ -71,6 +81,7 @@ macro_rules! systems {
             }
 
             /// A body in space, tied to the origin away from its centre: two factors that the potential couples.
+            $(#[$of_flying])?
             #[derive(Clebsch, Clone, Debug)]
             #[clebsch(
                 action         = |(a, F): (Translation<3>, SO<3>), (x, R): (Vector3, SO<3>)| (x + a, R * F),
@@ -89,6 +100,7 @@ macro_rules! systems {
             }
 
             /// A point on a sphere, whose drift along great circles is exact by the exponential.
+            $(#[$of_points])?
             #[derive(Clebsch, Clone, Debug)]
             #[clebsch(
                 action         = |F: SO<3>, q: Unit<Vector3>| F * q,
@@ -103,6 +115,7 @@ macro_rules! systems {
             }
 
             /// The same with the potential behind methods, which are differentiated once.
+            $(#[$of_points])?
             #[derive(Clebsch, Clone, Debug)]
             #[clebsch(
                 action         = |F: SO<3>, q: Unit<Vector3>| F * q,
@@ -116,6 +129,7 @@ macro_rules! systems {
                 pub waves: f64,
             }
 
+            $(#[$of_points])?
             impl OpaquePendulum {
                 pub fn energy(&self, q: &Vector3<f64>) -> f64 {
                     self.gravity * q.z + self.waves * q.x * q.y
@@ -128,8 +142,13 @@ macro_rules! systems {
     };
 }
 
-systems!(second, 2);
-systems!(fourth, 4);
-systems!(sixth, 6);
-systems!(eighth, 8);
-systems!(sixteenth, 16);
+#[rustfmt::skip]
+systems!(second, 2: top, #[cfg(feature = "heavy")] quaternions, mirrored, #[cfg(feature = "heavy")] satellite, #[cfg(feature = "heavy")] flying, points);
+#[rustfmt::skip]
+systems!(fourth, 4: top, quaternions, mirrored, #[cfg(feature = "heavy")] satellite, flying, points);
+#[rustfmt::skip]
+systems!(sixth, 6: top, #[cfg(feature = "heavy")] quaternions, #[cfg(feature = "heavy")] mirrored, satellite, #[cfg(feature = "heavy")] flying, points);
+#[rustfmt::skip]
+systems!(eighth, 8: top, quaternions, mirrored, #[cfg(feature = "heavy")] satellite, flying, #[cfg(feature = "heavy")] points);
+#[rustfmt::skip]
+systems!(sixteenth, 16: top, #[cfg(feature = "heavy")] quaternions, #[cfg(feature = "heavy")] mirrored, satellite, #[cfg(feature = "heavy")] flying, points);

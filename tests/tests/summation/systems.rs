@@ -4,7 +4,6 @@
 #[rustfmt::skip]
 macro_rules! systems {
     ($name:ident $(, $summation:ident)?) => {
-        #[cfg_attr(not(feature = "heavy"), allow(dead_code, reason = "some are for the feature `heavy` alone"))]
         pub mod $name {
             use clebsch::{Clebsch, Scalar};
             use nalgebra::Vector3;
@@ -34,6 +33,7 @@ macro_rules! systems {
             }
 
             /// The same with drift before kick.
+            #[cfg(feature = "heavy")]
             #[derive(Clebsch, Clone, Debug)]
             #[clebsch(
                 action    = |F: SO<3>, q: Unit<Vector3>| F * q,
@@ -60,6 +60,7 @@ macro_rules! systems {
             }
 
             /// A top by steps of order 4, composed.
+            #[cfg(feature = "heavy")]
             #[derive(Clebsch, Clone, Debug)]
             #[clebsch(
                 action         = |F: SO<3>, R: SO<3>| R * F,
@@ -102,6 +103,7 @@ macro_rules! systems {
             }
 
             /// A particle that is driven: the time matters.
+            #[cfg(feature = "heavy")]
             #[derive(Clebsch, Clone, Debug)]
             #[clebsch(
                 action    = |a: Translation<2>, x: Vector2| x + a,
@@ -114,6 +116,7 @@ macro_rules! systems {
             }
 
             /// The potential at the start of a step alone: half steps are composed with their adjoints.
+            #[cfg(feature = "heavy")]
             #[derive(Clebsch, Clone, Debug)]
             #[clebsch(
                 action = |a: Translation<2>, x: Vector2| x + a,
@@ -125,6 +128,7 @@ macro_rules! systems {
             }
 
             /// A body in a medium with a torque.
+            #[cfg(feature = "heavy")]
             #[derive(Clebsch, Clone, Debug)]
             #[clebsch(
                 action     = |F: SO<3>, R: SO<3>| R * F,
@@ -153,6 +157,7 @@ macro_rules! systems {
             }
 
             /// A body to which an inertia about the vertical is attached: the cost couples.
+            #[cfg(feature = "heavy")]
             #[derive(Clebsch, Clone, Debug)]
             #[clebsch(
                 action     = |F: SO<3>, R: SO<3>| R * F,
@@ -176,6 +181,7 @@ macro_rules! systems {
             }
 
             /// The momentum alone.
+            #[cfg(feature = "heavy")]
             #[derive(Clebsch, Clone, Debug)]
             #[clebsch(
                 action         = |F: SO<3>, R: SO<3>| R * F,

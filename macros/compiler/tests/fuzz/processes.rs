@@ -1,5 +1,7 @@
 //! The same declaration gives the same tokens in another process: at other addresses, in another environment, with other
 //! hashes, and after other declarations.
+//!
+//! One fixture in four is expanded so, and all of them where `CLEBSCH_FUZZ` is set.
 
 use std::hash::{BuildHasher, RandomState};
 use std::process::Command;
@@ -20,7 +22,7 @@ fn expansions(backwards: bool) -> Vec<String> {
         format!("{name} {:016x}", fingerprint(&expand(item).to_string()))
     };
     let mut fixtures: Vec<_> =
-        ["fixtures/accept", "fixtures/reject"].iter().flat_map(|folder| seeds::of(folder)).collect();
+        ["fixtures/accept", "fixtures/reject"].iter().flat_map(|folder| seeds::sample(folder, 4)).collect();
     if backwards {
         fixtures.reverse();
     }
@@ -58,7 +60,7 @@ fn another_process_expands_to_the_same_tokens() {
     assert_ne!(other, format!("{own:016x}"), "the hashes of both processes are alike");
     let found: Vec<&str> = found.split('|').collect();
     let expected = expansions(false);
-    assert!(expected.len() > 100, "only {} fixtures", expected.len());
+    assert!(expected.len() > 60, "only {} fixtures", expected.len());
     for (expected, found) in expected.iter().zip(&found) {
         assert_eq!(expected, found, "a fixture expands to other tokens in another process");
     }

@@ -12,6 +12,13 @@ pub fn all() -> Vec<(String, String)> {
     FOLDERS.iter().flat_map(|folder| of(folder)).collect()
 }
 
+/// One in so many of a folder; all of them where `CLEBSCH_FUZZ` is set.
+#[allow(dead_code, reason = "a fuzz target takes all")]
+pub fn sample(folder: &str, one_in: usize) -> Vec<(String, String)> {
+    let step = if std::env::var_os("CLEBSCH_FUZZ").is_some() { 1 } else { one_in };
+    of(folder).into_iter().step_by(step).collect()
+}
+
 /// The seeds of a folder, sorted by name.
 pub fn of(folder: &str) -> Vec<(String, String)> {
     // two folders up from `macros/compiler` and from `tests/fuzz`

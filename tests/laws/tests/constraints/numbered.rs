@@ -197,7 +197,7 @@ fn four_bodies_by_number_are_those_of_a_const_generic() -> Result<(), Error> {
     let (weight, mass_matrix) = weights();
     let chain = Links { mass_matrix, weight, near, far };
     let by_number = FourLinks { mass_matrix, weight, near, far };
-    step_alike!(by_number, chain, places, [Vector6::new(0.01, 0.02, -0.01, 0.1, 0.0, 0.1); 4], 300, 1e-13);
+    step_alike!(by_number, chain, places, [Vector6::new(0.01, 0.02, -0.01, 0.1, 0.0, 0.1); 4], crate::long(300), 1e-13);
     Ok(())
 }
 

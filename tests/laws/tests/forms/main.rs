@@ -155,6 +155,7 @@ both!(
     }
 );
 
+#[cfg(feature = "heavy")]
 both!(
     compensated_point,
     pole(),
@@ -382,6 +383,7 @@ both!(
     }
 );
 
+#[cfg(feature = "heavy")]
 both!(
     spatial_body,
     Matrix4::identity(),
@@ -417,6 +419,7 @@ both!(
     }
 );
 
+#[cfg(feature = "heavy")]
 both!(
     two_round_bodies,
     (Matrix4::identity(), Matrix4::identity()),
@@ -478,6 +481,7 @@ both!(
     }
 );
 
+#[cfg(feature = "heavy")]
 both!(
     fluid_ellipsoid,
     Matrix3::identity(),

@@ -15,7 +15,7 @@ use nalgebra::{Matrix2, Matrix3, Matrix4, SMatrix, SVector, Vector3, Vector4};
 use crate::{H, NEAR, assert_conserved, assert_reversible, assert_says, assert_says_nowhere};
 
 /// Runs on each group that is not compact.
-const CASES: usize = if cfg!(feature = "heavy") { 3000 } else { 30 };
+const CASES: usize = if cfg!(feature = "heavy") { 3000 } else { 16 };
 
 /// exp A, by a series of A/2¹⁰.
 fn exponential<const N: usize>(a: &SMatrix<f64, N, N>) -> SMatrix<f64, N, N> {

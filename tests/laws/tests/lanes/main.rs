@@ -20,7 +20,7 @@ use systems::{Body4, ExactBody4, FixedBody, SixthTop};
 
 const H: f64 = 0.1;
 /// States of each system, and the steps of each.
-const STATES: usize = if cfg!(feature = "heavy") { 1000 } else { 48 };
+const STATES: usize = if cfg!(feature = "heavy") { 1000 } else { 24 };
 const STEPS: usize = 6;
 
 /// A momentum whose size is anything from one that makes a step of one iteration to one that has none.
@@ -212,7 +212,7 @@ fn exponential_charts_and_functions_of_the_time() {
 fn parameters_of_each_lane() {
     let mut random = Random::new(11);
     let mut count = Count::default();
-    for _ in 0..STATES / 8 {
+    for _ in 0..STATES.div_ceil(8).max(6) {
         let bodies: [Top<f64>; 8] = std::array::from_fn(|_| Top {
             mass_matrix: random.inertia::<3>(),
             weight: random.between(0.0, 5.0),

@@ -174,13 +174,17 @@ fn steps_on_the_cotangent_bundle_are_symplectic() {
         let neumann = Neumann::<Dual<8>> { stiffness: constant(&random.inertia()) };
         assert_symplectic(&neumann, &random.unit::<4>(), &random.vector());
         assert_symplectic(&body::<18>(random), &random.attitude(), &random.matrix());
-        let GenericBody { mass_matrix, weight, center } = body::<18>(random);
-        let first = FirstOrderBody { mass_matrix, weight, center };
-        assert_symplectic(&first, &random.attitude(), &random.matrix());
-        let composed = ComposedBody { mass_matrix, weight, center, skew: Dual::constant(0.1) };
-        assert_symplectic(&composed, &random.attitude(), &random.matrix());
-        let collocated = CollocatedBody { inertia: mass_matrix, weight, center };
-        assert_symplectic(&collocated, &random.attitude(), &random.matrix());
+        // other steps of bodies have the form of their momentum, below
+        #[cfg(feature = "heavy")]
+        {
+            let GenericBody { mass_matrix, weight, center } = body::<18>(random);
+            let first = FirstOrderBody { mass_matrix, weight, center };
+            assert_symplectic(&first, &random.attitude(), &random.matrix());
+            let composed = ComposedBody { mass_matrix, weight, center, skew: Dual::constant(0.1) };
+            assert_symplectic(&composed, &random.attitude(), &random.matrix());
+            let collocated = CollocatedBody { inertia: mass_matrix, weight, center };
+            assert_symplectic(&collocated, &random.attitude(), &random.matrix());
+        }
         let pendulum = CollocatedPendulum::<Dual<6>> { inertia: Dual::constant(1.2), gravity: Dual::constant(3.0) };
         assert_symplectic(&pendulum, &random.unit::<3>(), &random.vector());
         let charge = CollocatedCharge::<Dual<6>> { field: Dual::constant(1.5) };

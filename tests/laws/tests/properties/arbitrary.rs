@@ -3,11 +3,11 @@
 use nalgebra::{Matrix3, Rotation3, SMatrix, SVector, Vector3};
 use proptest::prelude::*;
 
-/// So many cases, and four times as many with the feature `heavy`, unless `PROPTEST_CASES` says otherwise. Nothing is written where one fails: its numbers are printed.
+/// Half as many cases, two at least, and four times as many with the feature `heavy`, unless `PROPTEST_CASES` says otherwise. Nothing is written where one fails: its numbers are printed.
 pub fn cases(number: u32) -> ProptestConfig {
     let asked = ProptestConfig { failure_persistence: None, ..ProptestConfig::default() };
     let is_asked = std::env::var_os("PROPTEST_CASES").is_some();
-    let number = if cfg!(feature = "heavy") { 4 * number } else { number };
+    let number = if cfg!(feature = "heavy") { 4 * number } else { (number / 2).max(2) };
     ProptestConfig { cases: if is_asked { asked.cases } else { number }, max_global_rejects: 100_000, ..asked }
 }
 

@@ -1,7 +1,9 @@
 //! Tangent maps of steps with a constraint.
 
 use super::constrained_systems as systems;
-use super::{Case, Dual, K, NEAR, check, check_on, constant, numbers, of_motions};
+#[cfg(feature = "heavy")]
+use super::of_motions;
+use super::{Case, Dual, K, NEAR, check, check_on, constant, numbers};
 use clebsch::{Clebsch, Variational};
 use clebsch_tests::oracle::random::Random;
 use nalgebra::{DMatrix, Matrix2, Matrix3, Matrix4, SMatrix, SVector, Vector1, Vector2};
@@ -105,8 +107,10 @@ fn a_ball_on_a_turning_table() {
     }
 }
 
+#[cfg(feature = "heavy")]
 type Board<T> = (Matrix3<T>, Vector1<T>, Vector1<T>);
 
+#[cfg(feature = "heavy")]
 #[test]
 fn rows_that_turn_with_a_wheel() {
     let random = &mut Random::new(304);
@@ -118,6 +122,7 @@ fn rows_that_turn_with_a_wheel() {
     }
 }
 
+#[cfg(feature = "heavy")]
 #[test]
 fn a_moving_axis_by_steps_of_fourth_order() {
     let random = &mut Random::new(305);
@@ -230,6 +235,7 @@ fn a_place_that_moves() {
 }
 
 /// The bracket of two bodies.
+#[cfg(feature = "heavy")]
 fn of_two(n: &SVector<f64, 12>) -> SMatrix<f64, 12, 12> {
     let mut form = SMatrix::<f64, 12, 12>::zeros();
     for i in [0, 6] {
@@ -238,6 +244,7 @@ fn of_two(n: &SVector<f64, 12>) -> SMatrix<f64, 12, 12> {
     form
 }
 
+#[cfg(feature = "heavy")]
 #[test]
 fn two_bodies_on_joints() {
     let random = &mut Random::new(310);

@@ -2,7 +2,9 @@
 
 use crate::systems::{symmetric, vector};
 use clebsch::{Clebsch, Scalar};
-use nalgebra::{Matrix2, Matrix3, Matrix4, Vector2, Vector3};
+#[cfg(feature = "heavy")]
+use nalgebra::Matrix4;
+use nalgebra::{Matrix2, Matrix3, Vector2, Vector3};
 
 /// A sleigh on a slope that is pushed along its blade, with friction.
 #[derive(Clebsch, Clone, Debug)]
@@ -60,6 +62,7 @@ pub struct Ball<T: Scalar> {
 }
 
 /// A snakeboard whose rows depend on the angle of the wheels, and whose rotor is driven.
+#[cfg(feature = "heavy")]
 #[derive(Clebsch, Clone, Debug)]
 #[clebsch(
     action     = |(F, a, b): (SE<2>, Translation<1>, Translation<1>), (q, rotor, wheel): (SE<2>, Vector1, Vector1)| (q * F, rotor + a, wheel + b),
@@ -75,6 +78,7 @@ pub struct Snakeboard<T: Scalar> {
 }
 
 /// A body whose spatial angular velocity about a moving axis is given: Veselova's, in spatial momenta.
+#[cfg(feature = "heavy")]
 #[derive(Clebsch, Clone, Debug)]
 #[clebsch(
     action     = |F: SO<3>, R: SO<3>| F * R,
@@ -109,6 +113,7 @@ pub struct Charge<T: Scalar> {
 }
 
 /// Two bodies that hang by ball joints.
+#[cfg(feature = "heavy")]
 #[derive(Clebsch, Clone, Debug)]
 #[clebsch(
     action     = |F: [SE<3>; 2], q: [SE<3>; 2]| [q[0] * F[0], q[1] * F[1]],
@@ -244,12 +249,14 @@ pub fn ball<T: Scalar>(numbers: &[T]) -> Ball<T> {
 }
 
 /// As [`sleigh`].
+#[cfg(feature = "heavy")]
 pub fn snakeboard<T: Scalar>(numbers: &[T]) -> Snakeboard<T> {
     let [mass, length, rotor, wheel] = first(numbers);
     Snakeboard { mass, length, rotor, wheel }
 }
 
 /// As [`sleigh`].
+#[cfg(feature = "heavy")]
 pub fn veselova<T: Scalar>(numbers: &[T]) -> Veselova<T> {
     let [inertia, weight, rate] = first(numbers);
     Veselova { inertia, weight, rate }
@@ -262,6 +269,7 @@ pub fn charge<T: Scalar>(numbers: &[T]) -> Charge<T> {
 }
 
 /// As [`sleigh`].
+#[cfg(feature = "heavy")]
 pub fn bodies<T: Scalar>(numbers: &[T]) -> Bodies<T> {
     Bodies {
         second_moments: [symmetric(numbers), symmetric(&numbers[6..])],
@@ -320,6 +328,7 @@ pub fn place_of_charge<T: Scalar>(charge: &Charge<T>, t: T, x: &Vector3<T>) -> V
 }
 
 /// φ of [`Bodies`].
+#[cfg(feature = "heavy")]
 pub fn places_of_bodies<T: Scalar>(bodies: &Bodies<T>, _: T, q: &[Matrix4<T>; 2]) -> Vec<T> {
     let point = |q: &Matrix4<T>, a: &Vector3<T>| (q * a.push(T::one())).fixed_rows::<3>(0).into_owned();
     let upper = point(&q[0], &bodies.near[0]);

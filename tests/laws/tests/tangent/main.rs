@@ -397,6 +397,7 @@ fn forces_and_inputs() {
 fn composed_steps() {
     let random = &mut Random::new(91);
     for _ in 0..5 {
+        #[cfg(feature = "heavy")]
         check::<systems::Sixth<f64>, systems::Sixth<Dual<K>>, 3, 9>(&Case {
             plain: systems::sixth,
             dual: systems::sixth,

@@ -3,20 +3,15 @@
 use clebsch::{Clebsch, Scalar};
 use nalgebra::{Matrix3, Matrix6, SMatrix, Vector3};
 
-/// An implicit step on a group that acts from the right.
-#[derive(Clebsch, Clone, Debug)]
-#[clebsch(
-    action    = |F: SO<3>, R: SO<3>| R * F,
-    cost      = |h, F| (self.mass_matrix * (F - I) * (F - I).transpose()).trace() / (2 * h),
-    potential = |R| self.weight * (R * self.center).z,
-    emit      = [tangent],
-)]
-pub struct Top<T: Scalar> {
-    #[clebsch(symmetric)]
-    pub mass_matrix: Matrix3<T>,
-    pub weight: T,
-    pub center: Vector3<T>,
-}
+#[path = "shared.rs"]
+mod shared;
+#[cfg(feature = "heavy")]
+#[path = "sixth.rs"]
+mod sixths;
+
+pub use shared::{Composed, Satellite, Top};
+#[cfg(feature = "heavy")]
+pub use sixths::Sixth;
 
 /// A closed form on a sphere, whose points motions fix, with an action from the left.
 #[derive(Clebsch, Clone, Debug)]
@@ -32,25 +27,6 @@ pub struct Pendulum<T: Scalar> {
     pub gravity: T,
 }
 
-/// Two edges a step: a discrete Lagrangian that is not time-symmetric.
-#[derive(Clebsch, Clone, Debug)]
-#[clebsch(
-    action    = |F: SO<3>, R: SO<3>| R * F,
-    cost      = |h, F| {
-        let kinetic = (self.mass_matrix * (F - I) * (F - I).transpose()).trace() / (2 * h);
-        kinetic + self.skew * (F[(1, 0)] - F[(0, 1)]).powi(3) / h
-    },
-    potential = |R| self.weight * (R * self.center).z,
-    emit      = [tangent],
-)]
-pub struct Composed<T: Scalar> {
-    #[clebsch(symmetric)]
-    pub mass_matrix: Matrix3<T>,
-    pub weight: T,
-    pub center: Vector3<T>,
-    pub skew: T,
-}
-
 /// Six coupled unknowns on SE(3).
 #[derive(Clebsch, Clone, Debug)]
 #[clebsch(
@@ -64,25 +40,6 @@ pub struct Vehicle<T: Scalar> {
     pub inertia: Matrix6<T>,
     pub weight: T,
     pub center: Vector3<T>,
-}
-
-/// The logarithm in the Lagrangian, and a potential that knows the time.
-#[derive(Clebsch, Clone, Debug)]
-#[clebsch(
-    action         = |F: SO<3>, R: SO<3>| R * F,
-    lagrangian     = |omega| omega.dot(&(self.inertia * omega)) / 2,
-    discretization = exponential,
-    potential      = |t, R| {
-        let phase = self.orbital_rate * t;
-        let zenith = R.transpose() * Vector3::new(phase.cos(), phase.sin(), 0);
-        3 * self.orbital_rate.powi(2) / 2 * zenith.dot(&(self.inertia * zenith))
-    },
-    emit           = [tangent],
-)]
-pub struct Satellite<T: Scalar> {
-    #[clebsch(symmetric)]
-    pub inertia: Matrix3<T>,
-    pub orbital_rate: T,
 }
 
 /// An inertia that depends on the attitude and on the time: a coupled cost.
@@ -141,21 +98,6 @@ pub struct Steered<T: Scalar> {
     #[clebsch(symmetric)]
     pub inertia: Matrix3<T>,
     pub drag: T,
-}
-
-/// Nine steps in one, each at its own time.
-#[derive(Clebsch, Clone, Debug)]
-#[clebsch(
-    action     = |F: SO<3>, R: SO<3>| R * F,
-    lagrangian = |omega| omega.dot(&(self.inertia * omega)) / 2,
-    potential  = |t, R| R[(0, 1)] * (self.rate * t).cos() + R[(2, 2)].powi(2),
-    order      = 6,
-    emit       = [tangent],
-)]
-pub struct Sixth<T: Scalar> {
-    #[clebsch(symmetric)]
-    pub inertia: Matrix3<T>,
-    pub rate: T,
 }
 
 /// Five steps of two edges in one.
@@ -230,6 +172,7 @@ pub fn steered<T: Scalar>(numbers: &[T]) -> Steered<T> {
 }
 
 /// As [`top`].
+#[cfg(feature = "heavy")]
 pub fn sixth<T: Scalar>(numbers: &[T]) -> Sixth<T> {
     Sixth { inertia: symmetric(numbers), rate: numbers[6] }
 }

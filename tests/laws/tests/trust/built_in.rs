@@ -9,9 +9,9 @@ use nalgebra::SMatrix;
 
 use crate::checks;
 
-// each family in its least size; where the Cayley map leaves the group, its projection makes long formulas: `projection` stands for it on Sim(n)
+// U(1) is SO(2), so SO(n) begins at 3.
+// each family in its least size, and where the Cayley map leaves the group, its projection makes long formulas: `projection` stands for it on Sim(n)
 groups! {
-    so2:         [SO<2>],         2, 1,  cayley,     group::so(2);
     so3:         [SO<3>],         3, 3,  cayley,     group::so(3);
     so12:        [SO<1, 2>],      3, 3,  cayley,     group::pseudo_so(1, 2);
     se2:         [SE<2>],         3, 3,  cayley,     group::se(2);
@@ -24,9 +24,10 @@ groups! {
     heisenberg1: [Heisenberg<1>], 3, 3,  cayley,     group::heisenberg(1);
 }
 
-// larger ones of the same families
+// others of the same families
 #[cfg(feature = "heavy")]
 groups! {
+    so2:         [SO<2>],         2, 1,  cayley,     group::so(2);
     so4:         [SO<4>],         4, 6,  cayley,     group::so(4);
     so5:         [SO<5>],         5, 10, cayley,     group::so(5);
     so13:        [SO<1, 3>],      4, 6,  cayley,     group::pseudo_so(1, 3);
