@@ -8,14 +8,20 @@ use crate::newton::{Curvature, Equilibrated, adapted};
 use crate::space::larger;
 use nalgebra::{SMatrix, SVector};
 
+/// Corrections without the curvature of steps, after most steps had to go without it.
+const STRAIGHT: u32 = 8;
+/// Prices of the gap in a row that bring the end no nearer, after which none will.
+const IN_VAIN: u32 = 2;
 /// Directions that may lack curvature, as those of a symmetry do, while the curvature of steps is counted in full.
 const FLAT: usize = 2;
 /// Corrections in a row that no one sees, after which a plan is critical whatever they were made with: Newton's method would have needed two.
 const CALM: u32 = 5;
 /// Prices of the gap that are tried.
-pub(super) const ROUNDS: u32 = 20;
+const ROUNDS: u32 = 20;
 /// Corrections of this size are near enough a solution for the exact curvature and a fixed weight of the target.
 const NEAR: (i64, i64) = (1, 100);
+/// For corrections of this size the exact model is tried first. From further away it leads to other minima than those next to the guess.
+const TRIED: (i64, i64) = (1, 8);
 /// The way down from a saddle is deeper than so many corrections that are still to be made.
 const DEPTH: f64 = 16.0;
 /// Damping below which there is none.
@@ -48,8 +54,16 @@ pub(super) struct Iterate<T, const D: usize> {
     pub stalls: u32,
     /// Whether no way down from a saddle was found.
     is_cornered: bool,
-    /// How often the price of the gap was raised.
+    /// How often the price of the gap was raised, and how often in a row in vain.
     pub rounds: u32,
+    in_vain: u32,
+    /// The distance to the target before the price was raised.
+    missed: Option<T>,
+    /// Whether the last sweep left out the curvature of steps, and of most of them.
+    is_straightened: bool,
+    is_mostly_straight: bool,
+    /// The number of corrections that still go without that curvature.
+    straight: u32,
 }
 
 /// The decision after a sweep.
@@ -97,22 +111,30 @@ impl<T: Real, const D: usize> Iterate<T, D> {
             stalls: 0,
             is_cornered: false,
             rounds: 0,
+            in_vain: 0,
+            missed: None,
+            is_straightened: false,
+            is_mostly_straight: false,
+            straight: 0,
         }
     }
 
-    /// The quality of the sweep: whether it found enough positive curvature to go downhill. First the critical point of
-    /// the exact model is tried. Else the curvature of the steps is counted less and less, down to that of the price.
+    /// The quality of the sweep: whether its correction goes downhill. A sweep with mirrored curvature leaves out the
+    /// curvature of steps where that leaves no minimum. If the price alone leaves none either, the exact model is tried,
+    /// and then that without the curvature of any step. Near a solution the exact model comes first. Its correction
+    /// counts where the model has a minimum among the plans that reach the target, far from a solution too.
     pub fn judge<const U: usize>(&mut self, summary: &PlanSummary<T, D, U>, gramian: &Equilibrated<T, D>) -> Verdict {
         self.stiffer = gramian.weight(&summary.gramian, &self.settings.weight);
+        self.is_straightened = summary.straightened > 0;
+        self.is_mostly_straight = summary.is_mostly_straight;
         if self.settings.curvature.is_mirrored {
             // Where curvatures are mirrored, directions that inputs reach are hidden by those that have none.
             let rank = gramian.rank();
             self.rank = if summary.negative == 0 { rank } else { self.rank.max(rank) };
-            let bend = self.settings.bend;
-            if summary.negative > 0 && !self.is_probed && !(bend > T::zero() && bend < T::one()) {
+            if summary.negative > 0 && !self.is_probed {
                 self.settings.curvature = Curvature::exact(self.steadiness());
-            } else if summary.negative > FLAT && bend > T::zero() {
-                self.bend_less();
+            } else if summary.negative > FLAT && self.settings.bend > T::zero() {
+                self.straighten();
                 self.is_probed = false;
             } else {
                 return Verdict::Correct;
@@ -127,15 +149,14 @@ impl<T: Real, const D: usize> Iterate<T, D> {
         if is_near && index > 0 && is_deep && !self.is_cornered {
             return Verdict::Escape;
         }
-        if is_near && (index == 0 || summary.negative <= FLAT) {
+        let is_minimum = index == 0 && !is_priced && self.settings.bend >= T::one();
+        if is_minimum || is_near && (index == 0 || summary.negative <= FLAT) {
             return Verdict::Correct;
         }
         self.settings.curvature = self.mirrored();
         self.is_probed = true;
         if index == 0 && !is_priced && self.stiffer.iter().all(|entry| entry.is_finite()) {
             self.settings.weight = self.stiffer;
-        } else if summary.negative > FLAT {
-            self.bend_less();
         }
         Verdict::Repeat
     }
@@ -150,8 +171,16 @@ impl<T: Real, const D: usize> Iterate<T, D> {
         self.settings.weight = SMatrix::from_element(T::zero());
     }
 
-    /// Raises the price of the gap after a plan that is critical for this one.
-    pub fn raise_price(&mut self) {
+    /// Whether a higher price of the gap would bring the end no nearer.
+    pub fn is_in_vain(&self) -> bool {
+        self.rounds >= ROUNDS || self.in_vain >= IN_VAIN
+    }
+
+    /// Raises the price of the gap after a plan that is critical for this one, and ends so far from the target.
+    pub fn raise_price(&mut self, distance: T) {
+        let is_nearer = self.missed.is_none_or(|missed| distance <= missed * T::from_ratio(99, 100));
+        self.in_vain = if is_nearer { 0 } else { self.in_vain + 1 };
+        self.missed = Some(distance);
         self.settings.gap_price = self.settings.gap_price.map(|price| price * T::from_f64(8.0));
         self.rounds += 1;
         self.begin_again();
@@ -209,9 +238,10 @@ impl<T: Real, const D: usize> Iterate<T, D> {
         Curvature::mirrored(self.damping, self.steadiness())
     }
 
-    fn bend_less(&mut self) {
-        let bend = self.settings.bend;
-        self.settings.bend = if bend > T::from_ratio(1, 10) { bend * T::from_ratio(1, 4) } else { T::zero() };
+    /// From now on the curvature of steps is left out.
+    fn straighten(&mut self) {
+        self.settings.bend = T::zero();
+        self.straight = STRAIGHT;
     }
 
     /// Whether the gap is only priced.
@@ -221,7 +251,7 @@ impl<T: Real, const D: usize> Iterate<T, D> {
 
     /// Whether the model is that of Newton's method.
     pub fn is_exact(&self) -> bool {
-        self.damping == T::zero() && self.settings.bend >= T::one()
+        self.damping == T::zero() && self.settings.bend >= T::one() && !self.is_straightened
     }
 
     /// The decision after a sweep with a correction of this size; `unit` of it is round-off.
@@ -270,9 +300,15 @@ impl<T: Real, const D: usize> Iterate<T, D> {
         self.damping = adapted(self.damping, T::from_f64(LEAST_DAMPING), refused);
         self.before = Some(size);
         self.settings.curvature = self.mirrored();
-        if refused <= 1 {
-            let more = larger(self.settings.bend * T::from_f64(4.0), T::from_ratio(1, 16));
-            self.settings.bend = if more < T::one() && is_far { more } else { T::one() };
+        if size <= T::from_ratio(TRIED.0, TRIED.1) && refused <= 2 && !self.is_priced() {
+            // the exact model may have its minimum here
+            self.settings.curvature = Curvature::exact(self.steadiness());
+            self.settings.bend = T::one();
+        } else if self.is_mostly_straight {
+            self.straighten();
+        } else if self.settings.bend < T::one() {
+            self.straight = self.straight.saturating_sub(1);
+            self.settings.bend = if self.straight == 0 { T::one() } else { T::zero() };
         }
         let is_kept = self.is_priced() || self.rank == 0;
         self.is_probed &= is_far && is_kept || negative > 0 && self.settings.bend >= T::one();

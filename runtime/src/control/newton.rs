@@ -2,7 +2,7 @@
 
 use super::attempt::Amplitudes;
 use super::end::PlanEnd;
-use super::iterate::{Iterate, ROUNDS, Verdict};
+use super::iterate::{Iterate, Verdict};
 use super::search::Descent;
 use super::sweep::{Plan, Problem, Settings};
 use super::{Optimum, barrier};
@@ -62,7 +62,11 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: usize
             let unit = if bounds > zero { T::EPSILON.powf(T::from_ratio(3, 5)) } else { exact };
             size = if decrement == zero { zero } else { (decrement.abs() / magnitude).sqrt() };
             match now.verdict(&end, size, unit, barrier::last(bounds, magnitude)) {
-                Verdict::Done | Verdict::Tighten if now.may_be_at_saddle(summary.negative, size) => continue,
+                Verdict::Done | Verdict::Tighten
+                    if now.may_be_at_saddle(summary.negative + summary.straightened, size) =>
+                {
+                    continue;
+                }
                 // Nothing pushes, but bounds are still violated.
                 Verdict::Done if self.is_violated() => {}
                 Verdict::Done => {
@@ -88,8 +92,8 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: usize
                     now.close_gap(self.multipliers(&end, &summary.costate), &end);
                     continue;
                 }
-                Verdict::Price if now.rounds < ROUNDS => {
-                    now.raise_price();
+                Verdict::Price if !now.is_in_vain() => {
+                    now.raise_price(end.distance);
                     continue;
                 }
                 Verdict::Price => return Err(self.failure(&end, size)),

@@ -15,6 +15,16 @@ const ROUNDING: f64 = 1024.0;
 /// The slopes of a function of place and input.
 pub(super) type Slopes<T, const D: usize, const U: usize> = (SVector<T, D>, SVector<T, U>);
 
+/// The bounds of a step in its quadratic model.
+pub(super) struct Bounded<T, const D: usize, const U: usize> {
+    /// The curvature of the price of the step alone, along each input.
+    pub natural: SVector<T, U>,
+    /// The slopes of the violation of bounds.
+    pub slopes: Slopes<T, D, U>,
+    /// Σ a/s of the bounds that are violated.
+    pub violated: T,
+}
+
 /// The least price from a place on, to second order in δ and δν.
 pub(super) struct Value<T, const D: usize> {
     /// p = ∂V/∂x
@@ -62,14 +72,26 @@ impl<T: Real, const D: usize> Value<T, D> {
     }
 }
 
+impl<T: Real, const D: usize> Value<T, D> {
+    /// Whether P is positive semidefinite, but for parts √ε of its diagonal.
+    pub fn is_convex(&self) -> bool {
+        let largest = self.hessian.diagonal().max_abs();
+        let mut shifted = self.hessian;
+        for i in 0..D {
+            let entry = shifted[(i, i)];
+            shifted[(i, i)] = entry + T::EPSILON.sqrt() * entry.abs() + T::EPSILON * largest;
+        }
+        largest == T::zero() || Ldl::positive(&rows(&shifted)).is_some()
+    }
+}
+
 impl<T: Real, const D: usize, const U: usize> Policy<T, D, U> {
     /// For a step with its bounds and the value at A δ + B δu of all later steps; with the value before the step. If
-    /// there are bounds, `bounded` has the curvature of the price of the step along each input, and the slopes of the
-    /// violation of bounds.
+    /// there are bounds, `bounded` has their part in it.
     #[inline]
     pub fn of<X>(
         step: &Expansion<X, T, D, U>,
-        bounded: Option<(SVector<T, U>, Slopes<T, D, U>)>,
+        bounded: Option<Bounded<T, D, U>>,
         next: &Value<T, D>,
         curvature: Curvature<T>,
     ) -> (Self, Value<T, D>) {
@@ -88,7 +110,10 @@ impl<T: Real, const D: usize, const U: usize> Policy<T, D, U> {
         // way to a bound that is reached with the multiplier 0. So, where there are bounds, the step alone tells, as
         // interior point methods shift the Hessian of the Lagrangian without Σ. Inputs that the step does not price are
         // left as they are.
-        let (natural, slopes) = bounded.unwrap_or_else(|| (input.diagonal(), (SVector::zeros(), SVector::zeros())));
+        let (natural, slopes) = match bounded {
+            Some(Bounded { natural, slopes, .. }) => (natural, slopes),
+            None => (input.diagonal(), (SVector::zeros(), SVector::zeros())),
+        };
         let violation = slopes.1 + b.tr_mul(&next.violation);
         let pivot = Pivot::of(&input, &natural, curvature);
         let (negative, fall) = match &pivot {

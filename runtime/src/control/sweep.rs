@@ -13,11 +13,11 @@
 //! * for the bounds Rao, Wright and Rawlings, *Application of interior-point methods to model predictive control* (1998).
 
 use super::end::PlanEnd;
-use super::quadratic::{Fall, Policy, Value};
+use super::quadratic::{Bounded, Fall, Policy, Value};
 use super::{Stage, Target};
 use crate::newton::{Curvature, Equilibrated};
 use crate::space::larger;
-use crate::{Controlled, Error, Real, Scalar, Space};
+use crate::{Controlled, Error, Expansion, Real, Scalar, Space};
 use nalgebra::{SMatrix, SVector};
 
 /// A problem of optimal control.
@@ -56,10 +56,17 @@ pub(super) struct Settings<T, const D: usize> {
     /// The price μ of e-fold smaller slacks.
     pub barrier: T,
     pub curvature: Curvature<T>,
-    /// The part of the curvature of steps and bounds that is counted: 1 for all, 0 for none, which leaves that of the price.
+    /// The part of the curvature of steps that is counted: 1 for all, 0 for none, which leaves that of price and bounds.
     pub bend: T,
     /// Whether gains are those of plans that reach the target, for the caller, in place of those that the roll-out needs.
     pub is_last: bool,
+}
+
+impl<T: Real, const D: usize> Settings<T, D> {
+    /// Whether steps, and then bounds, go without their curvature where that leaves no minimum.
+    fn is_guarded(&self) -> bool {
+        self.curvature.is_mirrored && !self.is_last
+    }
 }
 
 /// The results of a backward sweep for a plan.
@@ -80,6 +87,9 @@ pub(super) struct PlanSummary<T, const D: usize, const U: usize> {
     pub gramian: SMatrix<T, D, D>,
     /// The number of negative eigenvalues of all Q_uu.
     pub negative: usize,
+    /// The number of steps whose curvature was left out, and whether that is most of them.
+    pub straightened: usize,
+    pub is_mostly_straight: bool,
     /// The direction of the most negative one.
     pub fall: Option<Fall<T, U>>,
     /// By how far each input moves the end where it is 1 throughout, at most.
@@ -146,6 +156,7 @@ impl<'a, T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: u
         let endpoint = system.endpoint_expanded(constants, self.problem.time_after(steps), &self.last);
         let mut value = Value::of_end(&endpoint, end, settings);
         let zero = T::zero();
+        let mut is_convex = settings.is_guarded() && value.is_convex();
         let mut summary = PlanSummary {
             price: endpoint.price,
             magnitude: endpoint.price.abs(),
@@ -155,6 +166,8 @@ impl<'a, T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: u
             lack: -end.lack,
             gramian: SMatrix::zeros(),
             negative: 0,
+            straightened: 0,
+            is_mostly_straight: false,
             fall: None,
             reach: SVector::zeros(),
             costate: value.costate,
@@ -163,23 +176,45 @@ impl<'a, T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: u
         };
         for (index, stage) in self.stages.iter_mut().enumerate().rev() {
             let t = self.problem.time_after(index);
-            let mut step = system.expand(constants, t, &stage.place, &stage.input, &(value.costate * settings.bend))?;
+            let expand = |bend: T| system.expand(constants, t, &stage.place, &stage.input, &(value.costate * bend));
+            // the model of the step with a part of the curvature of its bounds
+            let model = |step: &Expansion<S::Place, T, D, U>, bend: T| {
+                let mut step = *step;
+                let mut bounded = None;
+                if self.bounds > zero {
+                    let (natural, multipliers) = (step.input_curvature.diagonal(), stage.multipliers * bend);
+                    let mut bounds = system.bounds_expanded(constants, t, &stage.place, &stage.input, &multipliers)?;
+                    let (violated, slopes) = stage.add_bounds(&mut step, &mut bounds, settings);
+                    bounded = Some(Bounded { natural, slopes, violated });
+                }
+                let violated = bounded.as_ref().map_or(zero, |bounded| bounded.violated);
+                let (policy, before) = Policy::of(&step, bounded, &value, settings.curvature);
+                Ok::<_, Error>((policy, before, violated))
+            };
+            let mut step = expand(settings.bend)?;
             if settings.is_last {
                 let bounds = self.bounds > zero;
                 let expanded = || system.bounds_expanded(constants, t, &stage.place, &stage.input, &stage.multipliers);
                 let pushes = bounds.then(expanded).transpose()?.map(|bounds| stage.pushes(&bounds.by_input));
                 summary.terms = larger(summary.terms, stage.terms(&step, &value.costate, pushes).max_abs());
             }
-            let mut bounded = None;
-            if self.bounds > zero {
-                let natural = step.input_curvature.diagonal();
-                let multipliers = stage.multipliers * settings.bend;
-                let mut bounds = system.bounds_expanded(constants, t, &stage.place, &stage.input, &multipliers)?;
-                let (violated, slopes) = stage.add_bounds(&mut step, &mut bounds, settings);
-                summary.violation += violated;
-                bounded = Some((natural, slopes));
+            let (mut policy, mut before, violated) = model(&step, T::one())?;
+            summary.violation += violated;
+            if settings.is_guarded() {
+                // a minimum that later steps lack is not theirs to give
+                let is_wrong = |policy: &Policy<T, D, U>, before: &Value<T, D>| {
+                    policy.negative > 0 || is_convex && !before.is_convex()
+                };
+                if settings.bend > zero && is_wrong(&policy, &before) {
+                    step = expand(zero)?;
+                    (policy, before, _) = model(&step, T::one())?;
+                    summary.straightened += 1;
+                }
+                if self.bounds > zero && is_wrong(&policy, &before) {
+                    (policy, before, _) = model(&step, zero)?;
+                }
+                is_convex = is_convex && before.is_convex();
             }
-            let (policy, mut before) = Policy::of(&step, bounded, &value, settings.curvature);
             summary.count(index, step.price, &policy);
             if settings.is_last {
                 // the costate of the plan as it is, without the correction that is round-off
@@ -193,6 +228,7 @@ impl<'a, T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: u
             }
             value = before;
         }
+        summary.is_mostly_straight = 2 * summary.straightened > steps;
         if let Some(fall) = &mut summary.fall {
             fall.depth /= T::from_f64(steps as f64);
         }

@@ -1,0 +1,108 @@
+//! Plans of least price: `cargo bench -p clebsch-tests --bench control -- [PROBLEMS] [SEED]`.
+//!
+//! Random goals of a unicycle, of a body with bounded torques and of a quadrotor, all from a guess at rest. Then a
+//! quadrotor that is planned anew a hundred times a second while gusts push it. Printed are the share that is solved,
+//! and the median, the ninth decile and the largest number of linearisations of a solution.
+
+mod systems;
+
+use clebsch::{Controlled, Target};
+use clebsch_tests::oracle::random::Random;
+use nalgebra::{Matrix3, Matrix4, Rotation3, Vector3, Vector4, Vector6};
+use systems::{Body, Car, Place, Quadrotor, quadrotor};
+
+fn main() {
+    let numbers: Vec<u64> = std::env::args().filter_map(|argument| argument.parse().ok()).collect();
+    let count = numbers.first().map_or(200, |count| *count as usize);
+    let random = &mut Random::new(numbers.get(1).map_or(1, |seed| *seed));
+    println!("{:<18} {:>9} {:>8} {:>8} {:>8} {:>8}", "problem", "solved", "median", "9 of 10", "most", "all");
+    print("unicycle", (0..count).map(|_| car(random)));
+    print("body", (0..count).map(|_| body(random)));
+    print("quadrotor", (0..count / 2).map(|_| flight(random)));
+    print("quadrotor in gusts", (0..count / 40).flat_map(|_| gusts(random)));
+}
+
+/// A line of the table, of the linearisations of each solution that was found.
+fn print(name: &str, solved: impl Iterator<Item = Option<u32>>) {
+    let all: Vec<Option<u32>> = solved.collect();
+    let mut found: Vec<u32> = all.iter().flatten().copied().collect();
+    found.sort_unstable();
+    let at = |part: usize| found.get(found.len() * part / 10).or(found.last()).copied().unwrap_or(0);
+    let (share, sum) = (format!("{}/{}", found.len(), all.len()), found.iter().sum::<u32>());
+    println!("{name:<18} {share:>9} {:>8} {:>8} {:>8} {sum:>8}", at(5), at(9), at(10));
+}
+
+fn vector(random: &mut Random, size: f64) -> Vector3<f64> {
+    random.vector::<3>() * size
+}
+
+fn rotation(turn: Vector3<f64>) -> Matrix3<f64> {
+    *Rotation3::new(turn).matrix()
+}
+
+/// A goal in any direction.
+fn car(random: &mut Random) -> Option<u32> {
+    const STEPS: usize = 50;
+    let control = Car { top: 7.0 }.control(0.02).expect("regular");
+    let (angle, x, y) = (3.0 * random.number(), random.number(), random.number());
+    let goal = Matrix3::new(angle.cos(), -angle.sin(), x, angle.sin(), angle.cos(), y, 0.0, 0.0, 1.0);
+    let start = Matrix3::identity();
+    let mut plan = [control.stage(&start); STEPS];
+    control.solve(&start, Target::Place(goal), &mut plan).ok().map(|found| found.iterations())
+}
+
+/// From one tumbling to another.
+fn body(random: &mut Random) -> Option<u32> {
+    const STEPS: usize = 50;
+    let inertia = Matrix3::from_diagonal(&Vector3::new(1.0, 2.0, 3.0));
+    let control = Body { inertia, top: 16.0 }.control(0.02).expect("regular");
+    let start = (Matrix3::identity(), vector(random, 2.0));
+    let goal = (rotation(vector(random, 1.7)), vector(random, 2.0));
+    let mut plan = [control.stage(&start); STEPS];
+    control.solve(&start, Target::Place(goal), &mut plan).ok().map(|found| found.iterations())
+}
+
+fn pose(attitude: &Matrix3<f64>, position: &Vector3<f64>) -> Matrix4<f64> {
+    let mut pose = Matrix4::identity();
+    pose.fixed_view_mut::<3, 3>(0, 0).copy_from(attitude);
+    pose.fixed_view_mut::<3, 1>(0, 3).copy_from(position);
+    pose
+}
+
+fn moving(system: &Quadrotor, attitude: &Matrix3<f64>, position: &Vector3<f64>, velocity: &Vector3<f64>) -> Place {
+    let mut momentum = Vector6::zeros();
+    momentum.fixed_rows_mut::<3>(3).copy_from(&(attitude.transpose() * velocity * system.mass));
+    (pose(attitude, position), momentum)
+}
+
+/// From a tilted flight to rest, in a second.
+fn flight(random: &mut Random) -> Option<u32> {
+    const STEPS: usize = 100;
+    let control = quadrotor().control(0.01).expect("regular");
+    let attitude = rotation(vector(random, 0.5));
+    let start = moving(control.system(), &attitude, &vector(random, 0.5), &vector(random, 0.5));
+    let yaw = rotation(Vector3::z() * random.number());
+    let goal = (pose(&yaw, &vector(random, 0.5)), Vector6::zeros());
+    let mut plan = vec![control.stage(&start).with_input(Vector4::repeat(control.system().hover)); STEPS];
+    control.solve(&start, Target::Place(goal), &mut plan).ok().map(|found| found.iterations())
+}
+
+/// Plans over the next 0.8 s, each from the plan before. The first one is left out.
+fn gusts(random: &mut Random) -> Vec<Option<u32>> {
+    const STEPS: usize = 80;
+    let control = quadrotor().control(0.01).expect("regular");
+    let goal = (pose(&rotation(Vector3::z() * 0.5), &Vector3::new(0.6, 0.2, 0.15)), Vector6::zeros());
+    let mut place = (Matrix4::identity(), Vector6::zeros());
+    let mut plan = vec![control.stage(&place).with_input(Vector4::repeat(control.system().hover)); STEPS];
+    let mut all = Vec::new();
+    for _ in 0..60 {
+        let solved = control.solve(&place, Target::Place(goal), &mut plan).ok().map(|found| found.iterations());
+        all.push(solved);
+        place = control.follow(&place, plan[0].input()).expect("a step");
+        let gust = vector(random, 0.01) * control.system().mass;
+        place.1.fixed_rows_mut::<3>(3).iter_mut().zip(gust.iter()).for_each(|(momentum, gust)| *momentum += gust);
+        plan.rotate_left(1);
+        plan[STEPS - 1] = plan[STEPS - 2];
+    }
+    all.split_off(1)
+}
