@@ -266,4 +266,43 @@ proptest! {
         let place = private::forced_step(&top, &constants, 0.0, &(r, mu), &())?;
         prop_assert_eq!(place, stepper.step(&stepper.state(r, mu)?)?.into_parts());
     }
+
+    /// Prices and bounds of an edge are expanded along places and inputs as the motions of both ends and the inputs are.
+    /// κ makes a price stationary in the end too, whose slope is the middle part of that along all directions.
+    #[test]
+    fn links_take_functions_of_the_edge(
+        top in tops(), (r, f) in (attitude(), rotation(0.3)), (before, after) in (matrix::<3, 2>(1.0), matrix::<3, 2>(1.0)), costate in vector::<6>(1.0),
+        (w, bend) in (matrix::<8, 8>(1.0), matrix::<8, 8>(1.0)), (along, slopes, z) in (vector::<8>(1.0), matrix::<2, 8>(1.0), vector::<2>(1.0)),
+        (delta, u, values) in (vector::<6>(1.0), vector::<2>(1.0), vector::<2>(1.0)),
+    ) {
+        let constants = top.step_constants(H)?;
+        let edge = top.carried(&constants, 0, 0.0, (&r, &(f - Matrix3::identity()), &(r * f), &()));
+        let of_end: Vector3<f64> = private::along_end(&along);
+        prop_assert_eq!(of_end, along.fixed_rows::<3>(3).into_owned());
+        let pushed: Vector3<f64> = private::pushed_along_end(&slopes, &z);
+        assert_near(&pushed, &(slopes.transpose() * z).fixed_rows::<3>(3).into_owned(), 1e-14, "z·a");
+        let link = Link::priced(&edge, &before, &after, &costate, &of_end).expect("regular");
+        let stationary = of_end + edge.before_by_end.transpose() * link.multiplier + link.driving + edge.after_by_end.transpose() * link.costate;
+        assert_near(&stationary, &Vector3::zeros(), NEAR / H, "stationary");
+        let (w, bend, none) = (w + w.transpose(), bend + bend.transpose(), Matrix3::zeros());
+        let found = link.expansion_of_edge::<_, 8, 6>(r * f, &w, &none, (0.5, &along, &bend));
+        prop_assert_eq!((found.next, found.price), (r * f, 0.5));
+        // η and u as they are, and the motion ζ of the end alone
+        let (eta, change) = (delta.fixed_rows::<3>(0).into_owned(), found.by_place * delta + found.by_input * u);
+        let zeta = change.fixed_rows::<3>(0) - edge.adjoint * eta;
+        let all = SVector::<f64, 8>::from_iterator(eta.iter().chain(zeta.iter()).chain(u.iter()).copied());
+        let size = NEAR / H * (1.0 + all.norm_squared());
+        let first = found.price_by_place.dot(&delta) + found.price_by_input.dot(&u);
+        prop_assert!((first - along.dot(&all)).abs() < size, "{first} for {}", along.dot(&all));
+        let second = |place: &SMatrix<f64, 6, 6>, mixed: &SMatrix<f64, 2, 6>, input: &SMatrix<f64, 2, 2>| {
+            delta.dot(&(place * delta)) + 2.0 * u.dot(&(mixed * delta)) + u.dot(&(input * u))
+        };
+        let (bent, expected) = (second(&found.place_curvature, &found.mixed_curvature, &found.input_curvature), all.dot(&((w + bend) * all)));
+        prop_assert!((bent - expected).abs() < 8.0 * size, "{bent} for {expected}");
+        let bounds = link.bounds::<8, 6, 2>(values, &slopes, &bend);
+        prop_assert_eq!(bounds.values, values);
+        assert_near(&(bounds.by_place * delta + bounds.by_input * u), &(slopes * all), size, "∂a");
+        let (bent, expected) = (second(&bounds.place_curvature, &bounds.mixed_curvature, &bounds.input_curvature), all.dot(&(bend * all)));
+        prop_assert!((bent - expected).abs() < 8.0 * size, "{bent} for {expected}");
+    }
 }

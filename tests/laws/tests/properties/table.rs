@@ -91,6 +91,7 @@ pub const PROPERTIES: &[(&str, &[Property])] = &[
         ("edges_are_differentiated_twice", &["Variational::edge", "Variational::momenta", "Variational::carried", "Sensitive::edge_slopes"]),
         ("ends_have_a_price",            &["Variational::endpoint"]),
         ("links_are_implicit_functions", &["Link::new", "Link::expansion", "forced_step", "check_state"]),
+        ("links_take_functions_of_the_edge", &["Link::priced", "Link::expansion_of_edge", "Link::bounds", "along_end", "pushed_along_end"]),
     ]),
     ("tests/laws/tests/properties/ensembles.rs", &[
         ("ensembles_are_bodies_alone",         &["Stepper::ensemble", "Ensemble::step", "Ensemble::advance", "Ensemble::par_advance", "Ensemble::len", "Ensemble::is_empty", "Ensemble::steps", "Ensemble::body", "Ensemble::bodies", "Ensemble::set_body", "Ensemble::energy", "Ensemble::failures", "Ensemble::failure", "Ensemble::conserved"]),
