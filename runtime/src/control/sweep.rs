@@ -201,7 +201,7 @@ impl<'a, T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: u
             let (mut policy, mut before, violated) = model(&step, T::one())?;
             summary.violation += violated;
             if settings.is_guarded() {
-                // a minimum that later steps lack is not theirs to give
+                // where the price of later steps has no minimum, this step is not the cause
                 let is_wrong = |policy: &Policy<T, D, U>, before: &Value<T, D>| {
                     policy.negative > 0 || is_convex && !before.is_convex()
                 };
