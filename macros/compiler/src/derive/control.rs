@@ -114,7 +114,10 @@ impl<'g> Source<'_, 'g> {
             price: control.velocities.iter().any(|xi| control.price.depends_on(*xi)),
             bounds: control.velocities.iter().any(|xi| control.bounds.iter().any(|bound| bound.value.depends_on(*xi))),
         };
-        let steering = system.chosen_by().filter(|_| on_edge.price || on_edge.bounds)?;
+        if !on_edge.price && !on_edge.bounds {
+            return None;
+        }
+        let steering = system.chosen_by()?;
         let of_step = force::velocities_of_step(model, model.step_size);
         let moving: Vec<_> = control.velocities.iter().copied().zip(of_step).into_list();
         let rational = cayley::replacements(model);
