@@ -20,7 +20,8 @@ const CALM: u32 = 5;
 const ROUNDS: u32 = 20;
 /// Corrections of this size are near enough a solution for the exact curvature and a fixed weight of the target.
 const NEAR: (i64, i64) = (1, 100);
-/// For corrections of this size the exact model is tried first. From further away it leads to other minima than those next to the guess.
+/// For corrections of this size the exact model is tried first. From further away it may lead past the minimum next to
+/// the guess, as for a unicycle that moves sideways.
 const TRIED: (i64, i64) = (1, 8);
 /// The way down from a saddle is deeper than so many corrections that are still to be made.
 const DEPTH: f64 = 16.0;
@@ -95,7 +96,7 @@ impl<T: Real, const D: usize> Iterate<T, D> {
                 gap_price: None,
                 barrier: barrier.unwrap_or(zero),
                 curvature: Curvature::mirrored(zero, zero),
-                bend: T::one(),
+                is_straight: false,
                 is_last: false,
             },
             is_open: barrier.is_none(),
@@ -133,7 +134,7 @@ impl<T: Real, const D: usize> Iterate<T, D> {
             self.rank = if summary.negative == 0 { rank } else { self.rank.max(rank) };
             if summary.negative > 0 && !self.is_probed {
                 self.settings.curvature = Curvature::exact(self.steadiness());
-            } else if summary.negative > FLAT && self.settings.bend > T::zero() {
+            } else if summary.negative > FLAT && !self.settings.is_straight {
                 self.straighten();
                 self.is_probed = false;
             } else {
@@ -149,7 +150,7 @@ impl<T: Real, const D: usize> Iterate<T, D> {
         if is_near && index > 0 && is_deep && !self.is_cornered {
             return Verdict::Escape;
         }
-        let is_minimum = index == 0 && !is_priced && self.settings.bend >= T::one();
+        let is_minimum = index == 0 && !is_priced && !self.settings.is_straight;
         if is_minimum || is_near && (index == 0 || summary.negative <= FLAT) {
             return Verdict::Correct;
         }
@@ -219,7 +220,7 @@ impl<T: Real, const D: usize> Iterate<T, D> {
     pub fn may_be_at_saddle(&mut self, negative: usize, size: T) -> bool {
         let may_be = negative > 0 && !self.is_cornered && self.settings.curvature.is_mirrored;
         if may_be {
-            self.settings.bend = T::one();
+            self.settings.is_straight = false;
             self.damping = T::zero();
             self.before = Some(size);
             self.settings.curvature = Curvature::exact(self.steadiness());
@@ -240,7 +241,7 @@ impl<T: Real, const D: usize> Iterate<T, D> {
 
     /// From now on the curvature of steps is left out.
     fn straighten(&mut self) {
-        self.settings.bend = T::zero();
+        self.settings.is_straight = true;
         self.straight = STRAIGHT;
     }
 
@@ -251,7 +252,7 @@ impl<T: Real, const D: usize> Iterate<T, D> {
 
     /// Whether the model is that of Newton's method.
     pub fn is_exact(&self) -> bool {
-        self.damping == T::zero() && self.settings.bend >= T::one() && !self.is_straightened
+        self.damping == T::zero() && !self.settings.is_straight && !self.is_straightened
     }
 
     /// The decision after a sweep with a correction of this size; `unit` of it is round-off.
@@ -303,15 +304,15 @@ impl<T: Real, const D: usize> Iterate<T, D> {
         if size <= T::from_ratio(TRIED.0, TRIED.1) && refused <= 2 && !self.is_priced() {
             // the exact model may have its minimum here
             self.settings.curvature = Curvature::exact(self.steadiness());
-            self.settings.bend = T::one();
+            self.settings.is_straight = false;
         } else if self.is_mostly_straight {
             self.straighten();
-        } else if self.settings.bend < T::one() {
+        } else if self.settings.is_straight {
             self.straight = self.straight.saturating_sub(1);
-            self.settings.bend = if self.straight == 0 { T::one() } else { T::zero() };
+            self.settings.is_straight = self.straight > 0;
         }
         let is_kept = self.is_priced() || self.rank == 0;
-        self.is_probed &= is_far && is_kept || negative > 0 && self.settings.bend >= T::one();
+        self.is_probed &= is_far && is_kept || negative > 0 && !self.settings.is_straight;
         self.nearest = if distance < self.nearest { distance } else { self.nearest };
         self.stalls = if fraction < T::from_f64(1e-3) { self.stalls + 1 } else { 0 };
     }

@@ -181,7 +181,8 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: usize
     /// The last sweep: exact second derivatives as they are, for gains and the index.
     fn finish<'p>(&mut self, now: &Iterate<T, D>) -> Result<Optimum<'p, S, D, U, C>, Error> {
         let end = self.end();
-        let settings = Settings { curvature: Curvature::exact(T::zero()), is_last: true, ..now.settings };
+        let settings =
+            Settings { curvature: Curvature::exact(T::zero()), is_straight: false, is_last: true, ..now.settings };
         // The weight of the target belongs to the search: costates are those of the multipliers alone.
         let closed = PlanEnd { lack: SVector::zeros(), ..end };
         let summary = self.eliminate(&closed, &settings)?;

@@ -56,8 +56,8 @@ pub(super) struct Settings<T, const D: usize> {
     /// The price μ of e-fold smaller slacks.
     pub barrier: T,
     pub curvature: Curvature<T>,
-    /// The part of the curvature of steps that is counted: 1 for all, 0 for none, which leaves that of price and bounds.
-    pub bend: T,
+    /// Whether the curvature of all steps is left out, which leaves that of price and bounds.
+    pub is_straight: bool,
     /// Whether gains are those of plans that reach the target, for the caller, in place of those that the roll-out needs.
     pub is_last: bool,
 }
@@ -176,13 +176,18 @@ impl<'a, T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: u
         };
         for (index, stage) in self.stages.iter_mut().enumerate().rev() {
             let t = self.problem.time_after(index);
-            let expand = |bend: T| system.expand(constants, t, &stage.place, &stage.input, &(value.costate * bend));
-            // the model of the step with a part of the curvature of its bounds
-            let model = |step: &Expansion<S::Place, T, D, U>, bend: T| {
+            // the step, with its curvature or without
+            let expand = |is_straight: bool| {
+                let costate = if is_straight { SVector::zeros() } else { value.costate };
+                system.expand(constants, t, &stage.place, &stage.input, &costate)
+            };
+            // its model, with the curvature of its bounds or without
+            let model = |step: &Expansion<S::Place, T, D, U>, is_straight: bool| {
                 let mut step = *step;
                 let mut bounded = None;
                 if self.bounds > zero {
-                    let (natural, multipliers) = (step.input_curvature.diagonal(), stage.multipliers * bend);
+                    let natural = step.input_curvature.diagonal();
+                    let multipliers = if is_straight { SVector::zeros() } else { stage.multipliers };
                     let mut bounds = system.bounds_expanded(constants, t, &stage.place, &stage.input, &multipliers)?;
                     let (violated, slopes) = stage.add_bounds(&mut step, &mut bounds, settings);
                     bounded = Some(Bounded { natural, slopes, violated });
@@ -191,27 +196,27 @@ impl<'a, T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: u
                 let (policy, before) = Policy::of(&step, bounded, &value, settings.curvature);
                 Ok::<_, Error>((policy, before, violated))
             };
-            let mut step = expand(settings.bend)?;
+            let mut step = expand(settings.is_straight)?;
             if settings.is_last {
                 let bounds = self.bounds > zero;
                 let expanded = || system.bounds_expanded(constants, t, &stage.place, &stage.input, &stage.multipliers);
                 let pushes = bounds.then(expanded).transpose()?.map(|bounds| stage.pushes(&bounds.by_input));
                 summary.terms = larger(summary.terms, stage.terms(&step, &value.costate, pushes).max_abs());
             }
-            let (mut policy, mut before, violated) = model(&step, T::one())?;
+            let (mut policy, mut before, violated) = model(&step, false)?;
             summary.violation += violated;
             if settings.is_guarded() {
                 // where the price of later steps has no minimum, this step is not the cause
                 let is_wrong = |policy: &Policy<T, D, U>, before: &Value<T, D>| {
                     policy.negative > 0 || is_convex && !before.is_convex()
                 };
-                if settings.bend > zero && is_wrong(&policy, &before) {
-                    step = expand(zero)?;
-                    (policy, before, _) = model(&step, T::one())?;
+                if !settings.is_straight && is_wrong(&policy, &before) {
+                    step = expand(true)?;
+                    (policy, before, _) = model(&step, false)?;
                     summary.straightened += 1;
                 }
                 if self.bounds > zero && is_wrong(&policy, &before) {
-                    (policy, before, _) = model(&step, zero)?;
+                    (policy, before, _) = model(&step, true)?;
                 }
                 is_convex = is_convex && before.is_convex();
             }
