@@ -7,9 +7,10 @@
 mod systems;
 
 use clebsch::{Controlled, Target};
+use clebsch_tests::fixtures::unicycle::Unicycle;
 use clebsch_tests::oracle::random::Random;
-use nalgebra::{Matrix3, Matrix4, Rotation3, Vector3, Vector4, Vector6};
-use systems::{Body, Car, Place, Quadrotor, quadrotor};
+use nalgebra::{Matrix3, Matrix4, Rotation3, Vector2, Vector3, Vector4, Vector6};
+use systems::{Place, Quadrotor, SteeredBody, quadrotor};
 
 fn main() {
     let numbers: Vec<u64> = std::env::args().filter_map(|argument| argument.parse().ok()).collect();
@@ -43,7 +44,8 @@ fn rotation(turn: Vector3<f64>) -> Matrix3<f64> {
 /// A goal in any direction.
 fn car(random: &mut Random) -> Option<u32> {
     const STEPS: usize = 50;
-    let control = Car { top: 7.0 }.control(0.02).expect("regular");
+    let system = Unicycle { turn_price: 1.0, top_turn: 7.0, time_price: 0.0, miss_price: 0.0, goal: Vector2::zeros() };
+    let control = system.control(0.02).expect("regular");
     let (angle, x, y) = (3.0 * random.number(), random.number(), random.number());
     let goal = Matrix3::new(angle.cos(), -angle.sin(), x, angle.sin(), angle.cos(), y, 0.0, 0.0, 1.0);
     let start = Matrix3::identity();
@@ -55,7 +57,7 @@ fn car(random: &mut Random) -> Option<u32> {
 fn body(random: &mut Random) -> Option<u32> {
     const STEPS: usize = 50;
     let inertia = Matrix3::from_diagonal(&Vector3::new(1.0, 2.0, 3.0));
-    let control = Body { inertia, top: 16.0 }.control(0.02).expect("regular");
+    let control = SteeredBody { inertia, top: 16.0 }.control(0.02).expect("regular");
     let start = (Matrix3::identity(), vector(random, 2.0));
     let goal = (rotation(vector(random, 1.7)), vector(random, 2.0));
     let mut plan = [control.stage(&start); STEPS];

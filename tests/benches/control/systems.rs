@@ -1,44 +1,16 @@
-//! The systems: a car, a body with bounded torques, and a quadrotor.
+//! The bodies of the scenes `slew` and `quadrotor`, and the parameters of the latter.
 
-use clebsch::Clebsch;
 use nalgebra::{Matrix3, Matrix4};
-
-/// A car that turns and drives forwards.
-#[derive(Clebsch, Clone, Debug)]
-#[clebsch(
-    action         = |F: SE<2>, q: SE<2>| q * F,
-    controls       = |u: Vector2| vector![u.x, u.y, 0],
-    cost           = |h, u| h * u.norm_squared() / 2,
-    bounds         = |u| [-self.top <= u.x, u.x <= self.top, 0 <= u.y],
-    discretization = exponential,
-)]
-pub struct Car {
-    pub top: f64,
-}
-
-/// A body that bounded torques turn.
-#[derive(Clebsch, Clone, Debug)]
-#[clebsch(
-    action     = |F: SO<3>, R: SO<3>| R * F,
-    lagrangian = |omega| omega.dot(&(self.inertia * omega)) / 2,
-    force      = |torque: Vector3| torque,
-    effort     = |h, torque| h * torque.norm_squared() / 2,
-    bounds     = |torque| [
-        -self.top <= torque.x, torque.x <= self.top,
-        -self.top <= torque.y, torque.y <= self.top,
-        -self.top <= torque.z, torque.z <= self.top,
-    ],
-)]
-pub struct Body {
-    #[clebsch(symmetric)]
-    pub inertia: Matrix3<f64>,
-    pub top: f64,
-}
 
 #[path = "../../../examples/quadrotor/declaration.rs"]
 #[allow(dead_code, reason = "the scene uses all of it")]
-mod declaration;
-pub use declaration::{Place, Quadrotor};
+mod quadrotors;
+#[path = "../../../examples/slew/least_effort/declaration.rs"]
+#[allow(dead_code, reason = "the scene uses all of it")]
+mod slews;
+
+pub use quadrotors::{Place, Quadrotor};
+pub use slews::SteeredBody;
 
 /// The Crazyflie of the scene `quadrotor`.
 pub fn quadrotor() -> Quadrotor {

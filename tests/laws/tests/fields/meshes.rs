@@ -143,8 +143,8 @@ fn sphere(times: usize) -> (Vec<Vector3<f64>>, Vec<[usize; 3]>) {
 #[test]
 fn waves_on_a_sphere_have_the_frequencies_of_harmonics() -> Result<(), SiteError> {
     let mut errors = Vec::new();
-    // the finest sphere with the feature `heavy` alone
-    let finest = if cfg!(feature = "heavy") { 4 } else { 3 };
+    // the finest sphere with the feature `heavy` alone; on the one before the error is four times as large
+    let (finest, most) = if cfg!(feature = "heavy") { (4, 0.01) } else { (3, 0.04) };
     for times in 2..=finest {
         let (vertices, faces) = sphere(times);
         let domain = Membrane { mass: 1.0 }.mesh(&vertices, &faces)?.cotangent_weights()?;
@@ -165,7 +165,7 @@ fn waves_on_a_sphere_have_the_frequencies_of_harmonics() -> Result<(), SiteError
         let part = product(state.configuration()) / product(&shape);
         errors.push((part.acos() - 6.0_f64.sqrt()).abs());
     }
-    assert!(errors[errors.len() - 1] < 0.01 * 4_usize.pow(4 - finest as u32) as f64, "{errors:?}");
+    assert!(errors[errors.len() - 1] < most, "{errors:?}");
     let orders: Vec<f64> = errors.windows(2).map(|pair| (pair[0] / pair[1]).log2()).collect();
     assert!(orders.iter().all(|order| (order - 2.0).abs() < 0.3), "{orders:?} of {errors:?}");
     Ok(())
