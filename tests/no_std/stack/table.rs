@@ -15,7 +15,7 @@ const COLUMNS: [(&str, &[&str]); 7] = [
 ];
 
 const HEAD: &str = "\
-# Bytes of stack that an operation may take: half more than it took when this was written, and 256. Written by `tests/no_std/check renew`.
+# Bytes of stack that an operation may take: half more than it took when this was written, and 1024. Written by `tests/no_std/check renew`.
 ";
 
 /// Bytes by system, with its scalar type, and by column.
@@ -57,10 +57,11 @@ impl Table {
             .map(Self)
     }
 
-    /// The budget: half more and 256, in multiples of 64. Inlining depends on where the crate stands. A helper that is
-    /// inlined in one checkout and called in another has moved set-ups from 400 bytes to 600, and from 5100 to 6700.
+    /// The budget: half more and 1024, in multiples of 64. Inlining depends on where the crate stands, and on code that the
+    /// operation does not run. It has moved set-ups from 400 bytes to 600 and from 5100 to 6700, and the step of a plan
+    /// from 1792 to 2984.
     pub fn budgets(&self) -> String {
-        let budget = |bytes: u64| (bytes + bytes / 2 + 256).next_multiple_of(64);
+        let budget = |bytes: u64| (bytes + bytes / 2 + 1024).next_multiple_of(64);
         let lines = self.0.iter().map(|(system, entries)| (system.clone(), entries.map(|entry| entry.map(budget))));
         format!("{HEAD}{}", Self(lines.collect()))
     }
@@ -134,9 +135,9 @@ mod tests {
     #[test]
     fn budgets_are_read_as_they_were_written_and_leave_half_more() {
         let budgets = Table::read(&table(1000).budgets()).expect("as written");
-        assert_eq!(table(1792).check(&budgets), Ok(()));
+        assert_eq!(table(2560).check(&budgets), Ok(()));
         assert!(
-            table(1793).check(&budgets).is_err_and(|error| error.contains("step of heavy_top.f64 takes 1793 bytes"))
+            table(2561).check(&budgets).is_err_and(|error| error.contains("step of heavy_top.f64 takes 2561 bytes"))
         );
     }
 
