@@ -44,7 +44,7 @@ pub use expr::Expr;
 pub use graph::Graph;
 pub use group::{Block, Chart, Declared, Group, Span, conjugate, quaternion_product, reduce};
 pub use node::{Analytic, Function, NodeOf, Operation, TermOf, View, WordTerm};
-pub use print::{Notation, joined};
+pub use print::{Notation, Product, joined};
 pub use rational::{Fraction, Rational, integer, product, rational};
 pub use shape::Shape;
 pub use symbol::{Property, Role, Symbol};

@@ -120,6 +120,17 @@ pub(crate) type ExprNode = NodeOf<Id>;
 /// A node as other crates see it: the lowering to scalars walks over it.
 pub type View<'g> = NodeOf<Expr<'g>>;
 
+impl Operation {
+    /// Whether f(a A + b B) = a f(A) + b f(B) for numbers a and b.
+    pub(crate) fn is_linear(self) -> bool {
+        match self {
+            Operation::Transpose | Operation::Block(..) | Operation::Embed(..) => true,
+            Operation::DiagonalMatrix | Operation::Diagonal | Operation::Wedge(_) | Operation::Components(_) => true,
+            Operation::Inverse | Operation::Determinant | Operation::Function(_) | Operation::Analytic(_) => false,
+        }
+    }
+}
+
 impl<C: Copy> NodeOf<C> {
     /// Hands the direct children on, one after the other.
     pub fn each_child(&self, mut visit: impl FnMut(C)) {

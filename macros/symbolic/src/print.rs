@@ -1,11 +1,15 @@
 //! Printing: Unicode for doc comments and terminals, LaTeX for papers.
 
 mod parts;
+mod product;
 
 use std::cell::Cell;
 use std::fmt;
 
-use crate::node::{Analytic, Exponent, ExprNode, Function, Id, Operation, Term};
+use product::Factor;
+pub use product::Product;
+
+use crate::node::{Analytic, ExprNode, Function, Id, Operation, Term};
 use crate::{Elements, Expr, Graph, IntoList, Rational, Shape, Table, both, work};
 
 /// A notation of formulas.
@@ -22,10 +26,34 @@ impl Notation {
     pub fn either<T>(self, unicode: T, latex: T) -> T {
         if self == Notation::Latex { latex } else { unicode }
     }
+
+    fn enclosed(self, text: &str, unicode: [&str; 2], latex: [&str; 2]) -> String {
+        let [open, close] = self.either(unicode, latex);
+        format!("{open}{text}{close}")
+    }
+
+    fn parenthesized(self, text: &str) -> String {
+        self.enclosed(text, ["(", ")"], ["\\left(", "\\right)"])
+    }
+
+    fn joined(self, factors: &[String]) -> String {
+        factors.join(self.either("·", "\\,"))
+    }
+
+    /// An operand with something above it: in Unicode behind it. In LaTeX a base that has an exponent already stands in braces, as
+    /// it knows no second one.
+    fn raised(self, base: &str, unicode: &str, latex: &str) -> String {
+        let is_raised = base.contains('^') && !base.ends_with("\\right)");
+        match self {
+            Notation::Unicode => format!("{base}{unicode}"),
+            Notation::Latex if is_raised => format!("{{{base}}}^{{{latex}}}"),
+            Notation::Latex => format!("{base}^{{{latex}}}"),
+        }
+    }
 }
 
 /// How tightly the outermost operation binds.
-#[derive(Copy, Clone, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Copy, Clone, PartialEq, Eq, PartialOrd, Ord, Debug)]
 enum Binding {
     Sum,
     Product,
@@ -52,6 +80,9 @@ impl Expr<'_> {
     }
 }
 
+/// In greater powers a sum keeps its common factors.
+const MOST_SPLIT: i64 = 8;
+
 struct Printer<'g> {
     graph: &'g Graph,
     notation: Notation,
@@ -68,40 +99,95 @@ impl<'g> Printer<'g> {
 
     /// The text of a node, in parentheses if it binds less tightly than its place asks.
     fn print(&self, id: Id, place: Binding) -> String {
+        self.node(id).at(place, self.notation)
+    }
+
+    /// The text of a node.
+    fn node(&self, id: Id) -> Factor {
+        self.product(id, true).as_factor(self.notation)
+    }
+
+    /// A node as a product. Common factors of the terms of a sum stand in front of it, and in front of linear operations on it.
+    /// A common number of a sum that `is_open`, without brackets around it, stays in its terms.
+    fn product(&self, id: Id, is_open: bool) -> Product {
         if let Some(name) = self.names.get(&id) {
-            return name.clone();
+            return self.factor(id, Factor::atom(name.clone()));
         }
         self.left.set(self.left.get().saturating_sub(1));
         if self.left.get() == 0 {
-            return String::new();
+            return self.factor(id, Factor::atom(String::new()));
         }
-        let (text, binding) = self.node(id);
-        // an expression in several places is printed in each
-        work::spend(1 + text.len() / 64);
-        if binding < place { self.parenthesized(&text) } else { text }
-    }
-
-    fn enclosed(&self, text: &str, unicode: [&str; 2], latex: [&str; 2]) -> String {
-        let [open, close] = self.notation.either(unicode, latex);
-        format!("{open}{text}{close}")
-    }
-
-    fn parenthesized(&self, text: &str) -> String {
-        self.enclosed(text, ["(", ")"], ["\\left(", "\\right)"])
-    }
-
-    fn node(&self, id: Id) -> (String, Binding) {
         let shape = self.graph.shape(id);
-        let text = match &*self.graph.node(id) {
-            ExprNode::Symbol(symbol) => self.symbol(&symbol.name),
-            ExprNode::Pi => self.notation.either("π", "\\pi").into(),
-            ExprNode::Sum(terms) => return self.sum(terms, shape),
+        let product = match &*self.graph.node(id) {
+            ExprNode::Sum(terms) => Product::sum(terms.each(|term| self.term(term, shape)), self.notation, is_open),
+            ExprNode::Word(word) => self.applied(id, self.word(word), |word| word),
+            ExprNode::Trace(word) => self.applied(id, self.word(word), |word| {
+                let name = self.notation.either("tr", "\\operatorname{tr}");
+                Factor::atom(name.to_string() + &self.notation.parenthesized(&word.text))
+            }),
+            ExprNode::Hadamard(a, b) => self.hadamard(id, [*a, *b]),
+            // a scalar has no matrix factor
+            ExprNode::Of(operation, a) if operation.is_linear() && !self.graph.shape(*a).is_scalar() => {
+                self.applied(id, self.product(*a, false), |operand| self.operation(*operation, operand, *a, shape))
+            }
+            ExprNode::Of(operation, a) => self.factor(id, self.operation(*operation, self.node(*a), *a, shape)),
+            node => self.factor(id, self.atom(node, shape)),
+        };
+        // an expression in several places is printed in each
+        work::spend(1 + product.length() / 64);
+        product
+    }
+
+    fn factor(&self, id: Id, factor: Factor) -> Product {
+        Product::factor(factor, self.graph.shape(id).is_scalar())
+    }
+
+    /// A linear operation on a product, behind its scalars. `write` has its matrix factors.
+    fn applied(&self, id: Id, operand: Product, write: impl FnOnce(Factor) -> Factor) -> Product {
+        let (mut product, letters) = operand.split();
+        product.multiply(&self.factor(id, write(letters.as_factor(self.notation))));
+        product
+    }
+
+    fn hadamard(&self, id: Id, factors: [Id; 2]) -> Product {
+        let [(mut product, a), (scalars, b)] = both(factors, |factor| self.product(factor, false).split());
+        product.multiply(&scalars);
+        let [a, b] = both([a, b], |factor| factor.as_factor(self.notation).at(Binding::Atom, self.notation));
+        let text = a + self.notation.either(" ∘ ", " \\circ ") + &b;
+        product.multiply(&self.factor(id, Factor { binding: Binding::Sum, ..Factor::atom(text) }));
+        product
+    }
+
+    /// A product of matrices.
+    fn word(&self, word: &[Id]) -> Product {
+        word.iter().fold(Product::number(Rational::one()), |mut product, letter| {
+            product.multiply(&self.product(*letter, false));
+            product
+        })
+    }
+
+    fn term(&self, term: &Term, shape: Shape) -> Product {
+        let mut product = Product::number(term.coefficient.clone());
+        for &(base, exponent) in &term.scalars {
+            if exponent.is_integer() && exponent.parts().0.abs() <= MOST_SPLIT {
+                product.multiply_by_power(&self.product(base, false), exponent);
+            } else {
+                product.multiply_power(&self.node(base), exponent);
+            }
+        }
+        product.multiply(&self.word(&term.word));
+        if term.word.is_empty() && !shape.is_scalar() {
+            product.multiply(&Product::factor(Factor::atom("I".into()), false));
+        }
+        product
+    }
+
+    /// A node that is no sum, no product and no operation.
+    fn atom(&self, node: &ExprNode, shape: Shape) -> Factor {
+        Factor::atom(match node {
+            ExprNode::Symbol(symbol) => return Factor { is_name: true, ..Factor::atom(self.symbol(&symbol.name)) },
             ExprNode::Literal(entries) => self.rows(shape, entries.each(|entry| self.rational(entry))),
             ExprNode::Stack(entries) => self.rows(shape, self.all(entries)),
-            ExprNode::Word(word) => return (self.word(word), Binding::Product),
-            ExprNode::Trace(word) => {
-                self.notation.either("tr", "\\operatorname{tr}").to_string() + &self.parenthesized(&self.word(word))
-            }
             ExprNode::Opaque(name, output, arguments) => {
                 let name = self.symbol(name);
                 let number = if arguments.len() > 1 { output.to_string() } else { String::new() };
@@ -109,42 +195,41 @@ impl<'g> Printer<'g> {
                 let name = if *output == 0 { name } else { format!("{nabla}{number}{name}") };
                 format!("{name}({})", self.all(arguments).join(", "))
             }
-            ExprNode::Hadamard(a, b) => {
-                let [a, b] = both([a, b], |factor| self.print(*factor, Binding::Atom));
-                return (a + self.notation.either(" ∘ ", " \\circ ") + &b, Binding::Sum);
-            }
-            ExprNode::Of(operation, a) => self.operation(*operation, *a, shape),
-        };
-        (text, Binding::Atom)
+            _ => self.notation.either("π", "\\pi").into(),
+        })
     }
 
-    fn operation(&self, operation: Operation, a: Id, shape: Shape) -> String {
-        let inner = || self.print(a, Binding::Sum);
+    /// An operation on an operand of this shape.
+    fn operation(&self, operation: Operation, operand: Factor, a: Id, shape: Shape) -> Factor {
+        let raised = |unicode: &str, latex: &str| {
+            Factor::atom(self.notation.raised(&operand.at(Binding::Atom, self.notation), unicode, latex))
+        };
+        let inner = &operand.text;
         let (unicode, latex) = match operation {
-            Operation::Transpose => return self.raised(a, "ᵀ", "\\mathsf T"),
-            Operation::Inverse => return self.raised(a, "⁻¹", "-1"),
-            Operation::Wedge(_) => return self.raised(a, "^", "\\wedge"),
-            Operation::Components(_) => return self.enclosed(&inner(), ["⟨", ", E⟩"], ["\\langle ", ", E \\rangle"]),
-            Operation::Block(row, column) => return self.block(a, row, column, shape),
+            Operation::Transpose => return raised("ᵀ", "\\mathsf T"),
+            Operation::Inverse => return raised("⁻¹", "-1"),
+            Operation::Wedge(_) => return raised("^", "\\wedge"),
+            Operation::Components(_) => {
+                return Factor::atom(self.notation.enclosed(inner, ["⟨", ", E⟩"], ["\\langle ", ", E \\rangle"]));
+            }
+            Operation::Block(row, column) => return self.block(&operand, (row, column), self.graph.shape(a), shape),
             Operation::Embed(row, column) => {
                 let name = self.notation.either("embed", "\\operatorname{embed}");
-                return format!("{name}({}, {row}, {column})", inner());
+                return Factor::atom(format!("{name}({inner}, {row}, {column})"));
             }
             Operation::Function(Function::Stumpff(k)) => {
                 let unicode = format!("c{}", in_digits(k.into(), "₋₀₁₂₃₄₅₆₇₈₉"));
-                return self.notation.either(unicode, format!("c_{{{k}}}")) + &self.parenthesized(&inner());
+                (unicode, format!("c_{{{k}}}"))
             }
-            Operation::Function(function) => {
-                return self.notation.either("", "\\").to_string() + &function.name() + &self.parenthesized(&inner());
-            }
-            Operation::Determinant => ("det", "\\det"),
-            Operation::Analytic(Analytic::Exponential) => ("exp", "\\exp"),
-            Operation::Analytic(Analytic::Phi) => ("φ", "\\varphi"),
-            Operation::Analytic(Analytic::Logarithm | Analytic::MotionLogarithm) => ("log", "\\log"),
-            Operation::DiagonalMatrix => ("diag", "\\operatorname{diag}"),
-            Operation::Diagonal => ("diagonal", "\\operatorname{diagonal}"),
+            Operation::Function(function) => (function.name(), format!("\\{}", function.name())),
+            Operation::Determinant => ("det".into(), "\\det".into()),
+            Operation::Analytic(Analytic::Exponential) => ("exp".into(), "\\exp".into()),
+            Operation::Analytic(Analytic::Phi) => ("φ".into(), "\\varphi".into()),
+            Operation::Analytic(Analytic::Logarithm | Analytic::MotionLogarithm) => ("log".into(), "\\log".into()),
+            Operation::DiagonalMatrix => ("diag".into(), "\\operatorname{diag}".into()),
+            Operation::Diagonal => ("diagonal".into(), "\\operatorname{diagonal}".into()),
         };
-        self.notation.either(unicode, latex).to_string() + &self.parenthesized(&inner())
+        Factor::atom(self.notation.either(unicode, latex) + &self.notation.parenthesized(inner))
     }
 
     fn all(&self, ids: &[Id]) -> Vec<String> {
@@ -155,108 +240,28 @@ impl<'g> Printer<'g> {
         if self.notation == Notation::Latex { latex_name(name) } else { name.to_string() }
     }
 
-    /// An operand with something above it: in Unicode behind it. In LaTeX a base that has an exponent already stands in braces, as
-    /// it knows no second one.
-    fn raised(&self, operand: Id, unicode: &str, latex: &str) -> String {
-        let base = self.print(operand, Binding::Atom);
-        let is_raised = base.contains('^') && !base.ends_with("\\right)");
-        match self.notation {
-            Notation::Unicode => base + unicode,
-            Notation::Latex if is_raised => format!("{{{base}}}^{{{latex}}}"),
-            Notation::Latex => format!("{base}^{{{latex}}}"),
-        }
-    }
-
     fn rows(&self, shape: Shape, entries: Vec<String>) -> String {
         let rows: Vec<String> =
             entries.chunks(shape.columns).map(|row| row.join(self.notation.either(", ", " & "))).into_list();
         let text = rows.join(self.notation.either("; ", " \\\\ "));
-        self.enclosed(&text, ["[", "]"], ["\\begin{pmatrix}", "\\end{pmatrix}"])
+        self.notation.enclosed(&text, ["[", "]"], ["\\begin{pmatrix}", "\\end{pmatrix}"])
     }
 
-    fn block(&self, inner: Id, row: usize, column: usize, shape: Shape) -> String {
+    /// A block of an operand that has the shape `of`.
+    fn block(&self, operand: &Factor, (row, column): (usize, usize), of: Shape, shape: Shape) -> Factor {
         let range = |start: usize, length: usize| {
             if length == 1 { start.to_string() } else { format!("{start}..{}", start + length) }
         };
         let mut index = range(row, shape.rows);
-        if !self.graph.shape(inner).is_column() {
+        if !of.is_column() {
             index = format!("{index}, {}", range(column, shape.columns));
         }
-        let base = self.print(inner, Binding::Atom);
+        let base = operand.at(Binding::Atom, self.notation);
         // LaTeX knows no second subscript
         let is_lowered = self.notation == Notation::Latex && base.contains('_') && !base.ends_with("\\right)");
         let base = if is_lowered { format!("{{{base}}}") } else { base };
-        base + &self.enclosed(&index, ["[", "]"], ["_{", "}"])
-    }
-
-    /// Positive terms first, plain numbers and identities last.
-    fn sum(&self, terms: &[Term], shape: Shape) -> (String, Binding) {
-        if terms.is_empty() {
-            return ("0".into(), Binding::Atom);
-        }
-        let constant = |term: &&Term| term.word.is_empty() && term.scalars.is_empty();
-        let mut ordered: Vec<&Term> = terms.iter().into_list();
-        ordered.sort_by_key(|term| (term.coefficient.is_negative(), constant(term)));
-        let signed = ordered.into_iter().map(|term| (term.coefficient.is_negative(), self.term(term, shape)));
-        // names may hold signs too
-        let text = joined(signed, '−').replace('−', self.notation.either("−", "-"));
-        let binding =
-            if terms.len() > 1 || terms[0].coefficient.is_negative() { Binding::Sum } else { Binding::Product };
-        (text, binding)
-    }
-
-    /// The absolute value of a term: numerator over denominator.
-    fn term(&self, term: &Term, shape: Shape) -> String {
-        let (mut above, mut below) = (Vec::new(), Vec::new());
-        let coefficient = term.coefficient.abs();
-        for &(base, exponent) in &term.scalars {
-            if exponent.is_negative() {
-                below.push(self.scalar_power(base, -exponent));
-            } else {
-                above.push(self.scalar_power(base, exponent));
-            }
-        }
-        if !term.word.is_empty() {
-            above.push(self.word(&term.word));
-        } else if !shape.is_scalar() {
-            above.push("I".into());
-        }
-        if !coefficient.numer().is_one() || above.is_empty() {
-            above.insert(0, coefficient.numer().to_string());
-        }
-        if !coefficient.denom().is_one() {
-            below.insert(0, coefficient.denom().to_string());
-        }
-        let (above, factors, below) = (self.join(&above), below.len(), self.join(&below));
-        match factors {
-            0 => above,
-            _ if self.notation == Notation::Latex => format!("\\frac{{{above}}}{{{below}}}"),
-            1 => format!("{above}/{below}"),
-            _ => format!("{above}/({below})"),
-        }
-    }
-
-    fn join(&self, factors: &[String]) -> String {
-        factors.join(self.notation.either("·", "\\,"))
-    }
-
-    fn scalar_power(&self, base: Id, exponent: Exponent) -> String {
-        if exponent.parts() == (1, 2) {
-            return self.enclosed(&self.print(base, Binding::Sum), ["√(", ")"], ["\\sqrt{", "}"]);
-        }
-        if exponent.is_one() {
-            return self.print(base, Binding::Product);
-        }
-        let in_unicode = match exponent.parts() {
-            (whole, 1) => in_digits(whole, "⁻⁰¹²³⁴⁵⁶⁷⁸⁹"),
-            _ => format!("^({exponent})"),
-        };
-        self.raised(base, &in_unicode, &exponent.to_string())
-    }
-
-    fn word(&self, word: &[Id]) -> String {
-        let letters: Vec<String> = word.each(|&letter| self.print(letter, Binding::Product));
-        self.join(&letters)
+        let text = base + &self.notation.enclosed(&index, ["[", "]"], ["_{", "}"]);
+        Factor { is_name: operand.is_name, ..Factor::atom(text) }
     }
 
     fn rational(&self, value: &Rational) -> String {

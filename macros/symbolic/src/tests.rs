@@ -198,6 +198,107 @@ mod print {
         graph.symbol(name, Shape::scalar(), Role::Parameter(0), Property::General)
     }
 
+    /// The value of a text with one-letter names, by the rules that a reader has: powers, then products and bars, then sums.
+    struct Reader<'t> {
+        text: std::iter::Peekable<std::str::Chars<'t>>,
+        values: [f64; 4],
+    }
+
+    impl Reader<'_> {
+        fn next_if(&mut self, sign: char) -> bool {
+            while self.text.next_if_eq(&' ').is_some() {}
+            self.text.next_if_eq(&sign).is_some()
+        }
+
+        fn sum(&mut self) -> f64 {
+            let mut sum = if self.next_if('−') { -self.product() } else { self.product() };
+            loop {
+                match (self.next_if('+'), self.next_if('−')) {
+                    (true, _) => sum += self.product(),
+                    (_, true) => sum -= self.product(),
+                    _ => return sum,
+                }
+            }
+        }
+
+        fn product(&mut self) -> f64 {
+            let mut product = self.power();
+            loop {
+                match (self.next_if('·'), self.next_if('/')) {
+                    (true, _) => product *= self.power(),
+                    (_, true) => product /= self.power(),
+                    _ => return product,
+                }
+            }
+        }
+
+        fn power(&mut self) -> f64 {
+            while self.text.next_if_eq(&' ').is_some() {}
+            let base = match self.text.next() {
+                Some('(') => {
+                    let sum = self.sum();
+                    assert!(self.next_if(')'));
+                    sum
+                }
+                Some('√') => return self.power().sqrt(),
+                Some(letter @ 'a'..='d') => self.values[letter as usize - 'a' as usize],
+                Some(digit) => {
+                    let mut number = f64::from(digit.to_digit(10).expect("a number"));
+                    while let Some(digit) = self.text.peek().and_then(|digit| digit.to_digit(10)) {
+                        number = 10.0 * number + f64::from(digit);
+                        self.text.next();
+                    }
+                    number
+                }
+                None => panic!("a factor"),
+            };
+            let mut exponent = 0;
+            while let Some(digit) = self.text.peek().and_then(|sign| "⁰¹²³⁴⁵⁶⁷⁸⁹".chars().position(|c| c == *sign))
+            {
+                exponent = 10 * exponent + digit as i32;
+                self.text.next();
+            }
+            if self.next_if('^') {
+                return base.powf(self.power());
+            }
+            if exponent == 0 { base } else { base.powi(exponent) }
+        }
+    }
+
+    /// Common factors move in front of sums, and the value stays.
+    #[test]
+    fn a_text_has_the_value_of_its_expression() {
+        let mut state = 1_u64;
+        let mut random = |count: u64| {
+            state = state.wrapping_mul(0x5851_f42d_4c95_7f2d).wrapping_add(0x1405_7b7e_f767_814f);
+            (state >> 33) % count
+        };
+        for case in 0..2000 {
+            let graph = Graph::new();
+            let values = [0.7, 1.3, 2.9, 0.4];
+            let mut all: Vec<(Expr<'_>, f64)> =
+                ["a", "b", "c", "d"].iter().zip(values).map(|(name, value)| (symbol(&graph, name), value)).collect();
+            for _ in 0..2 + random(9) {
+                let [(x, a), (y, b)] = [(); 2].map(|()| all[random(all.len() as u64) as usize]);
+                all.push(match random(7) {
+                    0 | 1 => (x + y, a + b),
+                    2 => (x - y, a - b),
+                    3 => (x * y, a * b),
+                    4 if b.abs() > 1e-3 => (x / y, a / b),
+                    5 if a > 0.0 => (x.sqrt(), a.sqrt()),
+                    _ => (3 * x / 4 - y / 2, 0.75 * a - b / 2.0),
+                });
+            }
+            let (formula, expected) = all[all.len() - 1];
+            let text = formula.to_string();
+            let mut reader = Reader { text: text.chars().peekable(), values };
+            let found = reader.sum();
+            assert_eq!(reader.text.next(), None, "{text}");
+            let scale = 1.0 + all.iter().fold(0.0_f64, |largest, (_, value)| largest.max(value.abs()));
+            assert!((found - expected).abs() < 1e-9 * scale, "case {case}: {text} is {found}, not {expected}");
+        }
+    }
+
     #[test]
     fn a_text_has_at_most_so_many_characters() {
         let graph = Graph::new();

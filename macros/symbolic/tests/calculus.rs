@@ -29,6 +29,30 @@ fn symbols(graph: &Graph) -> Symbols<'_> {
 }
 
 #[test]
+fn common_factors_stand_before_sums_and_linear_operations() {
+    let graph = Graph::new();
+    let Symbols { f, s, a, q, u, v, h, x } = symbols(&graph);
+    let scalar = |name, index| graph.symbol(name, Shape::scalar(), Role::Parameter(index), Property::General);
+    let (m, n) = (scalar("m", 7), scalar("n", 8));
+    let i = graph.identity(3);
+    let table = [
+        ("a number of all terms stays in an open sum", (u + v) / 2, "u/2 + v/2"),
+        ("in a product it does not", f * (u / 2 + v / 2), "F·(u + v)/2"),
+        ("numbers over several denominators stay", f * (u / 2 + v), "F·(u/2 + v)"),
+        ("a scalar of all terms", h * u + h * v, "h·(u + v)"),
+        ("scalars of one vector", h * (m * u + n * u), "h·(m + n)·u"),
+        ("scalars of some terms", m * u + m * v - x, "m·(u + v) − x"),
+        ("signs", -(f * (-h * u - h * v)), "h·F·(u + v)"),
+        ("a transpose", (m * a + m * s).transpose() * q, "m·(S + Aᵀ)·q"),
+        ("a denominator that is a sum", u / (u.dot(u) / 2 + i.trace() / 6), "2·u/(uᵀ·u + 1)"),
+        ("an entry", (m * a * u + m * v).block(1, 0, Shape::scalar()), "m·((A·u)[1] + v[1])"),
+    ];
+    for (name, input, expected) in table {
+        assert_eq!(input.to_string(), expected, "{name}");
+    }
+}
+
+#[test]
 fn simplification_on_construction() {
     let graph = Graph::new();
     let Symbols { f, s, a, q, u, v, h, x: _ } = symbols(&graph);

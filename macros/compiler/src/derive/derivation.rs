@@ -4,7 +4,7 @@ mod conserved;
 mod equations;
 mod step;
 
-use clebsch_symbolic::{Elements, Group, IntoList, joined};
+use clebsch_symbolic::{Elements, Group, IntoList, Notation, Product};
 
 use super::symbols::subscript;
 use super::{MechanicsFormulas, SteeredFormulas, Structure};
@@ -16,7 +16,7 @@ pub struct Lowered {
     pub form: String,
     /// The coefficients of ξᵢξⱼ, i ≤ j, in the kinetic energy, without those that are zero.
     /// `None` for matrix code and where they are too long to print.
-    pub energy: Option<Vec<(usize, usize, String)>>,
+    pub energy: Option<Vec<(usize, usize, Product)>>,
     /// Whether the gradient of a site of a power is gathered from the terms that read it. Of a field it is the force on a site,
     /// and its edges.
     pub is_gathered: bool,
@@ -200,13 +200,11 @@ fn energy(formulas: &MechanicsFormulas<'_>, lowered: &Lowered) -> String {
     let velocities = formulas.symbols.algebra.iter();
     let names: Vec<String> =
         velocities.flat_map(|xi| (1..=xi.shape().rows).map(move |i| format!("{xi}{}", subscript(i)))).into_list();
-    let term = |(i, j, text): &(usize, usize, String)| {
-        let square = if i == j { format!("{}²", names[*i]) } else { format!("{} {}", names[*i], names[*j]) };
-        let size = text.strip_prefix('-').filter(|size| is_one_term(size));
-        let text = size.unwrap_or(text);
-        let is_sum = !is_one_term(text);
-        let coefficient = if is_sum { format!("({text})") } else { text.to_string() };
-        (size.is_some(), if text == "1" { square } else { format!("{coefficient} {square}") })
+    let term = |(i, j, coefficient): &(usize, usize, Product)| {
+        let square = if i == j { format!("{}²", names[*i]) } else { format!("{}·{}", names[*i], names[*j]) };
+        let mut term = coefficient.clone();
+        term.multiply(&Product::scalar(square));
+        term
     };
     let refused =
         if formulas.is_definite() { ", and `stepper()` refuses it without `signature = indefinite`" } else { "" };
@@ -222,7 +220,7 @@ fn energy(formulas: &MechanicsFormulas<'_>, lowered: &Lowered) -> String {
         None => "of a signature that depends on the parameters".to_string(),
     };
     let Some(terms) = &lowered.energy else { return format!("Kinetic energy is {signature}.{symmetric}\n") };
-    let terms = joined(terms.iter().map(term), '-');
+    let terms = Product::sum(terms.each(term), Notation::Unicode, true).written(Notation::Unicode);
     let to_second_order = if formulas.energy.general.is_some() { " to second order" } else { "" };
     let linear = if formulas.energy.gyroscopic.is_zero() { "" } else { ", and a part that is linear in the velocity" };
     format!("Kinetic energy in these coordinates{to_second_order}: {terms}{linear}. It is {signature}.{symmetric}\n")
@@ -259,17 +257,4 @@ fn vertical(formulas: &MechanicsFormulas<'_>) -> String {
         "The {depends}: motions of {names} that leave q unchanged, ξ in 𝔤_q, have no kinetic energy. The vertical term W gives it to them. \
          Momenta lie in 𝔤_q^⊥, so W and its derivative are 0 {when}: q moves as by the {alone} without it.\n"
     )
-}
-
-/// Whether no sum stands outside of brackets.
-fn is_one_term(text: &str) -> bool {
-    let mut depth = 0;
-    text.chars().all(|character| {
-        depth += match character {
-            '(' => 1,
-            ')' => -1,
-            _ => 0,
-        };
-        depth > 0 || character != ' '
-    })
 }

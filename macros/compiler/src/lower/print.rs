@@ -3,7 +3,7 @@
 
 use std::fmt;
 
-use clebsch_symbolic::{Analytic, Elements, IntoList, Operation, Rational, integer, joined};
+use clebsch_symbolic::{Analytic, Elements, IntoList, Operation, Product, Rational, integer, joined};
 
 use super::collect::collected;
 use super::{Callee, Code, Form, Input, Kernel, KernelTable, LARGEST_UNROLLED, MOST_UNKNOWNS, MatrixOperation};
@@ -45,7 +45,7 @@ impl KernelTable {
     }
 
     /// i, j and the coefficient of ξ_i ξ_j in the kinetic energy, without those that are zero; `None` of long ones.
-    fn energy_coefficients(&self) -> Option<Vec<(usize, usize, String)>> {
+    fn energy_coefficients(&self) -> Option<Vec<(usize, usize, Product)>> {
         let kernel = self.find(Id::EnergyCoefficients).filter(|kernel| length_inlined(kernel) <= LONGEST_ENERGY)?;
         let (shape, entries) = &kernel.outputs[0];
         let upper = shape.positions().zip(entries).filter(|((i, j), _)| i <= j);

@@ -18,7 +18,7 @@ impl Graph {
     ) -> Option<(Vec<String>, Vec<String>)> {
         let (mut printer, mut parts) = (Printer::new(self, notation, most), Vec::new());
         for id in self.repeated(formulas) {
-            let (text, _) = printer.node(id);
+            let text = printer.node(id).text;
             if printer.left.get() == 0 {
                 return None;
             }

@@ -170,7 +170,7 @@ fn the_identity_takes_the_size_that_fits() {
         ("I.transpose() + F",                        "F + I"),
         ("(2 * I).inverse() + F",                    "F + I/2"),
         ("F.dot(&I)",                                "tr(F)"),
-        ("self.inertia.component_mul(&I)",           "inertia ∘ (I)"),
+        ("self.inertia.component_mul(&I)",           "inertia ∘ I"),
         ("{ let twice = 2 * I; F - twice }",         "F − 2·I"),
     ]);
 }
