@@ -1,5 +1,6 @@
-/* A top and a probe in C. Prints the bits of their numbers, one number a line, and ends with another status than 0 where something is wrong. */
+/* A top by two methods, and a probe, in C. Prints the bits of their numbers, one number a line, and ends with another status than 0 where something is wrong. */
 
+#include "fine_top.h"
 #include "heavy_top.h"
 #include "probe.h"
 
@@ -90,6 +91,24 @@ static int top(void) {
     return 0;
 }
 
+static int fine(void) {
+    const fine_top_parameters parameters = {
+        .mass_matrix = {{0.5, 0.125, 0}, {0.125, 0.75, 0}, {0, 0, 0.25}},
+        .weight = 2,
+        .center = {0, 0.25, 1},
+    };
+    const fine_top_numbers start = {.R = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, .N = {0.5, 0.25, 2}};
+    fine_top_stepper stepper;
+    fine_top_state state;
+    fine_top_numbers end;
+    CHECK(fine_top_make(&stepper, sizeof stepper, &parameters, 0.0625) == CLEBSCH_OK);
+    CHECK(fine_top_start(&stepper, &state, sizeof state, &start) == CLEBSCH_OK);
+    CHECK(fine_top_advance(&stepper, &state, 50) == CLEBSCH_OK);
+    CHECK(fine_top_read(&state, &end) == CLEBSCH_OK);
+    print_doubles(&end, sizeof end);
+    return 0;
+}
+
 static int fly(void) {
     const probe_parameters parameters = {.mass = 2, .moments = {1, 1.5f, 2}, .stiffness = 8, .drift = {0.25f, 0, 0}};
     const probe_numbers start = {.t = 0.5f, .x = {0.5f, 0, 0.25f}, .Q = {0, 0, 1, 0}, .N = {0, 1, 0, 0.5f, 0.25f, 0.125f}};
@@ -107,4 +126,4 @@ static int fly(void) {
     return 0;
 }
 
-int main(void) { return top() || fly(); }
+int main(void) { return top() || fine() || fly(); }

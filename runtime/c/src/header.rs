@@ -3,7 +3,7 @@
 use crate::interface::Exported;
 use crate::numbers::{AtTime, Plain, Real};
 use crate::status::{MESSAGE, STATUSES};
-use clebsch::{Clebsch, Columns, Form, Names, State, Stepper};
+use clebsch::{Clebsch, Columns, Form, Method, Names, State, Stepper};
 use core::fmt::{self, Display, Formatter};
 
 /// The header of an exported system, which it prints.
@@ -35,8 +35,8 @@ pub struct Header {
 }
 
 impl Header {
-    /// The header of a system with these parameters.
-    pub const fn new<S: Exported<Scalar: Real, Input: Plain<S::Scalar>>>(
+    /// The header of a system with these parameters, by a method.
+    pub const fn new<S: Exported<Scalar: Real, Input: Plain<S::Scalar>>, M: Method<S>>(
         name: &'static str,
         parameters: &'static [(&'static str, Form)],
     ) -> Self {
@@ -48,8 +48,8 @@ impl Header {
             configuration: (S::CONFIGURATION_NAMES, <S::Configuration as Columns<S::Scalar>>::FORM),
             momentum: <S::Momentum as Columns<S::Scalar>>::FORM,
             input: <<S as Clebsch>::Input as Columns<S::Scalar>>::FORM,
-            stepper: size_of::<Stepper<S>>().next_multiple_of(8),
-            state: size_of::<State<S>>().next_multiple_of(8),
+            stepper: size_of::<Stepper<S, M>>().next_multiple_of(8),
+            state: size_of::<State<S, M>>().next_multiple_of(8),
         }
     }
 

@@ -1,8 +1,8 @@
-//! The functions behind the exported ones, the same for every system.
+//! The functions behind the exported ones, the same for every system and every method.
 
 use crate::numbers::{AtTime, Plain};
 use crate::{Message, Status};
-use clebsch::{Clebsch, Columns, Error, State, Stepper};
+use clebsch::{Clebsch, Columns, Error, Method, State, Stepper};
 use core::fmt::Write;
 use core::mem::{MaybeUninit, needs_drop};
 
@@ -45,26 +45,29 @@ fn place<V>(place: Option<&mut MaybeUninit<V>>, size: usize) -> Result<&mut Mayb
 }
 
 /// `NAME_make`
-pub fn make<S: Exported>(
-    to: Option<&mut MaybeUninit<Stepper<S>>>,
+pub fn make<S: Exported, M: Method<S>>(
+    to: Option<&mut MaybeUninit<Stepper<S, M>>>,
     size: usize,
     system: Option<S>,
     step_size: S::Scalar,
 ) -> Status {
     status((|| {
         let to = place(to, size)?;
-        to.write(given(system)?.into_stepper(step_size)?);
+        to.write(given(system)?.into_stepper_by(step_size)?);
         Ok(())
     })())
 }
 
 /// The state with these numbers.
-fn state_of<S: Exported>(stepper: &Stepper<S>, numbers: &[S::Scalar]) -> Result<State<S>, Status> {
+fn state_of<S: Exported, M: Method<S>>(stepper: &Stepper<S, M>, numbers: &[S::Scalar]) -> Result<State<S, M>, Status> {
     state_or_error(stepper, numbers).ok_or(Status::Null)?.map_err(Status::from)
 }
 
 /// The same; `None` if there are too few numbers.
-fn state_or_error<S: Exported>(stepper: &Stepper<S>, numbers: &[S::Scalar]) -> Option<Result<State<S>, Error>> {
+fn state_or_error<S: Exported, M: Method<S>>(
+    stepper: &Stepper<S, M>,
+    numbers: &[S::Scalar],
+) -> Option<Result<State<S, M>, Error>> {
     let mut numbers = numbers.iter().copied();
     let time = if <S::Time as AtTime<S>>::IS_TIMED { numbers.next()? } else { stepper.step_size() };
     let q = S::Configuration::read(&mut numbers)?;
@@ -73,9 +76,9 @@ fn state_or_error<S: Exported>(stepper: &Stepper<S>, numbers: &[S::Scalar]) -> O
 }
 
 /// `NAME_start`
-pub fn start<S: Exported>(
-    stepper: Option<&Stepper<S>>,
-    to: Option<&mut MaybeUninit<State<S>>>,
+pub fn start<S: Exported, M: Method<S>>(
+    stepper: Option<&Stepper<S, M>>,
+    to: Option<&mut MaybeUninit<State<S, M>>>,
     size: usize,
     numbers: Option<&[S::Scalar]>,
 ) -> Status {
@@ -87,7 +90,7 @@ pub fn start<S: Exported>(
 }
 
 /// `NAME_step`
-pub fn step<S: Clebsch>(stepper: Option<&Stepper<S>>, state: Option<&mut State<S>>) -> Status {
+pub fn step<S: Clebsch, M: Method<S>>(stepper: Option<&Stepper<S, M>>, state: Option<&mut State<S, M>>) -> Status {
     status((|| {
         let state = given(state)?;
         *state = given(stepper)?.step(state)?;
@@ -96,9 +99,9 @@ pub fn step<S: Clebsch>(stepper: Option<&Stepper<S>>, state: Option<&mut State<S
 }
 
 /// `NAME_step_with`
-pub fn step_with<S: Clebsch<Input: Plain<S::Scalar>>>(
-    stepper: Option<&Stepper<S>>,
-    state: Option<&mut State<S>>,
+pub fn step_with<S: Clebsch<Input: Plain<S::Scalar>>, M: Method<S>>(
+    stepper: Option<&Stepper<S, M>>,
+    state: Option<&mut State<S, M>>,
     input: Option<&[S::Scalar]>,
 ) -> Status {
     status((|| {
@@ -110,7 +113,11 @@ pub fn step_with<S: Clebsch<Input: Plain<S::Scalar>>>(
 }
 
 /// `NAME_advance`
-pub fn advance<S: Clebsch>(stepper: Option<&Stepper<S>>, state: Option<&mut State<S>>, steps: usize) -> Status {
+pub fn advance<S: Clebsch, M: Method<S>>(
+    stepper: Option<&Stepper<S, M>>,
+    state: Option<&mut State<S, M>>,
+    steps: usize,
+) -> Status {
     status((|| {
         let state = given(state)?;
         *state = given(stepper)?.advance(state, steps)?;
@@ -119,9 +126,9 @@ pub fn advance<S: Clebsch>(stepper: Option<&Stepper<S>>, state: Option<&mut Stat
 }
 
 /// `NAME_kick`
-pub fn kick<S: Exported>(
-    stepper: Option<&Stepper<S>>,
-    state: Option<&mut State<S>>,
+pub fn kick<S: Exported, M: Method<S>>(
+    stepper: Option<&Stepper<S, M>>,
+    state: Option<&mut State<S, M>>,
     impulse: Option<&[S::Scalar]>,
 ) -> Status {
     status((|| {
@@ -133,7 +140,7 @@ pub fn kick<S: Exported>(
 }
 
 /// `NAME_read`
-pub fn read<S: Exported>(state: Option<&State<S>>, numbers: Option<&mut [S::Scalar]>) -> Status {
+pub fn read<S: Exported, M: Method<S>>(state: Option<&State<S, M>>, numbers: Option<&mut [S::Scalar]>) -> Status {
     status((|| {
         let (state, numbers) = (given(state)?, given(numbers)?);
         let (q, mu) = (state.configuration(), state.momentum());
@@ -146,9 +153,9 @@ pub fn read<S: Exported>(state: Option<&State<S>>, numbers: Option<&mut [S::Scal
 }
 
 /// `NAME_energy`
-pub fn energy<S: Clebsch>(
-    stepper: Option<&Stepper<S>>,
-    state: Option<&State<S>>,
+pub fn energy<S: Clebsch, M: Method<S>>(
+    stepper: Option<&Stepper<S, M>>,
+    state: Option<&State<S, M>>,
     energy: Option<&mut S::Scalar>,
 ) -> Status {
     status((|| {
@@ -158,7 +165,7 @@ pub fn energy<S: Clebsch>(
 }
 
 /// `NAME_explain`
-pub fn explain<S: Exported<Input: Plain<S::Scalar>>>(
+pub fn explain<S: Exported<Input: Plain<S::Scalar>>, M: Method<S>>(
     system: Option<S>,
     step_size: S::Scalar,
     numbers: Option<&[S::Scalar]>,
@@ -166,7 +173,7 @@ pub fn explain<S: Exported<Input: Plain<S::Scalar>>>(
     message: Option<&mut Message>,
 ) -> Status {
     let attempt = |system: S| {
-        let stepper = system.into_stepper(step_size)?;
+        let stepper = system.into_stepper_by::<M>(step_size)?;
         let Some(state) = numbers.and_then(|numbers| state_or_error(&stepper, numbers)) else { return Ok(()) };
         match input.and_then(|input| S::Input::read(&mut input.iter().copied())) {
             Some(input) => stepper.step_with(&state?, &input)?,

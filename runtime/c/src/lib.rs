@@ -57,23 +57,34 @@ pub use {clebsch, core};
 /// All fields of the struct are listed with their types: numbers, vectors, matrices, and arrays of these, in the scalar of the
 /// system, `f64` or `f32`. The module has the functions, and the constant `HEADER`, which prints the header.
 ///
+/// `export!(name: System, by Method { field: Type, … })` exports the steppers of a named method of the declaration.
+/// Each method has a name of its own in C, so that a program may use several.
+///
 /// A crate that forbids unsafe code cannot export names: write `deny` in place of `forbid`.
 #[macro_export]
 macro_rules! export {
-    ($(#[$attribute:meta])* $name:ident: $system:ty { $($field:ident: $type:ty),* $(,)? }) => {
+    ($(#[$attribute:meta])* $name:ident: $system:ty { $($fields:tt)* }) => {
+        $crate::export!(@ $(#[$attribute])* $name: $system, $crate::clebsch::Declared { $($fields)* });
+    };
+    ($(#[$attribute:meta])* $name:ident: $system:ty, by $method:ty { $($fields:tt)* }) => {
+        $crate::export!(@ $(#[$attribute])* $name: $system, $method { $($fields)* });
+    };
+    (@ $(#[$attribute:meta])* $name:ident: $system:ty, $method:ty { $($field:ident: $type:ty),* $(,)? }) => {
         $(#[$attribute])*
         #[allow(unsafe_code, reason = "exported names")]
         #[allow(improper_ctypes_definitions, reason = "steppers and states are bytes to C")]
         #[allow(unused_imports, reason = "types of fields may be in scope here")]
         pub mod $name {
             use super::*;
-            use $crate::clebsch::{Clebsch, Columns, State, Stepper};
+            use $crate::clebsch::{Clebsch, Columns};
             use $crate::core::mem::MaybeUninit;
             use $crate::core::option::Option::{self, Some};
             use $crate::core::{concat, primitive, stringify};
             use $crate::{Header, Message, Plain, Status};
 
             type System = $system;
+            type Steps = $crate::clebsch::Stepper<System, $method>;
+            type Stated = $crate::clebsch::State<System, $method>;
             type Scalar = <System as Clebsch>::Scalar;
             type Parameters = [Scalar; PARAMETERS];
             type Numbers = [Scalar; $crate::width::<System>()];
@@ -83,7 +94,7 @@ macro_rules! export {
             const PARAMETERS: primitive::usize = 0 $(+ <$type as Columns<Scalar>>::FORM.width())*;
 
             /// The header that declares these functions in C.
-            pub const HEADER: Header = Header::new::<System>(
+            pub const HEADER: Header = Header::new::<System, $method>(
                 stringify!($name),
                 &[$((stringify!($field), <$type as Columns<Scalar>>::FORM)),*],
             );
@@ -98,7 +109,7 @@ macro_rules! export {
             /// A stepper with these parameters.
             #[unsafe(export_name = concat!(stringify!($name), "_make"))]
             pub extern "C" fn make(
-                stepper: Option<&mut MaybeUninit<Stepper<System>>>,
+                stepper: Option<&mut MaybeUninit<Steps>>,
                 size: primitive::usize,
                 parameters: Option<&Parameters>,
                 step_size: Scalar,
@@ -109,8 +120,8 @@ macro_rules! export {
             /// A state with these numbers.
             #[unsafe(export_name = concat!(stringify!($name), "_start"))]
             pub extern "C" fn start(
-                stepper: Option<&Stepper<System>>,
-                state: Option<&mut MaybeUninit<State<System>>>,
+                stepper: Option<&Steps>,
+                state: Option<&mut MaybeUninit<Stated>>,
                 size: primitive::usize,
                 numbers: Option<&Numbers>,
             ) -> Status {
@@ -119,15 +130,15 @@ macro_rules! export {
 
             /// One step, in place.
             #[unsafe(export_name = concat!(stringify!($name), "_step"))]
-            pub extern "C" fn step(stepper: Option<&Stepper<System>>, state: Option<&mut State<System>>) -> Status {
+            pub extern "C" fn step(stepper: Option<&Steps>, state: Option<&mut Stated>) -> Status {
                 $crate::step(stepper, state)
             }
 
             /// One step with an input of the forces, in place.
             #[unsafe(export_name = concat!(stringify!($name), "_step_with"))]
             pub extern "C" fn step_with(
-                stepper: Option<&Stepper<System>>,
-                state: Option<&mut State<System>>,
+                stepper: Option<&Steps>,
+                state: Option<&mut Stated>,
                 input: Option<&Input>,
             ) -> Status {
                 $crate::step_with(stepper, state, input.map(|input| &input[..]))
@@ -136,8 +147,8 @@ macro_rules! export {
             /// So many steps, in place.
             #[unsafe(export_name = concat!(stringify!($name), "_advance"))]
             pub extern "C" fn advance(
-                stepper: Option<&Stepper<System>>,
-                state: Option<&mut State<System>>,
+                stepper: Option<&Steps>,
+                state: Option<&mut Stated>,
                 steps: primitive::usize,
             ) -> Status {
                 $crate::advance(stepper, state, steps)
@@ -146,8 +157,8 @@ macro_rules! export {
             /// An impulse, added to the momentum in place.
             #[unsafe(export_name = concat!(stringify!($name), "_kick"))]
             pub extern "C" fn kick(
-                stepper: Option<&Stepper<System>>,
-                state: Option<&mut State<System>>,
+                stepper: Option<&Steps>,
+                state: Option<&mut Stated>,
                 impulse: Option<&Impulse>,
             ) -> Status {
                 $crate::kick(stepper, state, impulse.map(|impulse| &impulse[..]))
@@ -155,15 +166,15 @@ macro_rules! export {
 
             /// The numbers of a state.
             #[unsafe(export_name = concat!(stringify!($name), "_read"))]
-            pub extern "C" fn read(state: Option<&State<System>>, numbers: Option<&mut Numbers>) -> Status {
+            pub extern "C" fn read(state: Option<&Stated>, numbers: Option<&mut Numbers>) -> Status {
                 $crate::read(state, numbers.map(|numbers| &mut numbers[..]))
             }
 
             /// The energy of a state.
             #[unsafe(export_name = concat!(stringify!($name), "_energy"))]
             pub extern "C" fn energy(
-                stepper: Option<&Stepper<System>>,
-                state: Option<&State<System>>,
+                stepper: Option<&Steps>,
+                state: Option<&Stated>,
                 energy: Option<&mut Scalar>,
             ) -> Status {
                 $crate::energy(stepper, state, energy)
@@ -179,7 +190,7 @@ macro_rules! export {
                 message: Option<&mut Message>,
             ) -> Status {
                 let numbers = numbers.map(|numbers| &numbers[..]);
-                $crate::explain(parameters.and_then(system), step_size, numbers, input.map(|input| &input[..]), message)
+                $crate::explain::<System, $method>(parameters.and_then(system), step_size, numbers, input.map(|input| &input[..]), message)
             }
         }
     };

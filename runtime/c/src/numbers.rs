@@ -1,6 +1,6 @@
 //! Values from the numbers that C gives.
 
-use clebsch::{Clebsch, Clock, Error, Scalar, Space, State, Stepper};
+use clebsch::{Clebsch, Clock, Error, Method, Scalar, Space, State, Stepper};
 use nalgebra::{Quaternion, SMatrix};
 
 /// The number types that C has too.
@@ -109,20 +109,30 @@ pub trait AtTime<S: Clebsch> {
     ///
     /// # Errors
     /// Those of [`Stepper::state`].
-    fn state(stepper: &Stepper<S>, t: S::Scalar, q: S::Configuration, mu: S::Momentum) -> Result<State<S>, Error>;
+    fn state<M: Method<S>>(
+        stepper: &Stepper<S, M>,
+        t: S::Scalar,
+        q: S::Configuration,
+        mu: S::Momentum,
+    ) -> Result<State<S, M>, Error>;
 
     /// The time of a state, if it has one.
-    fn time(state: &State<S>) -> Option<S::Scalar>;
+    fn time<M: Method<S>>(state: &State<S, M>) -> Option<S::Scalar>;
 }
 
 impl<S: Clebsch<Time = ()>> AtTime<S> for () {
     const IS_TIMED: bool = false;
 
-    fn state(stepper: &Stepper<S>, _: S::Scalar, q: S::Configuration, mu: S::Momentum) -> Result<State<S>, Error> {
+    fn state<M: Method<S>>(
+        stepper: &Stepper<S, M>,
+        _: S::Scalar,
+        q: S::Configuration,
+        mu: S::Momentum,
+    ) -> Result<State<S, M>, Error> {
         stepper.state(q, mu)
     }
 
-    fn time(_: &State<S>) -> Option<S::Scalar> {
+    fn time<M: Method<S>>(_: &State<S, M>) -> Option<S::Scalar> {
         None
     }
 }
@@ -130,11 +140,16 @@ impl<S: Clebsch<Time = ()>> AtTime<S> for () {
 impl<T: Real, S: Clebsch<Scalar = T, Time = Clock<T>>> AtTime<S> for Clock<T> {
     const IS_TIMED: bool = true;
 
-    fn state(stepper: &Stepper<S>, t: T, q: S::Configuration, mu: S::Momentum) -> Result<State<S>, Error> {
+    fn state<M: Method<S>>(
+        stepper: &Stepper<S, M>,
+        t: T,
+        q: S::Configuration,
+        mu: S::Momentum,
+    ) -> Result<State<S, M>, Error> {
         stepper.state_at(t, q, mu)
     }
 
-    fn time(state: &State<S>) -> Option<T> {
+    fn time<M: Method<S>>(state: &State<S, M>) -> Option<T> {
         Some(state.time())
     }
 }

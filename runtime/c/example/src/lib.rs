@@ -1,4 +1,4 @@
-//! Two systems, exported to C: the whole crate that a program in C needs.
+//! Two systems and three methods, exported to C: the whole crate that a program in C needs.
 #![no_std]
 
 use clebsch::Clebsch;
@@ -10,6 +10,7 @@ use nalgebra::{Matrix3, Vector3};
     action    = |F: SO<3>, R: SO<3>| R * F,
     cost      = |h, F| (self.mass_matrix * (F - I) * (F - I).transpose()).trace() / (2 * h),
     potential = |R| self.weight * (R * self.center).z,
+    method Fine = (order = 4),
 )]
 pub struct HeavyTop {
     /// ½tr(J)I − J about the pivot, kg·m².
@@ -23,6 +24,15 @@ pub struct HeavyTop {
 clebsch_c::export!(
     /// The top in C.
     heavy_top: HeavyTop { mass_matrix: Matrix3<f64>, weight: f64, center: Vector3<f64> }
+);
+
+/// The method of order four.
+#[derive(Clone, Copy, Debug)]
+pub struct Fine;
+
+clebsch_c::export!(
+    /// The top in C, by the method of order four.
+    fine_top: HeavyTop, by Fine { mass_matrix: Matrix3<f64>, weight: f64, center: Vector3<f64> }
 );
 
 /// A probe with thrusters and wheels, pulled to a place that moves.
