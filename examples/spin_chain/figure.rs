@@ -2,10 +2,10 @@
 
 use crate::watch::Watch;
 use crate::{Flags, SCENE};
+use clebsch_examples::figure::plotters::prelude::Rectangle;
+use clebsch_examples::figure::plotters::style::Color;
 use clebsch_examples::figure::{self, BLUE, Panel, Series};
 use clebsch_examples::scene::Failure;
-use plotters::prelude::Rectangle;
-use plotters::style::Color;
 
 /// Above the field, below the change of the energy.
 pub fn draw(flags: &Flags, sites: usize, watch: &Watch) -> Result<(), Failure> {

@@ -184,18 +184,23 @@ impl<'a> Column<'a> {
     pub fn unit(&self) -> Option<&'a str> {
         self.unit
     }
+
+    /// The name of the value that it is a number of: `q` for the column `q.x`.
+    ///
+    /// All numbers of a value have the same unit, and a plot shows them together.
+    pub fn value(&self) -> &'static str {
+        match self.names {
+            Names::One(name) | Names::Components(name) => name,
+            // by construction: names nest as the configuration does
+            Names::Each(_) => "",
+        }
+    }
 }
 
 impl Display for Column<'_> {
     fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
-        let (name, by_number) = match self.names {
-            Names::One(name) => (name, false),
-            Names::Components(name) => (name, true),
-            // by construction: names nest as the configuration does
-            Names::Each(_) => ("", false),
-        };
-        f.write_str(name)?;
-        write_place(f, &self.form, self.number, by_number)
+        f.write_str(self.value())?;
+        write_place(f, &self.form, self.number, matches!(self.names, Names::Components(_)))
     }
 }
 

@@ -245,7 +245,7 @@ pub use space::Space;
 pub use state::{Body, CotangentState, State, Stopped};
 pub use stepper::Stepper;
 pub use system::Clebsch;
-pub use table::{Row, Sample, Table};
+pub use table::{Quantities, Row, Sample, Table};
 pub use tangent::{Sensitivity, Tangent, Variation};
 pub use time::{Clock, Time};
 pub use trajectory::{Crossing, Event, Events, Multiples, Timed, Trajectory, WithTimes};

@@ -149,6 +149,11 @@ impl<'a, S: Clebsch, M: Method<S>, L: Quantities<S, M>> Table<'a, S, M, L> {
         Row { of_state, more: self.more.values(self.stepper, state), next: 0 }
     }
 
+    /// The stepper whose states are the rows.
+    pub fn stepper(&self) -> &'a Stepper<S, M> {
+        self.stepper
+    }
+
     #[cfg(feature = "record")]
     pub(crate) fn given_units(&self) -> &'a [(&'a str, &'a str)] {
         self.units
@@ -189,7 +194,25 @@ impl<S: Clebsch, V: Columns<S::Scalar>> Iterator for Row<S, V> {
 
 debug_fields!(Row<S, V> where [S: Clebsch, V: Debug]: of_state, more, next);
 
-/// The columns behind those of a state.
+/// The columns of a [`Table`] behind those of a state. A function that takes tables has it as a bound.
+///
+/// [`Table::energy`], [`Table::conserved`] and [`Table::with`] make them, and `()` has none.
+///
+/// ```
+/// use clebsch::{Clebsch, Method, Quantities, Table};
+/// # use nalgebra::Vector1;
+/// # #[derive(Clebsch, Clone, Debug)]
+/// # #[clebsch(action = |a: Translation<1>, x: Vector1| x + a, cost = |h, a| self.mass * a.norm_squared() / (2 * h))]
+/// # struct Particle { mass: f64 }
+///
+/// /// The first line of a table of any system.
+/// fn head<S: Clebsch, M: Method<S>, L: Quantities<S, M>>(table: &Table<'_, S, M, L>) -> String {
+///     table.columns().map(|column| column.to_string()).collect::<Vec<_>>().join(", ")
+/// }
+/// let stepper = Particle { mass: 2.0 }.into_stepper(0.5)?;
+/// assert_eq!(head(&stepper.table().energy()), "t, x.x, N[0], energy");
+/// # Ok::<(), clebsch::Error>(())
+/// ```
 pub trait Quantities<S: Clebsch, M: Method<S>> {
     /// Their values at a state.
     type Values: Columns<S::Scalar>;

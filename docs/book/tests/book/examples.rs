@@ -50,6 +50,15 @@ fn every_public_type_and_trait_has_an_example() {
 }
 
 #[test]
+fn every_public_type_of_plots_has_an_example() {
+    let sources: Vec<String> = files(&root().join("runtime/plot/src"), "rs").iter().map(|path| read(path)).collect();
+    let names: Vec<&str> = sources.iter().flat_map(|source| source.lines()).filter_map(declared).collect();
+    let known: Vec<&str> = sources.iter().flat_map(|source| with_examples(source)).collect();
+    let missing: Vec<&&str> = names.iter().filter(|name| !known.contains(name)).collect();
+    assert!(names.len() > 20 && missing.is_empty(), "without an example in runtime/plot/src: {missing:?}");
+}
+
+#[test]
 fn every_group_has_an_example() {
     let groups = read(&root().join("runtime/src/group.rs"));
     let names: Vec<&str> = groups.lines().filter_map(declared).collect();

@@ -33,7 +33,7 @@ fn areas() -> [(&'static str, Vec<PathBuf>); 7] {
         ("README", vec![root.join("README.md")]),
         ("CHANGELOG", vec![root.join("CHANGELOG.md")]),
         ("docs", guides),
-        ("runtime", files(&root.join("runtime/src"), "rs")),
+        ("runtime", ["runtime/src", "runtime/plot/src"].map(|folder| files(&root.join(folder), "rs")).concat()),
         ("macros", macros.concat()),
         ("examples", files(&root.join("examples"), "rs")),
         ("tests", tests.concat()),

@@ -5,7 +5,9 @@ mod readers;
 use crate::arbitrary::{attitude, cases, unit, vector};
 use crate::bodies::{H, satellites, tops};
 use clebsch::record::{Npz, RecordError, Recorder};
-use clebsch::{Clebsch, Columns, Conserves, Error, Event, Form, Names, Sample};
+use clebsch::{
+    Clebsch, Columns, Conserves, Declared, Error, Event, Form, Method, Names, Quantities, Sample, State, Stepper,
+};
 use clebsch_tests::fixtures::flying_body::FlyingBody;
 use clebsch_tests::fixtures::quaternion_top::QuaternionTop;
 use clebsch_tests::fixtures::spin_chain::SpinChain;
@@ -20,6 +22,16 @@ macro_rules! names {
     ($table:expr) => {
         $table.columns().map(|column| column.to_string()).collect::<Vec<String>>()
     };
+}
+
+/// The count of the numbers behind those of a state.
+fn width_of<S: Clebsch, M: Method<S>, L: Quantities<S, M>>(
+    of: &L,
+    stepper: &Stepper<S, M>,
+    state: &State<S, M>,
+) -> usize {
+    let values = of.values(stepper, state);
+    (0..).map_while(|k| values.entry(k)).count()
 }
 
 /// A writer that takes so many bytes.
@@ -64,6 +76,15 @@ proptest! {
         let numbers = [vec![2.5], by_rows(&r), mu.as_slice().to_vec(), vec![stepper.energy(&state)], values.values().to_vec()];
         prop_assert_eq!(row, numbers.concat());
         prop_assert_eq!(values.names().to_vec(), conserved);
+        let of_values: Vec<&str> = table.columns().map(|column| column.value()).collect();
+        let expected = [&["t"][..], &["R"; 9], &["N"; 3], &["energy"], WatchedTop::CONSERVED_NAMES].concat();
+        prop_assert_eq!(of_values, expected);
+        prop_assert_eq!(table.stepper().step_size(), H);
+        let energy = table.stepper().table().energy();
+        prop_assert_eq!(energy.row(0.0, &state).last(), Some(stepper.energy(&state)));
+        // a table of a state alone has no columns behind it
+        prop_assert_eq!(Quantities::<WatchedTop, Declared>::quantity(&(), 0), None);
+        prop_assert_eq!(width_of::<_, Declared, _>(&(), &stepper, &state), 0);
 
         // a tuple of names, and a power
         let body = FlyingBody { mass: 1.0, mass_matrix: Matrix3::identity(), hook: Vector3::zeros(), stiffness: 1.0 };

@@ -1,7 +1,7 @@
 //! Curves over powers of ten in both directions.
 
 use super::canvas::{Area, Drawn};
-use super::theme::{FRAME, GRID, INK, SOFT_INK, px, stroke, text, write};
+use super::theme::{FRAME, GRID, INK, SOFT_INK, px, stroke, text, unit, write};
 use plotters::prelude::Circle;
 use plotters::style::text_anchor::{HPos, VPos};
 use plotters::style::{Color, RGBColor};
@@ -11,6 +11,14 @@ use std::ops::RangeInclusive;
 const MARGINS: [f64; 4] = [74.0, 34.0, 190.0, 52.0];
 
 /// One curve; points that are not above zero are left out.
+///
+/// ```
+/// use clebsch_plot::figure::{BLUE, Curve};
+///
+/// let points: Vec<(f64, f64)> = [1.0, 10.0, 100.0_f64].map(|x| (x, x.sqrt())).to_vec();
+/// let root = Curve { label: "√x", colour: BLUE, width: 1.2, points, ringed: vec![false, false, true] };
+/// # assert_eq!(root.points[2].1, 10.0);
+/// ```
 #[derive(Clone, Debug)]
 pub struct Curve<'a> {
     /// Its name, at the right in its colour; empty for none.
@@ -26,6 +34,17 @@ pub struct Curve<'a> {
 }
 
 /// A chart with logarithmic axes; x grows to the right.
+///
+/// ```
+/// use clebsch_plot::figure::{self, Curve, Decades, ORANGE};
+///
+/// let points = [1e-3, 1e-2, 1e-1].map(|h| (h, h * h)).to_vec();
+/// let curves = [Curve { label: "order 2", colour: ORANGE, width: 1.5, points, ringed: Vec::new() }];
+/// let chart = Decades { title: "Errors", x_label: "step size (s)", y_label: "error", curves: &curves };
+/// let svg = figure::svg((800, 500), |area| chart.draw(area))?;
+/// assert!(svg.contains("1e-6") && svg.contains("order 2"));
+/// # Ok::<(), figure::Broken>(())
+/// ```
 #[derive(Clone, Copy, Debug)]
 pub struct Decades<'a> {
     /// The title of the plot.
@@ -53,13 +72,14 @@ impl Decades<'_> {
 
     fn draw_axes(&self, area: &Area<'_>, frame: &Frame) -> Drawn {
         let Frame { x, y, .. } = frame;
-        for power in x.clone() {
+        let (across, down) = (stride(x), stride(y));
+        for power in x.clone().step_by(across) {
             let [top, bottom] = [*y.end(), *y.start()].map(|y| frame.place(f64::from(power), f64::from(y)));
             stroke(area, vec![top, bottom], GRID, 0.8)?;
             let at = (bottom.0, bottom.1 + px(14.0));
             write(area, &format!("1e{power}"), at, text(12.0, SOFT_INK, HPos::Center, VPos::Center))?;
         }
-        for power in y.clone() {
+        for power in y.clone().step_by(down) {
             let [left, right] = [*x.start(), *x.end()].map(|x| frame.place(f64::from(x), f64::from(power)));
             stroke(area, vec![left, right], GRID, 0.8)?;
             let at = (left.0 - px(8.0), left.1);
@@ -130,8 +150,14 @@ impl Frame {
         };
         let across = left + share(x, &self.x) * (right - left);
         let down = bottom - share(y, &self.y) * (bottom - top);
-        (across.round() as i32, down.round() as i32)
+        (unit(across), unit(down))
     }
+}
+
+/// How many powers of ten lie between two lines of the grid.
+fn stride(powers: &RangeInclusive<i32>) -> usize {
+    const LINES: i32 = 24;
+    usize::try_from((powers.end() - powers.start()) / LINES + 1).unwrap_or(1)
 }
 
 /// The powers of ten about some values, at least one apart.

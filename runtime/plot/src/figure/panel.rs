@@ -8,7 +8,17 @@ use plotters::style::text_anchor::{HPos, VPos};
 use plotters::style::{Color, RGBColor};
 use std::ops::Range;
 
-/// One curve. Where `y` is not finite the curve has a gap.
+/// One curve.
+///
+/// ```
+/// use clebsch_plot::figure::{PURPLE, Series};
+///
+/// let points = vec![(0.0, 1.0), (1.0, f64::NAN), (2.0, 3.0), (3.0, 4.0)];
+/// let series = Series { label: "with a gap", colour: PURPLE, points };
+/// # assert_eq!(series.points.len(), 4);
+/// ```
+///
+/// Where `y` is not finite the curve has a gap.
 #[derive(Clone, Debug)]
 pub struct Series<'a> {
     /// Its name, shown in its colour where there is more than one; empty for none.
@@ -20,6 +30,17 @@ pub struct Series<'a> {
 }
 
 /// A chart with a title, labelled axes and curves.
+///
+/// ```
+/// use clebsch_plot::figure::{self, GREEN, Panel, Series};
+///
+/// let points = (0..50).map(|i| (f64::from(i), 1e-15 * f64::from(i % 7))).collect();
+/// let series = vec![Series { label: "", colour: GREEN, points }];
+/// let panel = Panel { title: "Change of the energy", unit: "J", x_label: "time (s)", series };
+/// let svg = figure::svg((600, 200), |area| panel.draw(area))?;
+/// assert!(svg.contains("(10⁻¹⁵ J)"));
+/// # Ok::<(), figure::Broken>(())
+/// ```
 #[derive(Clone, Debug)]
 pub struct Panel<'a> {
     /// The title of the plot.
@@ -118,7 +139,9 @@ fn superscript(number: i32) -> String {
 
 /// The range of the values, with a margin on both sides; not empty where all of them are equal.
 fn spread(values: impl Iterator<Item = f64>, margin: f64) -> Range<f64> {
-    let finite = values.filter(|value| value.is_finite());
+    // differences of these are finite
+    const FARTHEST: f64 = 4e307;
+    let finite = values.filter(|value| value.is_finite()).map(|value| value.clamp(-FARTHEST, FARTHEST));
     let (low, high) = finite.fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), value| (a.min(value), b.max(value)));
     match high - low {
         width if width > 1e-12 * high.abs().max(low.abs()) => low - margin * width..high + margin * width,

@@ -1,13 +1,20 @@
 //! A path on the unit sphere, seen from far away: equal aspect, the far side paler than the near one.
 
 use super::canvas::{Area, Drawn};
-use super::theme::{FRAME, GRID, INK, PAPER, blend, coloured, px, stroke, text, write};
+use super::theme::{FRAME, GRID, INK, PAPER, blend, coloured, px, stroke, text, unit, write};
 use plotters::prelude::Circle;
 use plotters::style::text_anchor::{HPos, VPos};
 use plotters::style::{Color, RGBColor};
 use std::f64::consts::{PI, TAU};
 
 /// From where one looks, degrees.
+///
+/// ```
+/// use clebsch_plot::figure::View;
+///
+/// let from_above = View { azimuth: 0.0, elevation: 90.0 };
+/// # assert_eq!(from_above.elevation, 90.0);
+/// ```
 #[derive(Clone, Copy, Debug)]
 pub struct View {
     /// Turned about the third axis, from the first.
@@ -17,6 +24,13 @@ pub struct View {
 }
 
 /// An axis: drawn from the sphere outwards, with its name at the tip.
+///
+/// ```
+/// use clebsch_plot::figure::{INK, Pointer};
+///
+/// let up = Pointer { label: "up", direction: [0.0, 0.0, 1.0], colour: INK };
+/// # assert_eq!(up.label, "up");
+/// ```
 #[derive(Clone, Debug)]
 pub struct Pointer<'a> {
     /// Its name.
@@ -28,6 +42,17 @@ pub struct Pointer<'a> {
 }
 
 /// The sphere and the curves on it.
+///
+/// ```
+/// use clebsch_plot::figure::{self, Globe, Track, View};
+///
+/// let circle: Vec<[f64; 3]> = (0..=90).map(|i| f64::from(4 * i).to_radians()).map(|a| [a.cos(), a.sin(), 0.0]).collect();
+/// let tracks = [Track { points: &circle, colour: Some(figure::RED), width: 2.0 }];
+/// let globe = Globe { view: View { azimuth: 30.0, elevation: 25.0 }, pointers: &[], tracks: &tracks };
+/// let svg = figure::svg((400, 400), |area| globe.draw(area))?;
+/// # assert!(svg.contains("<circle"));
+/// # Ok::<(), figure::Broken>(())
+/// ```
 #[derive(Clone, Debug)]
 pub struct Globe<'a> {
     /// From where one looks.
@@ -39,6 +64,14 @@ pub struct Globe<'a> {
 }
 
 /// A path on the sphere.
+///
+/// ```
+/// use clebsch_plot::figure::Track;
+///
+/// let quarter: Vec<[f64; 3]> = (0..=90).map(|i| f64::from(i).to_radians()).map(|a| [a.cos(), 0.0, a.sin()]).collect();
+/// let track = Track { points: &quarter, colour: None, width: 1.5 }; // coloured by time
+/// # assert_eq!(track.points.len(), 91);
+/// ```
 #[derive(Clone, Copy, Debug)]
 pub struct Track<'a> {
     /// Unit vectors in the order of time.
@@ -151,7 +184,7 @@ impl Eye {
 
     fn project(&self, point: &[f64; 3]) -> (i32, i32) {
         let (x, y) = (dot(&self.right, point), dot(&self.up, point));
-        ((self.centre.0 + self.radius * x).round() as i32, (self.centre.1 - self.radius * y).round() as i32)
+        (unit(self.centre.0 + self.radius * x), unit(self.centre.1 - self.radius * y))
     }
 
     fn project_all(&self, points: &[[f64; 3]]) -> Vec<(i32, i32)> {

@@ -34,7 +34,13 @@ const FONT: &str = "Helvetica, Arial, sans-serif";
 
 /// Pixels as units of the drawing.
 pub(super) fn px(pixels: f64) -> i32 {
-    (pixels * f64::from(FINENESS)).round() as i32
+    unit(pixels * f64::from(FINENESS))
+}
+
+/// The unit of the drawing next to a number, for numbers far outside and for those that are none, too.
+pub(super) fn unit(number: f64) -> i32 {
+    const FARTHEST: f64 = 1e8;
+    number.clamp(-FARTHEST, FARTHEST).round() as i32
 }
 
 /// Text of a height in pixels, anchored at a point.
@@ -90,6 +96,15 @@ pub fn columns<'a>(area: &Area<'a>, pixels: f64) -> (Area<'a>, Area<'a>) {
 /// Splits into rows, the first `pixels` high.
 pub fn rows<'a>(area: &Area<'a>, pixels: f64) -> (Area<'a>, Area<'a>) {
     area.split_vertically(px(pixels))
+}
+
+/// Names in their colours, one below the other, at the upper left of an area.
+pub fn legend<'a>(area: &Area<'_>, names: impl Iterator<Item = (&'a str, RGBColor)>) -> Drawn {
+    for (line, (name, colour)) in names.enumerate() {
+        let at = (px(12.0), px(12.0 + 18.0 * line as f64));
+        write(area, name, at, text(12.5, colour, HPos::Left, VPos::Center))?;
+    }
+    Ok(())
 }
 
 /// The scale of [`along`], with the texts at its ends, at the bottom of an area.

@@ -14,6 +14,18 @@ const ARROWS: usize = 21;
 const CELLS: usize = 64;
 
 /// Unit vectors on a square grid. The paper is e3, black is −e3.
+///
+/// ```
+/// use clebsch_plot::figure::{self, Vectors};
+/// use nalgebra::Vector3;
+///
+/// let at = |i: u8, j: u8| Vector3::new(f64::from(i) - 4.5, f64::from(j) - 4.5, 3.0).normalize();
+/// let vectors: Vec<Vector3<f64>> = (0..10).flat_map(|i| (0..10).map(move |j| at(i, j))).collect();
+/// let sheet = Vectors { side: 1.0, count: 10, vectors: &vectors };
+/// let svg = figure::svg((400, 400), |area| sheet.draw(area))?;
+/// # assert!(svg.contains("<polyline"));
+/// # Ok::<(), figure::Broken>(())
+/// ```
 #[derive(Clone, Copy, Debug)]
 pub struct Vectors<'a> {
     /// The side of the square.
@@ -25,11 +37,16 @@ pub struct Vectors<'a> {
 }
 
 impl Vectors<'_> {
-    /// Draws into all of the area.
+    /// Draws into all of the area. Vectors that are not there are e3.
     pub fn draw(&self, area: &Area<'_>) -> Drawn {
-        let (n, q) = (self.count, self.vectors);
-        let some: Vec<usize> = (0..n).step_by(n.div_ceil(CELLS)).collect();
-        let columns: Vec<Vec<_>> = some.iter().map(|i| some.iter().map(|j| colour(&q[i * n + j])).collect()).collect();
+        let n = self.count;
+        let vector = |i: usize, j: usize| {
+            let place = i.checked_mul(n).and_then(|start| start.checked_add(j));
+            place.and_then(|place| self.vectors.get(place)).copied().unwrap_or_else(Vector3::z)
+        };
+        let some: Vec<usize> = (0..n).step_by(n.div_ceil(CELLS).max(1)).collect();
+        let columns: Vec<Vec<_>> =
+            some.iter().map(|i| some.iter().map(|j| colour(&vector(*i, *j))).collect()).collect();
         let ends = (0.0, self.side);
         let cells = Cells { x_label: "", y_label: "", x: ends, y: ends, columns: &columns };
         let frame = cells.draw(area)?;
@@ -37,7 +54,7 @@ impl Vectors<'_> {
         for index in 0..ARROWS * ARROWS {
             let place = [index / ARROWS, index % ARROWS].map(|i| (i as f64 + 0.5) * pace);
             let [i, j] = place.map(|share| (share * n as f64) as usize);
-            arrow(area, |x, y| frame.at((place[0] + x * pace, place[1] + y * pace)), &q[i * n + j])?;
+            arrow(area, |x, y| frame.at((place[0] + x * pace, place[1] + y * pace)), &vector(i, j))?;
         }
         Ok(())
     }

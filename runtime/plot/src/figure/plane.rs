@@ -1,12 +1,23 @@
 //! Paths in the plane, seen from above: equal aspect.
 
 use super::canvas::{Area, Drawn};
-use super::theme::{FRAME, GRID, INK, SOFT_INK, coloured, px, stroke, text, write};
+use super::theme::{FRAME, GRID, INK, SOFT_INK, coloured, px, stroke, text, unit, write};
 use plotters::prelude::Circle;
 use plotters::style::text_anchor::{HPos, VPos};
 use plotters::style::{Color, RGBColor};
 
 /// A part of the plane with its contents.
+///
+/// ```
+/// use clebsch_plot::figure::{self, Arrow, ORANGE, Path, Plane};
+///
+/// let points: Vec<(f64, f64)> = (0..100).map(|i| f64::from(i) / 10.0).map(|t| (t * t.cos(), t * t.sin())).collect();
+/// let paths = [Path { label: "spiral", points: &points, colour: None, width: 1.5 }];
+/// let arrows = [Arrow { at: (0.0, 0.0), heading: 0.0, colour: ORANGE }];
+/// let svg = figure::svg((500, 500), |area| Plane { unit: "m", paths: &paths, arrows: &arrows }.draw(area))?;
+/// # assert!(svg.contains("x, y (m)"));
+/// # Ok::<(), figure::Broken>(())
+/// ```
 #[derive(Clone, Copy, Debug)]
 pub struct Plane<'a> {
     /// Unit of both coordinates.
@@ -18,6 +29,14 @@ pub struct Plane<'a> {
 }
 
 /// A path in the plane.
+///
+/// ```
+/// use clebsch_plot::figure::{BLUE, Path};
+///
+/// let square = [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0), (0.0, 0.0)];
+/// let path = Path { label: "square", points: &square, colour: Some(BLUE), width: 1.0 };
+/// # assert_eq!(path.points.len(), 5);
+/// ```
 #[derive(Clone, Copy, Debug)]
 pub struct Path<'a> {
     /// Its name, shown in its colour; empty for none.
@@ -31,6 +50,13 @@ pub struct Path<'a> {
 }
 
 /// A point with a direction.
+///
+/// ```
+/// use clebsch_plot::figure::{Arrow, GREEN};
+///
+/// let north = Arrow { at: (2.0, 1.0), heading: std::f64::consts::FRAC_PI_2, colour: GREEN };
+/// # assert_eq!(north.at.0, 2.0);
+/// ```
 #[derive(Clone, Copy, Debug)]
 pub struct Arrow {
     /// (x, y)
@@ -127,7 +153,7 @@ impl Map {
             .fold((empty, empty), |(x, y), point| (limits(x, point.0), limits(y, point.1)));
         let room = (f64::from(frame.1 - frame.0), f64::from(frame.3 - frame.2));
         let reach = ((x.1 - x.0) / room.0).max((y.1 - y.0) / room.1) * 1.2;
-        let scale = if reach > 0.0 { 1.0 / reach } else { room.0 / 2.0 };
+        let scale = if reach > 1e-290 { 1.0 / reach } else { room.0 / 2.0 };
         (x.0 <= x.1).then_some(Self { frame, middle: ((x.0 + x.1) / 2.0, (y.0 + y.1) / 2.0), scale })
     }
 
@@ -141,7 +167,7 @@ impl Map {
         let centre = self.centre();
         let across = centre.0 + (x - self.middle.0) * self.scale;
         let down = centre.1 - (y - self.middle.1) * self.scale;
-        (across.round() as i32, down.round() as i32)
+        (unit(across), unit(down))
     }
 
     fn unproject(&self, (across, down): (i32, i32)) -> (f64, f64) {

@@ -2,7 +2,7 @@
 
 use super::canvas::{Area, Drawn};
 use super::theme::{
-    BLUE, FRAME, GREEN, INK, ORANGE, PAPER, PURPLE, RED, SOFT_INK, TEAL, blend, px, stroke, text, write,
+    BLUE, FRAME, GREEN, INK, ORANGE, PAPER, PURPLE, RED, SOFT_INK, TEAL, blend, px, stroke, text, unit, write,
 };
 use plotters::prelude::Rectangle;
 use plotters::style::text_anchor::{HPos, VPos};
@@ -44,6 +44,17 @@ pub fn direction(angle: f64, share: f64) -> RGBColor {
 }
 
 /// Cells in columns from the left and rows from below.
+///
+/// ```
+/// use clebsch_plot::figure::{self, Cells, diverging};
+///
+/// let wave = |i: i32, j: i32| diverging((f64::from(i) / 8.0).sin() * (f64::from(j) / 5.0).cos());
+/// let columns: Vec<Vec<_>> = (0..50).map(|i| (0..40).map(|j| wave(i, j)).collect()).collect();
+/// let cells = Cells { x_label: "place (m)", y_label: "time (s)", x: (0.0, 5.0), y: (0.0, 8.0), columns: &columns };
+/// let svg = figure::svg((600, 400), |area| cells.draw(area).map(|_| ()))?;
+/// # assert!(svg.contains("<rect"));
+/// # Ok::<(), figure::Broken>(())
+/// ```
 #[derive(Clone, Copy, Debug)]
 pub struct Cells<'a> {
     /// Name of the direction to the right, empty for none.
@@ -58,7 +69,21 @@ pub struct Cells<'a> {
     pub columns: &'a [Vec<RGBColor>],
 }
 
-/// Where the cells of a table lie in the drawing.
+/// Where the cells of a table lie in the drawing: [`Cells::draw`] gives it, for lines over the cells.
+///
+/// ```
+/// use clebsch_plot::figure::plotters::{prelude::PathElement, style::Color};
+/// use clebsch_plot::figure::{self, Cells, INK, diverging};
+///
+/// let columns = [vec![diverging(-1.0); 2], vec![diverging(1.0); 2]];
+/// let cells = Cells { x_label: "", y_label: "", x: (0.0, 1.0), y: (0.0, 1.0), columns: &columns };
+/// let svg = figure::svg((300, 300), |area| {
+///     let frame = cells.draw(area)?;
+///     area.draw(&PathElement::new([frame.at((0.0, 0.0)), frame.at((1.0, 1.0))], INK.stroke_width(20)))
+/// })?;
+/// # assert!(svg.contains("<polyline"));
+/// # Ok::<(), figure::Broken>(())
+/// ```
 #[derive(Clone, Copy, Debug)]
 pub struct Frame {
     left: i32,
@@ -69,7 +94,7 @@ pub struct Frame {
 impl Frame {
     /// The point at shares of the way to the right and upwards.
     pub fn at(&self, (x, y): (f64, f64)) -> (i32, i32) {
-        let along = |share: f64, length: i32| (share * f64::from(length)).round() as i32;
+        let along = |share: f64, length: i32| unit(share * f64::from(length));
         (self.left + along(x, self.size.0), self.top + self.size.1 - along(y, self.size.1))
     }
 }
@@ -133,7 +158,7 @@ impl Cells<'_> {
 /// Some five round numbers between two, and their shares of the way.
 fn ticks((from, to): (f64, f64)) -> Vec<(String, f64)> {
     let length = to - from;
-    if !(length.is_finite() && length > 0.0) {
+    if !(length.is_finite() && length > 1e-290) {
         return Vec::new();
     }
     let power = 10_f64.powf((length / 5.0).log10().floor());
