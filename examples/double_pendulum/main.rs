@@ -7,18 +7,21 @@ mod pendulum;
 mod watch;
 
 use clap::Parser;
-use clebsch::{Clebsch, Error};
+use clebsch::{Clebsch, Error, State};
 use clebsch_examples::claims::Claims;
 use clebsch_examples::conserved::Conserved;
 use clebsch_examples::csv::{Csv, by_rows};
 use clebsch_examples::flags::{Run, Scene, finite, finite_list, parse, positive, positive_list};
 use clebsch_examples::integrate::integrate;
+use clebsch_examples::motion;
 use clebsch_examples::scene::{Failure, conclude, say};
 use clebsch_examples::table::Table;
+use clebsch_plot::{Motion, PlotError, Shape};
 use four_bar::Angles;
 use linkages::{FourBar, Pendulum};
 use nalgebra::{Rotation3, Vector3};
 use pendulum::Turning;
+use std::path::PathBuf;
 use std::process::ExitCode;
 use watch::{Moment, Watch};
 
@@ -56,6 +59,9 @@ struct Flags {
     /// g, m/s²
     #[arg(long, value_name = "G", value_parser = finite, allow_hyphen_values = true, default_value = "9.81")]
     gravity: f64,
+    /// Write a page that plays the double pendulum to FILE, as HTML
+    #[arg(long, value_name = "FILE")]
+    motion: Option<PathBuf>,
     #[command(flatten)]
     run: Run,
 }
@@ -98,6 +104,7 @@ fn run(flags: &Flags) -> Result<Claims, Failure> {
     say(table(&swinging, &turning));
     csv.finish()?;
     figure::draw(flags, &bars, &swinging, &turning, &heights)?;
+    motion::save(flags.motion.as_deref(), || play(&pendulum, &flags.run, start))?;
 
     let mut claims = Claims::new();
     swinging.claim_joints("double pendulum", 1.0, speed, &mut claims);
@@ -116,6 +123,27 @@ fn run(flags: &Flags) -> Result<Claims, Failure> {
     let expected = Error::DependentConstraints { rank: 7, rows: 8 };
     claims.holds("a flat parallelogram is refused", refused == Some(expected), "7 of its 8 equations are independent");
     Ok(claims)
+}
+
+/// The bodies with their joints, and the path of the lower end.
+fn play(pendulum: &Pendulum, run: &Run, start: Turning) -> Result<Motion<State<Pendulum>>, PlotError> {
+    let at_start = |error| PlotError::Step { index: 0, error };
+    let stepper = pendulum.stepper(run.step_size).map_err(at_start)?;
+    let (places, velocity) = pendulum.start(&start);
+    let states = motion::states(run, &stepper, stepper.state_moving(places, velocity).map_err(at_start)?);
+    let [near, far] = [pendulum.near, [pendulum.far, -pendulum.near[1]]];
+    // a point of body i in space
+    let point = |state: &State<Pendulum>, i: usize, at: Vector3<f64>| {
+        state.configuration()[i].transform_point(&at.into()).coords
+    };
+    let shape = |i: usize| Shape::cuboid([0.1, 0.1, 1.6 * near[i].norm()]);
+    Motion::new(states)?
+        .body("upper body", shape(0), |state| state.configuration()[0])?
+        .body("lower body", shape(1), |state| state.configuration()[1])?
+        .link("upper joints", |state| [0, 1].map(|k| point(state, 0, [near[0], far[0]][k])))?
+        .link("lower joint and end", |state| [0, 1].map(|k| point(state, 1, [near[1], far[1]][k])))?
+        .point("path of the end", |state| point(state, 1, far[1]))
+        .map(|motion| motion.title("A double pendulum").time_unit("s"))
 }
 
 /// One run of the double pendulum. It records places, velocities, and the momentum about the vertical.

@@ -9,8 +9,11 @@ use clebsch_examples::claims::Claims;
 use clebsch_examples::csv::{Csv, by_rows};
 use clebsch_examples::flags::{Order, Run, Scene, finite, finite_list, moments_of_inertia, parse};
 use clebsch_examples::integrate::integrate;
+use clebsch_examples::motion;
 use clebsch_examples::scene::{Failure, conclude, say};
+use clebsch_plot::{Motion, Shape};
 use nalgebra::{Matrix3, Rotation3, Vector3};
+use std::path::PathBuf;
 use std::process::ExitCode;
 use watch::{Sample, Watch};
 
@@ -66,6 +69,9 @@ struct Flags {
     #[arg(long, value_name = "X,Y,Z", value_parser = finite_list::<3>, allow_hyphen_values = true)]
     #[arg(default_value = "0,0,3.2")]
     momentum: [f64; 3],
+    /// Write a page that plays the motion to FILE, as HTML
+    #[arg(long, value_name = "FILE")]
+    motion: Option<PathBuf>,
     #[command(flatten)]
     run: Run,
 }
@@ -112,6 +118,15 @@ fn run<M: Method<HeavyTop>>(top: &HeavyTop, flags: &Flags) -> Result<Claims, Fai
     say(&watch.table);
     csv.finish()?;
     figure::draw(flags, &watch)?;
+    motion::save(flags.motion.as_deref(), || {
+        let axis = Vector3::from(flags.center).try_normalize(0.0).unwrap_or_else(Vector3::z);
+        let body = Shape::ellipsoid([0.7, 0.7, 0.35]).at((axis * 0.6).into());
+        Motion::new(motion::states(&flags.run, &stepper, start))?
+            .body("top", body, |state| *state.configuration())?
+            .link("axis", |state| [Vector3::zeros(), state.configuration() * axis])?
+            .point("its path", |state| state.configuration() * axis)
+            .map(|motion| motion.sphere(1.0).title("A heavy top").time_unit("s"))
+    })?;
 
     let mut claims = Claims::new();
     watch.claim(flags, &mut claims);

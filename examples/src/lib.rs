@@ -9,7 +9,7 @@
 //! |---|---|
 //! | [`flags`] | flags that every scene takes on the command line, and number parsers with clear errors |
 //! | [`integrate`], [`progress`] | step after step, with progress and with errors that name the step |
-//! | [`csv`], [`table`], [`figure`] | the trajectory as a file, as a short table, as a drawing |
+//! | [`csv`], [`table`], [`figure`], [`motion`] | the trajectory as a file, as a short table, as a drawing, as a page that plays it |
 //! | [`claims`] | claims of a scene: each with its measured number and its bound |
 //! | [`round_off`], [`conserved`], [`energy_band`] | the bounds: worst cases of rounding, and the modified energy of a symplectic step |
 //! | [`elliptic`], [`jacobi`] | elliptic integrals and functions, for closed forms to compare with |
@@ -31,6 +31,7 @@ pub mod figure;
 pub mod flags;
 pub mod integrate;
 pub mod jacobi;
+pub mod motion;
 pub mod noise;
 pub mod progress;
 pub mod reference;

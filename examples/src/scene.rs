@@ -25,6 +25,8 @@ pub enum Failure {
         /// Why.
         error: io::Error,
     },
+    /// A page that plays the motion could not be made.
+    Page(clebsch_plot::PlotError),
     /// Two flags do not fit together.
     Flags(String),
 }
@@ -47,6 +49,7 @@ impl Display for Failure {
             Self::Start(error) => write!(f, "{error}"),
             Self::Step { step, error } => write!(f, "step {step} was not reached: {error}"),
             Self::File { path, error } => write!(f, "cannot write {}: {error}", path.display()),
+            Self::Page(error) => write!(f, "{error}"),
             Self::Flags(text) => f.write_str(text),
         }
     }
@@ -57,6 +60,12 @@ impl std::error::Error for Failure {}
 impl From<clebsch::Error> for Failure {
     fn from(error: clebsch::Error) -> Self {
         Self::Start(error)
+    }
+}
+
+impl From<clebsch_plot::PlotError> for Failure {
+    fn from(error: clebsch_plot::PlotError) -> Self {
+        Self::Page(error)
     }
 }
 

@@ -141,6 +141,19 @@ fn defaults_hold_all_their_claims() {
     });
 }
 
+/// Scenes with a page that plays their motion, and the parts of the page.
+#[test]
+fn motions_are_written_as_pages() {
+    for (scene, parts) in [("heavy_top", 3), ("double_pendulum", 5)] {
+        let (page, figure) = (file(&format!("{scene}.html")), file(&format!("{scene}-motion.svg")));
+        let output = run(scene, &["--steps", "10", "--figure", text(&figure), "--motion", text(&page)]);
+        assert!(output.status.success(), "{scene}: {}", String::from_utf8_lossy(&output.stderr));
+        let page = std::fs::read_to_string(page).expect("the page");
+        assert!(page.contains(r#"{"count":11,"start":0.0,"end":0."#), "{scene}");
+        assert_eq!(page.matches("\"kind\":").count(), parts, "{scene}");
+    }
+}
+
 /// Scenes of plans, which short runs do not suit, and those of constraints and fields, which have no steps of order 1.
 /// They are a name, flags, and the columns of the CSV file.
 const PLANS: [(&str, &[&str], &str); 15] = [

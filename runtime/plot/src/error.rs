@@ -54,6 +54,12 @@ pub enum PlotError {
         /// The state, counted from 0.
         index: usize,
     },
+    /// A body has a side that is negative or not finite, or no side above zero. Moments of inertia may say so too: none is
+    /// more than the sum of the other two.
+    NoBody {
+        /// Its name.
+        name: String,
+    },
     /// A method has no run: each of its step sizes was refused.
     NoRun {
         /// The label of the method.
@@ -61,8 +67,6 @@ pub enum PlotError {
         /// Why the shortest step was refused.
         error: clebsch::Error,
     },
-    /// The errors of methods have no run to be measured against.
-    NoReference,
     /// A duration or a count that cannot be: it is zero, negative or not finite.
     Range {
         /// Its name.
@@ -98,10 +102,11 @@ impl Display for PlotError {
             Self::TimeOrder { index } => {
                 write!(f, "the time of state {index} (the first is 0) does not come after the one before")
             }
+            Self::NoBody { name } => write!(
+                f,
+                "`{name}` has no shape: sides are finite and not negative, and no moment of inertia is more than the sum of the others"
+            ),
             Self::NoRun { label, error } => write!(f, "`{label}` has no run with any of the step sizes: {error}"),
-            Self::NoReference => {
-                f.write_str("errors need a run to be measured against: write `.reference::<Method>(steps)`")
-            }
             Self::Range { name, value } => write!(f, "the {name} is {value}: it must be above zero, and finite"),
             Self::Drawing(text) => write!(f, "the picture cannot be drawn: {text}"),
             Self::File { path, error } => write!(f, "cannot write {}: {error}", path.display()),

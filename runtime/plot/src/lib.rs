@@ -1,4 +1,6 @@
-//! Plots of motions that [`clebsch`] integrates, as SVG: each in about three lines, with names and units of the declaration.
+//! Plots of motions that [`clebsch`] integrates, as SVG, and pages that play them: each in about three lines.
+//!
+//! Names and units are those of the declaration and of its table.
 //!
 //! | to see | call |
 //! |---|---|
@@ -6,6 +8,7 @@
 //! | configuration, momentum, energy and values of your own in time | [`quantities`] |
 //! | how far energy and conserved momenta move, next to the law of rounding | [`drift`] |
 //! | the price of accuracy of the methods of a declaration | [`work_precision`] |
+//! | the motion itself: a page that plays bodies, points and frames, to turn and to stop | [`Motion`] |
 //! | pictures of your own, from the same parts | [`figure`](mod@figure) |
 //!
 //! ```
@@ -45,6 +48,7 @@ mod drift;
 mod error;
 pub mod figure;
 mod picture;
+mod play;
 mod point;
 mod quantities;
 mod rows;
@@ -56,6 +60,7 @@ mod work_precision;
 
 pub use drift::{Drift, drift};
 pub use error::PlotError;
+pub use play::{Motion, Pose, Shape};
 pub use point::Point;
 pub use quantities::{Quantities, quantities};
 pub use sphere::{Sphere, sphere};
