@@ -1,4 +1,5 @@
-//! The pictures of the concepts in the book: each is drawn from steps of a declaration, and the numbers that the book quotes are claims.
+//! The pictures of the concepts in the book, and those of its page on plots. Each is drawn from steps of a declaration.
+//! The numbers that the book quotes are claims.
 //!
 //! ```text
 //! cargo run --release --example figures -- docs/book/src/concepts
@@ -8,14 +9,16 @@
 
 mod body;
 mod pendulum;
+mod plots;
 mod sleigh;
 mod sphere;
 mod top;
 mod turn;
 
 use clebsch_examples::claims::Claims;
-use clebsch_examples::figure::{self, Area, Drawn};
-use clebsch_examples::scene::{Failure, conclude};
+use clebsch_examples::figure::{self, Area, Drawn, default_path};
+use clebsch_examples::scene::{Failure, conclude, say};
+use clebsch_plot::PlotError;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
@@ -38,6 +41,7 @@ fn draw_all(pictures: &Pictures) -> Result<Claims, Failure> {
     top::conserved(pictures, &mut claims)?;
     turn::optimal_control(pictures, &mut claims)?;
     sleigh::constraints(pictures, &mut claims)?;
+    plots::plots(pictures, &mut claims)?;
     Ok(claims)
 }
 
@@ -49,7 +53,19 @@ struct Pictures {
 impl Pictures {
     /// Draws the picture `name`.
     fn draw(&self, name: &str, paint: impl FnOnce(&Area<'_>) -> Drawn) -> Result<(), Failure> {
+        figure::draw_to(Some(&self.path(name)), name, SIZE, paint)
+    }
+
+    /// Saves the picture `name` that a function of `clebsch-plot` has drawn.
+    fn save(&self, name: &str, save: impl FnOnce(&Path) -> Result<(), PlotError>) -> Result<(), Failure> {
+        let path = self.path(name);
+        save(&path)?;
+        say(format_args!("figure      {}", path.display()));
+        Ok(())
+    }
+
+    fn path(&self, name: &str) -> PathBuf {
         let path = self.folder.as_deref().map(|folder| Path::join(folder, name).with_extension("svg"));
-        figure::draw_to(path.as_deref(), name, SIZE, paint)
+        path.unwrap_or_else(|| default_path(name))
     }
 }

@@ -5,7 +5,7 @@ mod place;
 use crate::flags::Run;
 use crate::scene::{Failure, say};
 pub use clebsch_plot::figure::*;
-use place::default_path;
+pub use place::default_path;
 use std::io;
 use std::path::Path as File;
 

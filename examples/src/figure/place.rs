@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 const MARK: &str = "CACHEDIR.TAG";
 
 /// `figures/NAME.svg` under the target folder of cargo that this program was built in, else under the current folder.
-pub(crate) fn default_path(name: &str) -> PathBuf {
+pub fn default_path(name: &str) -> PathBuf {
     let program = std::env::current_exe().unwrap_or_default();
     let target = program.ancestors().find(|folder| folder.join(MARK).is_file()).unwrap_or(Path::new("."));
     target.join("figures").join(name).with_extension("svg")

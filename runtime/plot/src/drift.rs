@@ -31,8 +31,7 @@ where
     let width = <S::Configuration as Columns<S::Scalar>>::FORM.width();
     let count = <S::Momentum as Columns<S::Scalar>>::FORM.width();
     let step = stepper.step_size().to_f64();
-    let start = columns[0].numbers[0];
-    let steps: Vec<f64> = columns[0].numbers.iter().map(|time| (time - start) / step).collect();
+    let steps: Vec<f64> = columns[0].changes.iter().map(|time| time / step).collect();
     let momenta: Vec<&Vec<f64>> = columns[1 + width..][..count].iter().map(|column| &column.numbers).collect();
     let largest_momentum = largest((0..steps.len()).map(|state| {
         let numbers = momenta.iter().map(|numbers| numbers[state]);
@@ -41,7 +40,7 @@ where
     let curves = columns[1 + width + count..].iter().map(|column| {
         let of_column = largest(column.numbers.iter().copied());
         let scale = if column.value == "energy" { kinetic + potential } else { largest_momentum };
-        Changing { name: column.name.clone(), numbers: column.numbers.clone(), scale: of_column.max(scale) }
+        Changing { name: column.name.clone(), changes: column.changes.clone(), scale: of_column.max(scale) }
     });
     let curves = curves.collect();
     let page = Page::new("Largest change since the start", (860, 480));
@@ -106,7 +105,7 @@ pub struct Drift {
 #[derive(Clone, Debug)]
 struct Changing {
     name: String,
-    numbers: Vec<f64>,
+    changes: Vec<f64>,
     scale: f64,
 }
 
@@ -188,10 +187,9 @@ impl Drift {
 
 impl Changing {
     fn changes(&self) -> impl Iterator<Item = f64> + '_ {
-        let start = self.numbers.first().copied().unwrap_or(0.0);
         // a scale of zero is that of numbers that are all zero
         let scale = if self.scale > 0.0 { self.scale } else { 1.0 };
-        self.numbers.iter().map(move |number| (number / scale - start / scale).abs())
+        self.changes.iter().map(move |change| (change / scale).abs())
     }
 
     fn label(&self) -> String {

@@ -12,6 +12,8 @@ pub(crate) struct Column {
     pub value: &'static str,
     pub unit: String,
     pub numbers: Vec<f64>,
+    /// The differences from the first number, taken in the scalar of the system: it may have more digits than `f64`.
+    pub changes: Vec<f64>,
 }
 
 /// The columns of a table, the time first. `observe` sees each state with its time.
@@ -33,17 +35,24 @@ where
             value: column.value(),
             unit: column.unit().unwrap_or_default().to_owned(),
             numbers: Vec::new(),
+            changes: Vec::new(),
         })
         .collect();
+    let mut first: Vec<S::Scalar> = Vec::new();
     let mut count = 0;
     for sample in samples {
         let sample = sample.map_err(at_step(count))?;
-        for (number, column) in table.row(sample.time(), sample.state()).zip(&mut columns) {
-            let number = number.to_f64();
+        let row = || table.row(sample.time(), sample.state());
+        if first.is_empty() {
+            first = row().collect();
+        }
+        for ((exact, start), column) in row().zip(&first).zip(&mut columns) {
+            let number = exact.to_f64();
             if !number.is_finite() {
                 return Err(PlotError::NotFinite { name: column.name.clone(), index: count });
             }
             column.numbers.push(number);
+            column.changes.push((exact - *start).to_f64());
         }
         observe(&sample);
         count += 1;

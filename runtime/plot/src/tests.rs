@@ -2,7 +2,7 @@
 
 use crate::figure::{self, Panel, Path, Plane, Series};
 use crate::{PlotError, Sphere, drift, quantities, sphere, work_precision};
-use clebsch::{Clebsch, Declared, Error};
+use clebsch::{Clebsch, Declared, DoubleDouble, Error, Scalar};
 use nalgebra::{Vector1, Vector2, Vector3};
 
 /// A point that flies freely: x = x₀ + v t.
@@ -97,6 +97,29 @@ fn drifts_are_relative_to_what_moves_and_the_law_is_that_of_the_scalar() {
     assert_eq!(height.clone().scale("height", 32.0).expect("the column").largest("height"), Some(0.5));
     assert!(matches!(height.clone().scale("depth", 1.0), Err(PlotError::UnknownName { .. })));
     assert!(matches!(height.scale("height", 0.0), Err(PlotError::Range { .. })));
+}
+
+/// A point on a line, in any scalar.
+#[derive(Clebsch, Clone, Debug)]
+#[clebsch(action = |a: Translation<1>, x: Vector1| x + a, cost = |h, a| self.mass * a.norm_squared() / (2 * h))]
+struct Particle<T: Scalar> {
+    mass: T,
+}
+
+#[test]
+fn drifts_have_the_digits_of_their_scalar() {
+    // x = 1 + 10⁻²⁵ t, whose change is below the digits of f64
+    let stepper =
+        Particle { mass: DoubleDouble::from_f64(1.0) }.into_stepper(DoubleDouble::from_f64(1.0)).expect("a stepper");
+    let [one, slow] = [1.0, 1e-25].map(DoubleDouble::from_f64);
+    let start = stepper.state(Vector1::new(one), Vector1::new(slow)).expect("a state");
+    let states = stepper.trajectory(start).every(one).with_times().take(5);
+    let picture = drift(stepper.table().with("place", |state| *state.configuration()), states).expect("a picture");
+    let moved = picture.largest("place.x").expect("the column");
+    assert!((moved / 4e-25 - 1.0).abs() < 1e-6, "{moved:e}");
+    // the law begins at ε of the scalar, and so does the picture
+    let lowest = format!("1e{}", DoubleDouble::EPSILON.to_f64().log10().floor());
+    assert!(picture.svg().is_ok_and(|svg| texts(&svg).contains(&lowest.as_str())), "{lowest}");
 }
 
 #[test]
