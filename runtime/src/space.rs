@@ -22,6 +22,18 @@ pub trait Space<T: Scalar>: Columns<T> + Copy + Debug + PartialEq {
     /// One lane of it; the space itself if scalars are single numbers.
     type Lane: Space<T::Lane>;
 
+    /// The value of the next numbers, in the order of its [`Columns`]; `None` if there are too few.
+    ///
+    /// ```
+    /// use clebsch::Space;
+    /// use nalgebra::{Matrix2, Vector2};
+    ///
+    /// let mut numbers = [1.0, 2.0, 3.0, 4.0, 5.0, 6.0].into_iter();
+    /// let pair = <(Matrix2<f64>, Vector2<f64>)>::from_columns(&mut numbers);
+    /// assert_eq!(pair, Some((Matrix2::new(1.0, 2.0, 3.0, 4.0), Vector2::new(5.0, 6.0))));
+    /// ```
+    fn from_columns(numbers: &mut impl Iterator<Item = T>) -> Option<Self>;
+
     /// Joins `visit(x)` of all scalars x, `unit` where there are none: from left to right, those of each component before components are joined.
     fn reduce<V: Copy>(&self, unit: V, visit: impl Fn(T) -> V + Copy, join: impl Fn(V, V) -> V + Copy) -> V;
 
@@ -116,6 +128,10 @@ impl<T: Scalar> Space<T> for T {
     type Lane = T::Lane;
 
     #[inline]
+    fn from_columns(numbers: &mut impl Iterator<Item = T>) -> Option<Self> {
+        numbers.next()
+    }
+    #[inline]
     fn reduce<V: Copy>(&self, _: V, visit: impl Fn(T) -> V + Copy, _: impl Fn(V, V) -> V + Copy) -> V {
         visit(*self)
     }
@@ -140,6 +156,16 @@ impl<T: Scalar> Space<T> for T {
 impl<T: Scalar, const R: usize, const C: usize> Space<T> for SMatrix<T, R, C> {
     type Lane = SMatrix<T::Lane, R, C>;
 
+    #[inline]
+    fn from_columns(numbers: &mut impl Iterator<Item = T>) -> Option<Self> {
+        let mut matrix = Self::origin();
+        for row in 0..R {
+            for column in 0..C {
+                *matrix.get_mut((row, column))? = numbers.next()?;
+            }
+        }
+        Some(matrix)
+    }
     #[inline]
     fn reduce<V: Copy>(&self, unit: V, visit: impl Fn(T) -> V + Copy, join: impl Fn(V, V) -> V + Copy) -> V {
         // a slice, for the compiler does not see that the entries of a matrix stand side by side
@@ -167,6 +193,11 @@ impl<T: Scalar> Space<T> for Quaternion<T> {
     type Lane = Quaternion<T::Lane>;
 
     #[inline]
+    fn from_columns(numbers: &mut impl Iterator<Item = T>) -> Option<Self> {
+        let [w, i, j, k] = <[T; 4]>::from_columns(numbers)?;
+        Some(Quaternion { coords: SMatrix::from([i, j, k, w]) })
+    }
+    #[inline]
     fn reduce<V: Copy>(&self, unit: V, visit: impl Fn(T) -> V + Copy, join: impl Fn(V, V) -> V + Copy) -> V {
         self.coords.reduce(unit, visit, join)
     }
@@ -191,6 +222,14 @@ impl<T: Scalar> Space<T> for Quaternion<T> {
 impl<T: Scalar, S: Space<T>, const N: usize> Space<T> for [S; N] {
     type Lane = [S::Lane; N];
 
+    #[inline]
+    fn from_columns(numbers: &mut impl Iterator<Item = T>) -> Option<Self> {
+        let mut parts = Self::origin();
+        for part in &mut parts {
+            *part = S::from_columns(numbers)?;
+        }
+        Some(parts)
+    }
     #[inline]
     fn reduce<V: Copy>(&self, unit: V, visit: impl Fn(T) -> V + Copy, join: impl Fn(V, V) -> V + Copy) -> V {
         self.iter().fold(unit, |all, part| join(all, part.reduce(unit, visit, join)))
@@ -222,6 +261,10 @@ macro_rules! tuple {
         impl<T: Scalar, $($name: Space<T>),*> Space<T> for ($($name,)*) {
             type Lane = ($($name::Lane,)*);
 
+            #[inline]
+            fn from_columns(numbers: &mut impl Iterator<Item = T>) -> Option<Self> {
+                Some(($($name::from_columns(numbers)?,)*))
+            }
             #[inline]
             fn reduce<V: Copy>(&self, unit: V, visit: impl Fn(T) -> V + Copy, join: impl Fn(V, V) -> V + Copy) -> V {
                 let all = unit;

@@ -42,6 +42,14 @@ impl<S: Clebsch, M: Method<S>> State<S, M> {
         ref configuration: S::Configuration;
     }
 
+    /// The clock of the configuration: `()` where the time does not matter.
+    ///
+    /// For code over every system. Where the time matters, [`time`](Self::time) is the number.
+    #[inline]
+    pub fn clock(&self) -> S::Time {
+        self.time
+    }
+
     /// The momentum N in the basis that [`group`](crate::group) documents.
     ///
     /// A state of a point on a large sphere, which is turned in (q, w), makes its components here, n(n − 1)/2 of them.

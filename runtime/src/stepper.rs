@@ -151,7 +151,12 @@ impl<S: Clebsch, M: Method<S>> Stepper<S, M> {
         self.projected_at(Zero::zero(), q, mu)
     }
 
-    fn projected_at(&self, t: S::Scalar, q: S::Configuration, mu: S::Momentum) -> Result<State<S, M>, Error> {
+    pub(crate) fn projected_at(
+        &self,
+        t: S::Scalar,
+        q: S::Configuration,
+        mu: S::Momentum,
+    ) -> Result<State<S, M>, Error> {
         self.check_configuration(&q)?;
         check_finite("the momentum", &mu)?;
         let constants = M::Scheme::whole(&self.constants);

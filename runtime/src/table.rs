@@ -2,7 +2,8 @@
 
 use crate::columns::{Column, Columns, Form, Names};
 use crate::fields::debug_fields;
-use crate::{Clebsch, Clock, Conserves, Declared, Event, Method, State, Stepper, Time};
+use crate::parameters::check_finite;
+use crate::{Clebsch, Clock, Conserves, Declared, Error, Event, Method, Space, State, Stepper, Time};
 use core::fmt::{self, Debug, Formatter};
 use core::marker::PhantomData;
 
@@ -154,10 +155,49 @@ impl<'a, S: Clebsch, M: Method<S>, L: Quantities<S, M>> Table<'a, S, M, L> {
         self.stepper
     }
 
+    /// The state of a row: its time, its configuration and its momentum, checked as by [`Stepper::state`].
+    ///
+    /// More columns are not read. `None` if there are fewer than those three have. A system that does not depend on the
+    /// time ignores it.
+    ///
+    /// ```
+    /// # use clebsch::Clebsch;
+    /// # #[derive(Clebsch, Clone, Debug)]
+    /// # #[clebsch(action = |a: Translation<1>, x: Vector1| x + a, cost = |h, a| self.mass * a.norm_squared() / (2 * h))]
+    /// # struct Particle { mass: f64 }
+    /// # use nalgebra::Vector1;
+    /// let stepper = Particle { mass: 2.0 }.into_stepper(0.5)?;
+    /// let read = stepper.table().state([0.0, 0.25, 6.0]);
+    /// assert_eq!(read, Some(stepper.state(Vector1::new(0.25), Vector1::new(6.0))));
+    /// assert_eq!(stepper.table().state([0.0, 0.25]), None);
+    /// # Ok::<(), clebsch::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// Those of [`Stepper::state`], and [`Error::NotFinite`] for the time.
+    pub fn state(&self, row: impl IntoIterator<Item = S::Scalar>) -> Option<Result<State<S, M>, Error>> {
+        let (t, q, mu) = of_row::<S>(row)?;
+        Some(check_finite("the time", &t).and_then(|()| self.stepper.checked_state(t, q, mu)))
+    }
+
+    /// The state nearest to a row, as [`Stepper::project`] finds it; `None` as for [`state`](Self::state).
+    ///
+    /// # Errors
+    /// Those of [`Stepper::project`], and [`Error::NotFinite`] for the time.
+    pub fn project(&self, row: impl IntoIterator<Item = S::Scalar>) -> Option<Result<State<S, M>, Error>> {
+        let (t, q, mu) = of_row::<S>(row)?;
+        Some(check_finite("the time", &t).and_then(|()| self.stepper.projected_at(t, q, mu)))
+    }
+
     #[cfg(feature = "record")]
     pub(crate) fn given_units(&self) -> &'a [(&'a str, &'a str)] {
         self.units
     }
+}
+
+/// The time, the configuration and the momentum of a row.
+fn of_row<S: Clebsch>(row: impl IntoIterator<Item = S::Scalar>) -> Option<(S::Scalar, S::Configuration, S::Momentum)> {
+    Space::from_columns(&mut row.into_iter())
 }
 
 /// The numbers of a row, made by [`Table::row`].

@@ -29,6 +29,16 @@ impl<T: ToTokens + ?Sized> From<&T> for Location {
 }
 
 impl Location {
+    /// The first token.
+    pub fn start(&self) -> Span {
+        self.start
+    }
+
+    /// The last token.
+    pub fn end(&self) -> Span {
+        self.end
+    }
+
     fn of(tokens: TokenStream) -> Location {
         let mut spans = tokens.into_iter().map(|token| match token {
             TokenTree::Group(group) => (group.span_open(), group.span_close()),
@@ -84,6 +94,11 @@ impl Diagnostic {
     /// Its first line.
     pub fn message(&self) -> &str {
         &self.message
+    }
+
+    /// The tokens that it is about.
+    pub fn place(&self) -> Location {
+        self.place
     }
 
     /// The first text to type instead.

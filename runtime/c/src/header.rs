@@ -1,7 +1,7 @@
 //! The declarations of C.
 
-use crate::interface::Exported;
-use crate::numbers::{AtTime, Plain, Real};
+use crate::interface::is_timed;
+use crate::numbers::Real;
 use crate::status::{MESSAGE, STATUSES};
 use clebsch::{Clebsch, Columns, Form, Method, Names, State, Stepper};
 use core::fmt::{self, Display, Formatter};
@@ -36,7 +36,7 @@ pub struct Header {
 
 impl Header {
     /// The header of a system with these parameters, by a method.
-    pub const fn new<S: Exported<Scalar: Real, Input: Plain<S::Scalar>>, M: Method<S>>(
+    pub const fn new<S: Clebsch<Scalar: Real>, M: Method<S>>(
         name: &'static str,
         parameters: &'static [(&'static str, Form)],
     ) -> Self {
@@ -44,7 +44,7 @@ impl Header {
             name,
             scalar: <S::Scalar as Real>::NAME,
             parameters,
-            is_timed: <S::Time as AtTime<S>>::IS_TIMED,
+            is_timed: is_timed::<S>(),
             configuration: (S::CONFIGURATION_NAMES, <S::Configuration as Columns<S::Scalar>>::FORM),
             momentum: <S::Momentum as Columns<S::Scalar>>::FORM,
             input: <<S as Clebsch>::Input as Columns<S::Scalar>>::FORM,

@@ -1,25 +1,18 @@
 //! The functions behind the exported ones, the same for every system and every method.
 
-use crate::numbers::{AtTime, Plain};
 use crate::{Message, Status};
-use clebsch::{Clebsch, Columns, Error, Method, State, Stepper};
+use clebsch::{Clebsch, Columns, Error, Method, Scalar, Space, State, Stepper, Time};
 use core::fmt::Write;
 use core::mem::{MaybeUninit, needs_drop};
 
-/// Systems with states that C can write down.
-pub trait Exported:
-    Clebsch<Configuration: Plain<Self::Scalar>, Momentum: Plain<Self::Scalar>, Time: AtTime<Self>>
-{
-}
-
-impl<S> Exported for S where
-    S: Clebsch<Configuration: Plain<Self::Scalar>, Momentum: Plain<Self::Scalar>, Time: AtTime<Self>>
-{
+/// Whether a state has a time, in front of its numbers.
+pub(crate) const fn is_timed<S: Clebsch>() -> bool {
+    size_of::<S::Time>() > 0
 }
 
 /// The count of the numbers of a state.
-pub const fn width<S: Exported>() -> usize {
-    <S::Time as AtTime<S>>::IS_TIMED as usize
+pub const fn width<S: Clebsch>() -> usize {
+    is_timed::<S>() as usize
         + <S::Configuration as Columns<S::Scalar>>::FORM.width()
         + <S::Momentum as Columns<S::Scalar>>::FORM.width()
 }
@@ -45,7 +38,7 @@ fn place<V>(place: Option<&mut MaybeUninit<V>>, size: usize) -> Result<&mut Mayb
 }
 
 /// `NAME_make`
-pub fn make<S: Exported, M: Method<S>>(
+pub fn make<S: Clebsch, M: Method<S>>(
     to: Option<&mut MaybeUninit<Stepper<S, M>>>,
     size: usize,
     system: Option<S>,
@@ -59,24 +52,23 @@ pub fn make<S: Exported, M: Method<S>>(
 }
 
 /// The state with these numbers.
-fn state_of<S: Exported, M: Method<S>>(stepper: &Stepper<S, M>, numbers: &[S::Scalar]) -> Result<State<S, M>, Status> {
+fn state_of<S: Clebsch, M: Method<S>>(stepper: &Stepper<S, M>, numbers: &[S::Scalar]) -> Result<State<S, M>, Status> {
     state_or_error(stepper, numbers).ok_or(Status::Null)?.map_err(Status::from)
 }
 
 /// The same; `None` if there are too few numbers.
-fn state_or_error<S: Exported, M: Method<S>>(
+fn state_or_error<S: Clebsch, M: Method<S>>(
     stepper: &Stepper<S, M>,
     numbers: &[S::Scalar],
 ) -> Option<Result<State<S, M>, Error>> {
-    let mut numbers = numbers.iter().copied();
-    let time = if <S::Time as AtTime<S>>::IS_TIMED { numbers.next()? } else { stepper.step_size() };
-    let q = S::Configuration::read(&mut numbers)?;
-    let mu = S::Momentum::read(&mut numbers)?;
-    Some(<S::Time as AtTime<S>>::state(stepper, time, q, mu))
+    let numbers = numbers.iter().copied();
+    // a row has a time in any case
+    let no_time = if is_timed::<S>() { None } else { Some(S::Scalar::from_f64(0.0)) };
+    stepper.table().state(no_time.into_iter().chain(numbers))
 }
 
 /// `NAME_start`
-pub fn start<S: Exported, M: Method<S>>(
+pub fn start<S: Clebsch, M: Method<S>>(
     stepper: Option<&Stepper<S, M>>,
     to: Option<&mut MaybeUninit<State<S, M>>>,
     size: usize,
@@ -99,14 +91,14 @@ pub fn step<S: Clebsch, M: Method<S>>(stepper: Option<&Stepper<S, M>>, state: Op
 }
 
 /// `NAME_step_with`
-pub fn step_with<S: Clebsch<Input: Plain<S::Scalar>>, M: Method<S>>(
+pub fn step_with<S: Clebsch, M: Method<S>>(
     stepper: Option<&Stepper<S, M>>,
     state: Option<&mut State<S, M>>,
     input: Option<&[S::Scalar]>,
 ) -> Status {
     status((|| {
         let (stepper, state) = (given(stepper)?, given(state)?);
-        let input = given(S::Input::read(&mut given(input)?.iter().copied()))?;
+        let input = given(S::Input::from_columns(&mut given(input)?.iter().copied()))?;
         *state = stepper.step_with(state, &input)?;
         Ok(())
     })())
@@ -126,27 +118,28 @@ pub fn advance<S: Clebsch, M: Method<S>>(
 }
 
 /// `NAME_kick`
-pub fn kick<S: Exported, M: Method<S>>(
+pub fn kick<S: Clebsch, M: Method<S>>(
     stepper: Option<&Stepper<S, M>>,
     state: Option<&mut State<S, M>>,
     impulse: Option<&[S::Scalar]>,
 ) -> Status {
     status((|| {
         let (stepper, state) = (given(stepper)?, given(state)?);
-        let impulse = given(S::Momentum::read(&mut given(impulse)?.iter().copied()))?;
+        let impulse = given(S::Momentum::from_columns(&mut given(impulse)?.iter().copied()))?;
         *state = stepper.kick(state, impulse)?;
         Ok(())
     })())
 }
 
 /// `NAME_read`
-pub fn read<S: Exported, M: Method<S>>(state: Option<&State<S, M>>, numbers: Option<&mut [S::Scalar]>) -> Status {
+pub fn read<S: Clebsch, M: Method<S>>(state: Option<&State<S, M>>, numbers: Option<&mut [S::Scalar]>) -> Status {
     status((|| {
         let (state, numbers) = (given(state)?, given(numbers)?);
         let (q, mu) = (state.configuration(), state.momentum());
+        let time = is_timed::<S>().then(|| state.clock().now());
         let of_q = (0..).map_while(|k| q.entry(k));
         let of_mu = (0..).map_while(|k| mu.entry(k));
-        let all = <S::Time as AtTime<S>>::time(state).into_iter().chain(of_q).chain(of_mu);
+        let all = time.into_iter().chain(of_q).chain(of_mu);
         numbers.iter_mut().zip(all).for_each(|(number, value)| *number = value);
         Ok(())
     })())
@@ -165,7 +158,7 @@ pub fn energy<S: Clebsch, M: Method<S>>(
 }
 
 /// `NAME_explain`
-pub fn explain<S: Exported<Input: Plain<S::Scalar>>, M: Method<S>>(
+pub fn explain<S: Clebsch, M: Method<S>>(
     system: Option<S>,
     step_size: S::Scalar,
     numbers: Option<&[S::Scalar]>,
@@ -175,7 +168,7 @@ pub fn explain<S: Exported<Input: Plain<S::Scalar>>, M: Method<S>>(
     let attempt = |system: S| {
         let stepper = system.into_stepper_by::<M>(step_size)?;
         let Some(state) = numbers.and_then(|numbers| state_or_error(&stepper, numbers)) else { return Ok(()) };
-        match input.and_then(|input| S::Input::read(&mut input.iter().copied())) {
+        match input.and_then(|input| S::Input::from_columns(&mut input.iter().copied())) {
             Some(input) => stepper.step_with(&state?, &input)?,
             None => stepper.step(&state?)?,
         };

@@ -47,7 +47,7 @@ mod status;
 
 pub use header::Header;
 pub use interface::{advance, energy, explain, kick, make, read, start, step, step_with, width};
-pub use numbers::{AtTime, Plain, Real};
+pub use numbers::Real;
 pub use status::{Message, Status};
 #[doc(hidden)]
 pub use {clebsch, core};
@@ -76,11 +76,11 @@ macro_rules! export {
         #[allow(unused_imports, reason = "types of fields may be in scope here")]
         pub mod $name {
             use super::*;
-            use $crate::clebsch::{Clebsch, Columns};
+            use $crate::clebsch::{Clebsch, Columns, Space};
             use $crate::core::mem::MaybeUninit;
             use $crate::core::option::Option::{self, Some};
             use $crate::core::{concat, primitive, stringify};
-            use $crate::{Header, Message, Plain, Status};
+            use $crate::{Header, Message, Status};
 
             type System = $system;
             type Steps = $crate::clebsch::Stepper<System, $method>;
@@ -103,7 +103,7 @@ macro_rules! export {
             fn system(parameters: &Parameters) -> Option<System> {
                 let mut numbers = parameters.iter().copied();
                 let _ = &mut numbers;
-                Some(System { $($field: <$type as Plain<Scalar>>::read(&mut numbers)?),* })
+                Some(System { $($field: <$type as Space<Scalar>>::from_columns(&mut numbers)?),* })
             }
 
             /// A stepper with these parameters.

@@ -140,7 +140,7 @@ impl<S: Clebsch, M: Method<S>> Stepper<S, M> {
         if self.is_sound(next) { Ok(()) } else { Err(self.beyond(next)) }
     }
 
-    pub(super) fn checked_state(&self, t: T<S>, q: Q<S>, mu: Mu<S>) -> Result<State<S, M>, Error> {
+    pub(crate) fn checked_state(&self, t: T<S>, q: Q<S>, mu: Mu<S>) -> Result<State<S, M>, Error> {
         self.check_state(t, &q, &mu)?;
         self.made_state(t, q, mu)
     }

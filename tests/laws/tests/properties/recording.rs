@@ -6,7 +6,7 @@ use crate::arbitrary::{attitude, cases, unit, vector};
 use crate::bodies::{H, satellites, tops};
 use clebsch::record::{Npz, RecordError, Recorder};
 use clebsch::{
-    Clebsch, Columns, Conserves, Declared, Error, Event, Form, Method, Names, Quantities, Sample, State, Stepper,
+    Clebsch, Columns, Conserves, Declared, Error, Event, Form, Method, Names, Quantities, Sample, Space, State, Stepper,
 };
 use clebsch_tests::fixtures::flying_body::FlyingBody;
 use clebsch_tests::fixtures::quaternion_top::QuaternionTop;
@@ -115,6 +115,36 @@ proptest! {
         prop_assert_eq!((row[13], row[25], row.len()), (more[5], more[5], 26));
         prop_assert_eq!((turn.entry(4), more.entry(6), ().entry(0)), (None::<f64>, None::<f64>, None::<f64>));
         prop_assert_eq!(<(Quaternion<f64>, SVector<f64, 6>) as Columns<f64>>::FORM.width(), Form::Quaternion.width() + 6);
+    }
+
+    /// A row gives its state back: of a matrix, a tuple, an array, a quaternion, and with a time.
+    #[test]
+    fn rows_are_read_back(r in attitude(), q in unit(), mu in vector::<3>(0.5), more in vector::<6>(1.0), satellite in satellites()) {
+        let body = FlyingBody { mass: 1.0, mass_matrix: Matrix3::identity(), hook: Vector3::zeros(), stiffness: 1.0 };
+        let stepper = body.into_stepper(0.1)?;
+        let state = stepper.state((q.cast(), Matrix3::identity()), more.cast())?;
+        prop_assert_eq!(stepper.table().state(stepper.table().row(0.0, &state)), Some(Ok(state)));
+        let stepper = SpinChain::<3> { exchange: 1.0, field: Vector3::z() }.into_stepper(0.1)?;
+        let state = stepper.state([q; 3], [q.cross(&mu); 3])?;
+        prop_assert_eq!(stepper.table().state(stepper.table().row(0.0, &state)), Some(Ok(state)));
+        // a momentum along q is none of a point on a sphere: the nearest one is without it
+        let row = [0.0].into_iter().chain([q; 3].into_iter().flat_map(|q| [q.x, q.y, q.z])).chain([mu; 3].into_iter().flat_map(|m| [m.x, m.y, m.z]));
+        prop_assert_eq!(stepper.table().project(row), Some(stepper.project([q; 3], [mu; 3])));
+        let turn = UnitQuaternion::from_matrix(&r).into_inner();
+        let stepper = QuaternionTop { inertia: Matrix3::identity(), moment: Vector3::zeros() }.into_stepper(0.1)?;
+        let state = stepper.state(turn, mu)?;
+        prop_assert_eq!(stepper.table().state(stepper.table().energy().row(7.5, &state)), Some(Ok(state)));
+        prop_assert_eq!(state.clock(), ());
+
+        let stepper = satellite.into_stepper(H)?;
+        let state = stepper.state_at(1.5, r, mu)?;
+        prop_assert_eq!(state.clock().now(), 1.5);
+        let row: Vec<f64> = stepper.table().row(1.5, &state).collect();
+        prop_assert_eq!(<(f64, Matrix3<f64>, Vector3<f64>)>::from_columns(&mut row.iter().copied()), Some((1.5, r, mu)));
+        prop_assert_eq!(stepper.table().state(row.iter().copied()), Some(Ok(state)));
+        prop_assert_eq!(stepper.table().state(row[..12].iter().copied()), None);
+        let no_time = [f64::NAN].into_iter().chain(row[1..].iter().copied());
+        prop_assert_eq!(stepper.table().state(no_time), Some(Err(Error::NotFinite { name: "the time" })));
     }
 
     /// The two other kinds of samples, and the times of states.

@@ -119,6 +119,7 @@ pub const PROPERTIES: &[(&str, &[Property])] = &[
     ]),
     ("tests/laws/tests/properties/recording.rs", &[
         ("rows_have_the_numbers_of_their_columns", &["Stepper::table", "Table::columns", "Table::row", "Table::stepper", "Column::value", "Quantities::quantity", "Quantities::values", "Table::energy", "Table::conserved", "conserved", "Table::with", "Columns::entry", "Form::width"]),
+        ("rows_are_read_back",                     &["Space::from_columns", "Table::state", "Table::project", "State::clock"]),
         ("samples_know_their_times",               &["Timed::with_times", "Sample::time", "Sample::state"]),
         ("files_are_read_back",                    &["Table::units", "Column::unit", "Recorder::csv", "Recorder::npy", "Recorder::record", "Recorder::record_all", "Recorder::rows", "Recorder::flush", "Recorder::finish", "Npz::new", "Recorder::npz", "Npz::finish"]),
         ("failures_of_recordings_are_told",        &["Recorder::record_all"]),
