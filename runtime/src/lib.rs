@@ -84,7 +84,7 @@
 //! | `num-dual` | the numbers of that crate as scalars, which carry derivatives; needs the standard library |
 //! | `double-double` | `DoubleDouble`: 31 digits for reference runs |
 //! | `generated` | the dial `emit = [generated]`: the constant `GENERATED`, the generated code as text |
-//! | `record` | the module `record`: tables of states in files, CSV and NumPy; needs the standard library |
+//! | `record` | the module `record`: tables of states in files, CSV and NumPy; needs the standard library. The crate `clebsch-plot` draws such tables, without the feature |
 //! | `serde` | states that are written and read back; `Stepper::resume` and `FieldStepper::resume` go on bit for bit, if the format keeps all digits (`serde_json` with `float_roundtrip`) |
 //!
 //! # Where dials end

@@ -99,6 +99,22 @@ fn drifts_are_relative_to_what_moves_and_the_law_is_that_of_the_scalar() {
     assert!(matches!(height.scale("height", 0.0), Err(PlotError::Range { .. })));
 }
 
+#[test]
+fn energies_are_relative_to_kinetic_and_potential_energy() {
+    // kicks and drifts conserve p²/2 + k (1 − k h²/4) x²/2. So the energy falls by k² h²/8 from x = 1, p = 0 to x = 0.
+    let (k, h) = (4.0, 0.01);
+    let stepper = Spring { stiffness: k }.into_stepper(h).expect("a stepper");
+    let start = stepper.state(Vector1::new(1.0), Vector1::zeros()).expect("a state");
+    let states = stepper.trajectory(start).every(h).with_times().take(2000);
+    let picture = drift(stepper.table().energy(), states).expect("a picture");
+    let (kinetic, potential) = (k / 2.0 * (1.0 - k * h * h / 4.0), k / 2.0);
+    let expected = k * k * h * h / 8.0 / (kinetic + potential);
+    let found = picture.largest("energy").expect("the energy");
+    assert!((found / expected - 1.0).abs() < 1e-3, "{found:e}, {expected:e}");
+    let over_joules = picture.scale("energy", 2.0).expect("the energy").largest("energy");
+    assert!(over_joules.is_some_and(|found| (found / (k * k * h * h / 16.0) - 1.0).abs() < 1e-3), "{over_joules:?}");
+}
+
 /// A point on a line, in any scalar.
 #[derive(Clebsch, Clone, Debug)]
 #[clebsch(action = |a: Translation<1>, x: Vector1| x + a, cost = |h, a| self.mass * a.norm_squared() / (2 * h))]

@@ -199,7 +199,7 @@ function cuboid([centre, ...axes], tint) {
 
 /** Octants in two tints show how it turns. */
 function ellipsoid([centre, ...axes], tint) {
-    const [ROWS, COLUMNS] = [12, 24];
+    const [ROWS, COLUMNS] = [16, 32];
     const point = (row, column) => {
         const [latitude, longitude] = [(row / ROWS - 0.5) * Math.PI, 2 * Math.PI * column / COLUMNS];
         const [c, s] = [Math.cos(latitude), Math.sin(latitude)];
@@ -218,11 +218,12 @@ function ellipsoid([centre, ...axes], tint) {
 
 /** The path of a point up to now: paler long ago, and behind the sphere. */
 function path(part, frame, place, tint) {
-    const PIECES = 160;
+    // long pieces would be in front of a body or behind it as one
+    const [PIECES, LONGEST] = [160, 40];
     const [x, y, z] = part.channels;
     const points = Array.from({ length: frame + 1 }, (_, i) => [x[i], y[i], z[i]]);
     points.push(place);
-    const size = Math.max(1, Math.ceil(points.length / PIECES));
+    const size = Math.min(Math.ceil(points.length / PIECES), LONGEST);
     for (let start = 0; start < points.length - 1; start += size) {
         const piece = points.slice(start, start + size + 1);
         const age = 1 - (start + size) / points.length;
