@@ -12,6 +12,7 @@ mod pendulum;
 mod plots;
 mod sleigh;
 mod sphere;
+mod string;
 mod top;
 mod turn;
 
@@ -42,6 +43,7 @@ fn draw_all(pictures: &Pictures) -> Result<Claims, Failure> {
     turn::optimal_control(pictures, &mut claims)?;
     sleigh::constraints(pictures, &mut claims)?;
     plots::plots(pictures, &mut claims)?;
+    string::fields(pictures, &mut claims)?;
     Ok(claims)
 }
 
