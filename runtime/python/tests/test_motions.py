@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import pickle
+import signal
+import time
 
 import clebsch
 import numpy as np
@@ -231,6 +233,31 @@ def test_ensembles_have_the_bits_of_each_body(heavy_top, stepper) -> None:
         alone = top.run(start, times)
         assert together.array[body].tobytes() == alone.array.tobytes()
         assert together.ends[body] == alone.end
+
+
+def test_long_runs_end_at_an_interrupt(stepper, start) -> None:
+    """The handler of the user decides, as anywhere in Python."""
+
+    class Enough(Exception):
+        pass
+
+    def stop(*_: object) -> None:
+        raise Enough
+
+    before = signal.signal(signal.SIGALRM, stop)
+    try:
+        for run in (
+            lambda: stepper.advance(start, 10**12),
+            lambda: stepper.run(start, [1e9]),
+            lambda: clebsch.Ensemble(stepper, [start] * 4).run([1e9], threads=2),
+        ):
+            signal.setitimer(signal.ITIMER_REAL, 0.2)
+            began = time.monotonic()
+            with pytest.raises(Enough):
+                run()
+            assert time.monotonic() - began < 10
+    finally:
+        signal.signal(signal.SIGALRM, before)
 
 
 def test_an_ensemble_names_the_body_that_fails(stepper, start) -> None:

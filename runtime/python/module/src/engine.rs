@@ -11,8 +11,8 @@ use std::sync::Arc;
 /// A state of any system.
 pub type Point = Arc<dyn Any + Send + Sync>;
 
-/// The conserved momenta of a state.
-pub type Momenta<S, M> = fn(&Stepper<S, M>, &State<S, M>) -> Vec<f64>;
+/// Writes the conserved momenta of a state.
+pub type Momenta<S, M> = fn(&Stepper<S, M>, &State<S, M>, &mut [f64]);
 
 /// A stepper whose types are hidden.
 ///
@@ -107,8 +107,10 @@ impl<S: Clebsch<Scalar: Real>, M: Method<S>> Driven<S, M> {
     /// Writes the row of a state at a time.
     pub(crate) fn write(&self, t: f64, state: &State<S, M>, row: &mut [f64]) {
         let of_state = self.stepper.table().energy().row(S::Scalar::from_f64(t), state);
-        let numbers = of_state.map(Scalar::to_f64).chain((self.momenta)(&self.stepper, state));
-        row.iter_mut().zip(numbers).for_each(|(place, number)| *place = number);
+        row.iter_mut().zip(of_state).for_each(|(place, number)| *place = number.to_f64());
+        if let Some(conserved) = row.get_mut(Self::STATE + 1..) {
+            (self.momenta)(&self.stepper, state, conserved);
+        }
     }
 }
 

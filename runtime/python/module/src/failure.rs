@@ -73,10 +73,9 @@ impl Failure {
             Self::Saved { reason } => {
                 PyValueError::new_err(format!("the bytes are no saved state of this system: {reason}"))
             }
-            Self::Interrupted => py
-                .check_signals()
-                .err()
-                .unwrap_or_else(|| pyo3::exceptions::PyKeyboardInterrupt::new_err("interrupted")),
+            Self::Interrupted => {
+                PyErr::take(py).unwrap_or_else(|| pyo3::exceptions::PyKeyboardInterrupt::new_err("interrupted"))
+            }
         }
     }
 }

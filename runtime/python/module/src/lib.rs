@@ -72,14 +72,14 @@ macro_rules! library {
                         ::core::option::Option::None => $crate::engine::<OwnSystem, $crate::clebsch::Declared>(
                             system,
                             step_size,
-                            |stepper, state| (&$crate::Of::<OwnSystem>::NEW).momenta(stepper, state),
+                            |stepper, state, into| (&$crate::Of::<OwnSystem>::NEW).momenta(stepper, state, into),
                             conserved,
                         ),
                         $(::core::option::Option::Some(::core::stringify!($method)) => {
                             $crate::engine::<OwnSystem, $method>(
                                 system,
                                 step_size,
-                                |stepper, state| (&$crate::Of::<OwnSystem>::NEW).momenta(stepper, state),
+                                |stepper, state, into| (&$crate::Of::<OwnSystem>::NEW).momenta(stepper, state, into),
                                 conserved,
                             )
                         })*

@@ -34,8 +34,8 @@ impl<S> Of<S> {
 pub trait WithConserved<S: Clebsch> {
     /// Their names.
     fn names(&self) -> &'static [&'static str];
-    /// Their values.
-    fn momenta<M: Method<S>>(&self, stepper: &Stepper<S, M>, state: &State<S, M>) -> Vec<f64>;
+    /// Writes their values.
+    fn momenta<M: Method<S>>(&self, stepper: &Stepper<S, M>, state: &State<S, M>, into: &mut [f64]);
 }
 
 impl<S: Conserves<Scalar: Real>> WithConserved<S> for Of<S> {
@@ -43,9 +43,10 @@ impl<S: Conserves<Scalar: Real>> WithConserved<S> for Of<S> {
         S::CONSERVED_NAMES
     }
 
-    fn momenta<M: Method<S>>(&self, stepper: &Stepper<S, M>, state: &State<S, M>) -> Vec<f64> {
+    fn momenta<M: Method<S>>(&self, stepper: &Stepper<S, M>, state: &State<S, M>, into: &mut [f64]) {
         let values: S::Conserved = stepper.conserved(state);
-        (0..).map_while(|k| values.entry(k)).map(Scalar::to_f64).collect()
+        let values = (0..).map_while(|k| values.entry(k));
+        into.iter_mut().zip(values).for_each(|(place, value)| *place = value.to_f64());
     }
 }
 
@@ -55,10 +56,8 @@ pub trait WithoutConserved<S: Clebsch> {
     fn names(&self) -> &'static [&'static str] {
         &[]
     }
-    /// No values.
-    fn momenta<M: Method<S>>(&self, _: &Stepper<S, M>, _: &State<S, M>) -> Vec<f64> {
-        Vec::new()
-    }
+    /// Writes no values.
+    fn momenta<M: Method<S>>(&self, _: &Stepper<S, M>, _: &State<S, M>, _: &mut [f64]) {}
 }
 
 impl<S: Clebsch> WithoutConserved<S> for &Of<S> {}

@@ -91,7 +91,7 @@ def _put(built: Path, place: Path) -> None:
 def _built(source: Source, toolchain: Toolchain, workshop: Path) -> Path:
     crate = _crate(source, workshop)
     if not (workshop / "target").exists():
-        log.info("building what all declarations share, once for each toolchain: this takes about a minute")
+        log.warning("building the crates that all declarations need, once for each toolchain: this takes a minute or two")
     command = [toolchain.cargo, "rustc", "--release", "--offline", "--locked", "--message-format=json", *LINK]
     # the library is the same for every Python: none is asked, and none is linked
     of_pyo3 = {"PYO3_NO_PYTHON": "1", "PYO3_BUILD_EXTENSION_MODULE": "1"}
