@@ -15,7 +15,7 @@ mod quadratic;
 mod search;
 mod sweep;
 
-pub use optimum::{Optimum, Stage};
+pub use optimum::{Ended, Optimum, Stage};
 
 use crate::fields::getters;
 use crate::newton::{Bracket, Trial};
@@ -83,6 +83,33 @@ pub enum Target<X> {
     Configuration(X),
     /// Anywhere: the price of the end decides.
     Free,
+}
+
+/// How much work [`Control::solve_within`] may do.
+///
+/// ```
+/// # use clebsch::{Clebsch, Controlled, Limits, Target};
+/// # use nalgebra::{Vector1, Vector2};
+/// # #[derive(Clebsch, Clone, Debug)]
+/// # #[clebsch(
+/// #     dynamics = |h, x: Vector2, u: Vector1| x + h * vector![x.y, u.x],
+/// #     cost     = |h, u| h * u.norm_squared() / 2,
+/// #     bounds   = |u| [u.x <= self.strongest],
+/// #     endpoint = |x| self.price * x.norm_squared() / 2,
+/// # )]
+/// # struct Cart { strongest: f64, price: f64 }
+/// let control = Cart { strongest: 8.0, price: 10.0 }.control(0.1)?;
+/// let mut plan = [control.stage(&Vector2::x()); 10];
+/// let reached = control.solve_within(&Vector2::x(), Target::Free, Limits { sweeps: 4 }, &mut plan)?;
+/// assert!(reached.iterations() <= 4);
+/// # Ok::<(), clebsch::Error>(())
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Limits {
+    /// The most linearisations, as [`Optimum::iterations`] counts them, but that one correction is always made, if this is not 0.
+    /// It takes one linearisation, or up to three where the price does not curve upward. The sizes of bounds that the guess
+    /// violates take some more. Another linearisation is made for gains.
+    pub sweeps: u32,
 }
 
 impl<X> Target<X> {
@@ -163,6 +190,86 @@ impl<S: Controlled<D, U, C, Scalar: Real>, const D: usize, const U: usize, const
         let problem = Problem { system, constants, h: *h, time: *time, start, target, lengths };
         let solved = Plan::new(problem, plan).attempt()?;
         Ok(Optimum { stages: plan, ..solved })
+    }
+
+    /// As [`solve`](Self::solve) with bounded work, for plans that are made anew while the system moves.
+    ///
+    /// One search goes from the guess, with its multipliers. At the limit it ends with the plan that it has reached, and
+    /// [`Optimum::ended`] says so. The plan is a motion of the system from `start`, with gains for [`feedback`](Self::feedback).
+    /// Its end may have a [`gap`](Optimum::gap) to the target. Bounds that the guess violates may have a
+    /// [`violation`](Optimum::violation). The stages are the guess of the next call, which goes on from there.
+    ///
+    /// Each call makes a correction at least, so that `Limits { sweeps: 1 }` is the real-time iteration. The source is Diehl, Bock and
+    /// Schlöder, *A real-time iteration scheme for nonlinear optimization in optimal feedback control* (2005).
+    ///
+    /// ```
+    /// # use clebsch::{Clebsch, Controlled, Limits, Target};
+    /// # use nalgebra::{Vector1, Vector2};
+    /// # #[derive(Clebsch, Clone, Debug)]
+    /// # #[clebsch(
+    /// #     dynamics = |h, x: Vector2, u: Vector1| x + h * vector![x.y, u.x],
+    /// #     cost     = |h, u| h * u.norm_squared() / 2,
+    /// #     bounds   = |u| [u.x <= self.strongest],
+    /// #     endpoint = |x| self.price * x.norm_squared() / 2,
+    /// # )]
+    /// # struct Cart { strongest: f64, price: f64 }
+    /// // a cart is brought back to its place, and is pushed all the time
+    /// let control = Cart { strongest: 8.0, price: 1000.0 }.control(0.05)?;
+    /// let mut place = Vector2::x();
+    /// let mut plan = [control.stage(&place); 20];
+    /// for tick in 0..100 {
+    ///     control.solve_within(&place, Target::Free, Limits { sweeps: 1 }, &mut plan)?;
+    ///     place = control.follow(&place, plan[0].input())?;
+    ///     place.y += 0.02 * (tick as f64).sin(); // gusts
+    ///     control.shift(&mut plan, 1);
+    /// }
+    /// assert!(place.norm() < 0.1);
+    /// # Ok::<(), clebsch::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// Those of [`solve`](Self::solve) for the arguments, and those of a step. The stages then hold the inputs of the guess.
+    pub fn solve_within<'p>(
+        &self,
+        start: &S::Place,
+        target: Target<S::Place>,
+        limits: Limits,
+        plan: &'p mut [Stage<S, D, U, C>],
+    ) -> Result<Optimum<'p, S, D, U, C>, Error> {
+        self.check(start, &target, plan)?;
+        let Self { system, step_size: h, constants, time } = self;
+        let (target, lengths) = (&target, Problem::lengths(system, &target));
+        let problem = Problem { system, constants, h: *h, time: *time, start, target, lengths };
+        let reached = Plan { most: limits.sweeps, ..Plan::new(problem, plan) }.attempt_once()?;
+        Ok(Optimum { stages: plan, ..reached })
+    }
+
+    /// The plan from its stage `steps` on, with the last input repeated at its end. It is the guess of the plan that is made
+    /// so many steps later. Multipliers move along.
+    ///
+    /// ```
+    /// # use clebsch::{Clebsch, Controlled};
+    /// # use nalgebra::{Vector1, Vector2};
+    /// # #[derive(Clebsch, Clone, Debug)]
+    /// # #[clebsch(
+    /// #     dynamics = |h, x: Vector2, u: Vector1| x + h * vector![x.y, u.x],
+    /// #     cost     = |h, u| h * u.norm_squared() / 2,
+    /// #     bounds   = |u| [u.x <= self.strongest],
+    /// #     endpoint = |x| self.price * x.norm_squared() / 2,
+    /// # )]
+    /// # struct Cart { strongest: f64, price: f64 }
+    /// # let control = Cart { strongest: 8.0, price: 0.0 }.control(0.1)?;
+    /// let mut plan = [1.0, 2.0, 3.0].map(|u| control.stage(&Vector2::x()).with_input(Vector1::new(u)));
+    /// control.shift(&mut plan, 1);
+    /// assert_eq!(plan.map(|stage| stage.input().x), [2.0, 3.0, 3.0]);
+    /// # Ok::<(), clebsch::Error>(())
+    /// ```
+    pub fn shift(&self, plan: &mut [Stage<S, D, U, C>], steps: usize) {
+        for k in 0..plan.len() {
+            if let Some(later) = plan.get(k.saturating_add(steps)).or(plan.last()).copied() {
+                plan.get_mut(k).into_iter().for_each(|stage| *stage = later);
+            }
+        }
     }
 
     /// As [`solve`](Self::solve), with the step size in `steps` at which the least price is least, found from that of this control on:

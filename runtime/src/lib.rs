@@ -58,8 +58,9 @@
 //! | know the basis of a momentum | [`group`]: matrices, basis, pairing and signs |
 //! | handle failures | [`Error`]: each kind with its numbers and the change that helps |
 //! | go from here to there in a given time | [`Stepper::boundary`], with `emit = [boundary]`; [`Extremal`] |
-//! | give each step an input of its forces | [`Stepper::step_with`] |
+//! | give each step an input of its forces | [`Stepper::step_with`], [`Trajectory::forced_by`] |
 //! | choose the inputs at the least price, within bounds | [`Controlled::control`], with `controls`, `dynamics` or `effort`; [`Control::solve`], [`Optimum`] and its [`Stage`]s |
+//! | choose them anew at each step, in bounded time | [`Control::solve_within`], [`Control::shift`] |
 //! | solve an implicit equation of one's own | [`implicit`] |
 //! | integrate in another number type | [`Scalar`], and [`Space`] for collections of scalars; [`Real`] for a scalar that has an order |
 //! | step many bodies at once | [many bodies](crate#many-bodies), on lanes and on all cores |
@@ -213,7 +214,7 @@ pub use clebsch_macros::Clebsch;
 pub use columns::{Column, Columns, Form, Names};
 pub use conserved::{Conserved, Conserves};
 pub use constraint::{Constrained, Reacting};
-pub use control::{Control, Optimum, Stage, Target};
+pub use control::{Control, Ended, Limits, Optimum, Stage, Target};
 pub use controlled::{Arrival, BoundsExpansion, Controlled, EndpointExpansion, Expansion};
 #[cfg(feature = "double-double")]
 pub use double_double::DoubleDouble;
@@ -248,5 +249,5 @@ pub use system::Clebsch;
 pub use table::{Quantities, Row, Sample, Table};
 pub use tangent::{Sensitivity, Tangent, Variation};
 pub use time::{Clock, Time};
-pub use trajectory::{Crossing, Event, Events, Multiples, Timed, Trajectory, WithTimes};
+pub use trajectory::{Crossing, Event, Events, Inputs, InputsBy, Multiples, NoInputs, Timed, Trajectory, WithTimes};
 pub use variational::{Carried, Differentiated, Edge, Ends, Momenta, Sensitive, Variational};

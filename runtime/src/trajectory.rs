@@ -1,9 +1,11 @@
 //! Step after step as an iterator.
 
 mod events;
+mod inputs;
 mod times;
 
 pub use events::{Crossing, Event, Events};
+pub use inputs::{Inputs, InputsBy, NoInputs};
 pub use times::{Multiples, Timed, WithTimes};
 
 use crate::{Clebsch, Declared, Error, Method, State, Stepper};
@@ -13,7 +15,8 @@ use core::iter::FusedIterator;
 /// The states q_0, q_1, … of a [`Stepper`], the start first. Endless; after an error it yields nothing more.
 ///
 /// A step is made when its state is asked for, so `take(n)` makes n − 1 steps. For states at times of your own see
-/// [`at`](Self::at) and [`every`](Self::every), for crossings of a surface [`events`](Self::events).
+/// [`at`](Self::at) and [`every`](Self::every), for crossings of a surface [`events`](Self::events), for inputs of the forces
+/// [`forced_by`](Self::forced_by).
 ///
 /// ```
 /// # use clebsch::Clebsch;
@@ -30,15 +33,16 @@ use core::iter::FusedIterator;
 /// assert_eq!(places, [0.0, 1.5, 3.0]);
 /// # Ok::<(), clebsch::Error>(())
 /// ```
-pub struct Trajectory<'a, S: Clebsch, M: Method<S> = Declared> {
+pub struct Trajectory<'a, S: Clebsch, M: Method<S> = Declared, U = NoInputs> {
     pub(crate) stepper: &'a Stepper<S, M>,
     /// The start, or the state that has been asked for last; after an error the one before it.
     pub(crate) state: State<S, M>,
     pub(crate) has_started: bool,
     pub(crate) has_failed: bool,
+    pub(crate) inputs: U,
 }
 
-impl<S: Clebsch, M: Method<S>> Trajectory<'_, S, M> {
+impl<S: Clebsch, M: Method<S>, U> Trajectory<'_, S, M, U> {
     /// The state that has been asked for last, or the start. After an error it is the state before the step that failed.
     ///
     /// ```
@@ -61,7 +65,7 @@ impl<S: Clebsch, M: Method<S>> Trajectory<'_, S, M> {
     }
 }
 
-impl<S: Clebsch, M: Method<S>> Iterator for Trajectory<'_, S, M> {
+impl<S: Clebsch, M: Method<S>, U: Inputs<S, M>> Iterator for Trajectory<'_, S, M, U> {
     type Item = Result<State<S, M>, Error>;
 
     #[inline]
@@ -73,7 +77,8 @@ impl<S: Clebsch, M: Method<S>> Iterator for Trajectory<'_, S, M> {
             self.has_started = true;
             return Some(Ok(self.state));
         }
-        let item = self.stepper.step(&self.state);
+        let input = self.inputs.input(&self.state);
+        let item = self.stepper.step_with(&self.state, &input);
         match &item {
             Ok(state) => self.state = *state,
             Err(_) => self.has_failed = true,
@@ -82,15 +87,15 @@ impl<S: Clebsch, M: Method<S>> Iterator for Trajectory<'_, S, M> {
     }
 }
 
-impl<S: Clebsch, M: Method<S>> FusedIterator for Trajectory<'_, S, M> {}
+impl<S: Clebsch, M: Method<S>, U: Inputs<S, M>> FusedIterator for Trajectory<'_, S, M, U> {}
 
-impl<S: Clebsch, M: Method<S>> Clone for Trajectory<'_, S, M> {
+impl<S: Clebsch, M: Method<S>, U: Clone> Clone for Trajectory<'_, S, M, U> {
     fn clone(&self) -> Self {
-        Self { ..*self }
+        Self { inputs: self.inputs.clone(), ..*self }
     }
 }
 
-impl<S: Clebsch, M: Method<S>> Debug for Trajectory<'_, S, M> {
+impl<S: Clebsch, M: Method<S>, U> Debug for Trajectory<'_, S, M, U> {
     fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
         let name = match (self.has_failed, self.has_started) {
             (true, _) => "Trajectory ended after",

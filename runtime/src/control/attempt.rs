@@ -10,7 +10,7 @@
 
 use super::iterate::Iterate;
 use super::sweep::{Plan, PlanSummary};
-use super::{Optimum, Stage, Target};
+use super::{Ended, Optimum, Stage, Target};
 use crate::{Controlled, Error, Real, Space};
 use nalgebra::SVector;
 
@@ -51,6 +51,26 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: usize
             self.stages.iter_mut().for_each(Stage::forget);
         }
         solved
+    }
+
+    /// The plan that one search from the guess has reached, whether it ends or not. After an error, which is one of a step,
+    /// the stages hold the inputs of the guess.
+    pub fn attempt_once<'p>(&mut self) -> Result<Optimum<'p, S, D, U, C>, Error> {
+        self.stages.iter_mut().for_each(|stage| stage.guess = stage.input);
+        let reached = self.newton(false).or_else(|error| {
+            if !may_be_found(&error) {
+                return Err(error);
+            }
+            // the multipliers have misled it
+            let now = self.start(false)?;
+            let reached = self.interrupted(&now, Ended::Failed(error));
+            self.stages.iter_mut().for_each(Stage::forget_multipliers);
+            reached
+        });
+        if reached.is_err() {
+            self.stages.iter_mut().for_each(Stage::forget);
+        }
+        reached
     }
 
     /// Varies the inputs of the guess so that they end nearer to the target; those of variation 0 stay as they are.

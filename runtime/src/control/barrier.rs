@@ -268,8 +268,14 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: usize
         })
     }
 
-    /// The bound that keeps all from being relaxed less, with the stage and by how much it is violated.
-    pub fn worst_bound(&self) -> Option<(usize, usize, T)> {
+    /// The largest a of all bounds, 0 where none is violated by more than round-off.
+    pub fn violation(&self) -> T {
+        let worst = if self.is_violated() { self.worst_bound() } else { None };
+        worst.map_or(T::zero(), |(.., violation)| violation)
+    }
+
+    /// The bound that keeps all from being relaxed less: its stage, its name and by how much it is violated.
+    pub fn worst_bound(&self) -> Option<(usize, &'static str, T)> {
         let (mut most, mut worst) = (T::zero(), None);
         for (index, stage) in self.stages.iter().enumerate() {
             let (Problem { system, constants, .. }, t) = (&self.problem, self.problem.time_after(index));
@@ -277,7 +283,7 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: usize
             for i in 0..C {
                 let part = values[i] / stage.excess[i];
                 if part > most && stage.excess[i] > T::zero() {
-                    (most, worst) = (part, Some((index, i, values[i])));
+                    (most, worst) = (part, Some((index, S::BOUNDS[i], values[i])));
                 }
             }
         }

@@ -4,8 +4,8 @@ use super::attempt::Amplitudes;
 use super::end::PlanEnd;
 use super::iterate::{Iterate, Verdict};
 use super::search::Descent;
-use super::sweep::{Plan, Problem, Settings};
-use super::{Optimum, barrier};
+use super::sweep::{Plan, PlanSummary, Problem, Settings};
+use super::{Ended, Optimum, barrier};
 use crate::newton::{Curvature, Equilibrated};
 use crate::parameters::check_finite;
 use crate::space::larger;
@@ -30,8 +30,11 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: usize
         // The size of a correction that is round-off. Slacks of active bounds have few digits.
         let exact = T::from_f64(4.0) * T::EPSILON * steps.sqrt();
         let mut now = self.start(is_priced)?;
-        let (mut size, mut stirs) = (zero, 0);
+        let (mut size, mut stirs, mut has_corrected) = (zero, 0, false);
         for _ in 0..SWEEPS {
+            if self.sweeps >= self.most && (has_corrected || self.most == 0) {
+                return self.interrupted(&now, Ended::AtLimit);
+            }
             self.sweeps += 1;
             let end = self.end();
             let summary = self.eliminate(&end, &now.settings)?;
@@ -51,6 +54,7 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: usize
             let magnitude = summary.magnitude + T::EPSILON.sqrt() * now.largest;
             if verdict == Verdict::Escape {
                 now.leave_saddle(self.escape(&descent, magnitude));
+                has_corrected = true;
                 continue;
             }
             if now.is_open {
@@ -110,6 +114,7 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: usize
             }
             let is_trusted = now.is_exact() && size * size <= T::EPSILON.sqrt();
             let made = self.descend(&mut now, &descent, magnitude, is_trusted);
+            has_corrected = true;
             let is_whole = made.is_some_and(|(fraction, _)| fraction >= T::from_ratio(9, 10));
             now.advance(made, size, summary.negative, end.distance);
             if now.stalls == STALLS || now.damping > T::from_f64(DAMPING_LIMIT) {
@@ -125,7 +130,7 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: usize
     }
 
     /// The plan that the inputs make, with the multipliers that the stages hold.
-    fn start(&mut self, is_priced: bool) -> Result<Iterate<T, D>, Error> {
+    pub fn start(&mut self, is_priced: bool) -> Result<Iterate<T, D>, Error> {
         self.follow()?;
         let end = self.end();
         let costate = self.stages.last().map(|stage| stage.next_costate);
@@ -178,14 +183,9 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: usize
         PlanEnd { scale: self.stages.iter().fold(end.scale, |max, stage| larger(max, stage.place.max_abs())), ..end }
     }
 
-    /// The last sweep: exact second derivatives as they are, for gains and the index.
+    /// The critical plan, after a last sweep that proves it.
     fn finish<'p>(&mut self, now: &Iterate<T, D>) -> Result<Optimum<'p, S, D, U, C>, Error> {
-        let end = self.end();
-        let settings =
-            Settings { curvature: Curvature::exact(T::zero()), is_straight: false, is_last: true, ..now.settings };
-        // The weight of the target belongs to the search: costates are those of the multipliers alone.
-        let closed = PlanEnd { lack: SVector::zeros(), ..end };
-        let summary = self.eliminate(&closed, &settings)?;
+        let summary = self.last_sweep(now)?;
         // Near a singularity curvatures are so large that no residual needs a correction. Written so that NaN is an error.
         let unit = T::EPSILON.sqrt();
         let inputs = self.stages.iter().fold(T::zero(), |largest, stage| larger(largest, stage.input.max_abs()));
@@ -199,17 +199,45 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: usize
             let (residual, momentum) = (summary.residual.to_f64(), summary.terms.to_f64());
             return Err(Error::NotStationary { residual, momentum });
         }
-        Ok(Optimum {
+        Ok(self.reached(now, &summary, Ended::Converged))
+    }
+
+    /// The plan as it is where a search ends before, with the gains of a last sweep.
+    #[cold]
+    pub fn interrupted<'p>(&mut self, now: &Iterate<T, D>, ended: Ended) -> Result<Optimum<'p, S, D, U, C>, Error> {
+        let summary = self.last_sweep(now)?;
+        check_finite("the price of the plan", &summary.price)?;
+        Ok(self.reached(now, &summary, ended))
+    }
+
+    /// The last sweep: exact second derivatives as they are, for gains and the index.
+    fn last_sweep(&mut self, now: &Iterate<T, D>) -> Result<PlanSummary<T, D, U>, Error> {
+        let settings =
+            Settings { curvature: Curvature::exact(T::zero()), is_straight: false, is_last: true, ..now.settings };
+        // The weight of the target belongs to the search: costates are those of the multipliers alone.
+        let closed = PlanEnd { lack: SVector::zeros(), ..self.end() };
+        self.eliminate(&closed, &settings)
+    }
+
+    fn reached<'p>(
+        &self,
+        now: &Iterate<T, D>,
+        summary: &PlanSummary<T, D, U>,
+        ended: Ended,
+    ) -> Optimum<'p, S, D, U, C> {
+        Optimum {
             stages: &[],
+            ended,
             step_size: self.problem.h,
             price: summary.price,
             residual: summary.residual,
-            gap: end.distance,
+            gap: self.end().distance,
+            violation: self.violation(),
             negative: Equilibrated::of(&summary.gramian).index(summary.negative, now.rank),
             iterations: self.sweeps,
             end: self.last,
             final_costate: summary.costate,
-        })
+        }
     }
 
     /// Why nothing was found.
@@ -217,9 +245,7 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: usize
     fn failure(&self, end: &PlanEnd<T, D>, size: T) -> Error {
         let iterations = self.sweeps;
         match self.worst_bound() {
-            Some((stage, bound, violation)) => {
-                Error::Infeasible { bound: S::BOUNDS[bound], stage, violation: violation.to_f64() }
-            }
+            Some((stage, bound, violation)) => Error::Infeasible { bound, stage, violation: violation.to_f64() },
             None if !end.is_reached() => Error::TargetMissed { distance: end.distance.to_f64(), iterations },
             None => Error::NoExtremal { correction: size.to_f64(), iterations },
         }

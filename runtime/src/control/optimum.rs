@@ -1,7 +1,7 @@
 //! The answer to a problem of optimal control, and the storage that the caller provides.
 
 use crate::fields::{copied, debug, getters};
-use crate::{Controlled, Real, Space};
+use crate::{Controlled, Error, Real, Space};
 use nalgebra::{SMatrix, SVector};
 
 /// One step of a plan. Made by [`Control::stage`](crate::Control::stage), filled by [`Control::solve`](crate::Control::solve).
@@ -78,6 +78,11 @@ impl<S: Controlled<D, U, C, Scalar: Real>, const D: usize, const U: usize, const
         *self = Self { input: self.guess, guess: self.guess, ..Self::rest(&self.place) };
     }
 
+    /// Begins the next search without multipliers.
+    pub(super) fn forget_multipliers(&mut self) {
+        (self.next_costate, self.multipliers) = (Space::origin(), Space::origin());
+    }
+
     getters! {
         /// The place x_k where the step starts.
         ref place: S::Place;
@@ -103,7 +108,38 @@ impl<S: Controlled<D, U, C, Scalar: Real>, const D: usize, const U: usize, const
 copied!(Stage<S, D, U, C> where [S: Controlled<D, U, C, Scalar: Real>, const D: usize, const U: usize, const C: usize]:
     place, input, costate, gain, multipliers);
 
-/// A plan on which the price is critical, solved to round-off by [`Control::solve`](crate::Control::solve). Its stages are the plan itself.
+/// How a search for a plan of least price ended: [`Optimum::ended`].
+///
+/// ```
+/// # use clebsch::{Clebsch, Controlled, Ended, Limits, Target};
+/// # use nalgebra::{Vector1, Vector2};
+/// # #[derive(Clebsch, Clone, Debug)]
+/// # #[clebsch(
+/// #     dynamics = |h, x: Vector2, u: Vector1| x + h * vector![x.y, u.x],
+/// #     cost     = |h, u| h * u.norm_squared() / 2,
+/// #     bounds   = |u| [u.x <= self.strongest],
+/// #     endpoint = |x| self.price * x.norm_squared() / 2,
+/// # )]
+/// # struct Cart { strongest: f64, price: f64 }
+/// let control = Cart { strongest: 5.0, price: 0.0 }.control(0.02)?;
+/// # let start = Vector2::zeros();
+/// let mut plan = [control.stage(&start); 50];
+/// let begun = control.solve_within(&start, Target::Place(Vector2::x()), Limits { sweeps: 2 }, &mut plan)?;
+/// assert_eq!(begun.ended(), Ended::AtLimit);
+/// # Ok::<(), clebsch::Error>(())
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Ended {
+    /// At a critical plan, to round-off. [`Control::solve`](crate::Control::solve) gives no other.
+    Converged,
+    /// At the limits, before that.
+    AtLimit,
+    /// By this error: from this guess the search comes no further. [`Control::solve`](crate::Control::solve) tries others.
+    Failed(Error),
+}
+
+/// A plan on which the price is critical, solved to round-off by [`Control::solve`](crate::Control::solve), or the one that
+/// [`Control::solve_within`](crate::Control::solve_within) has reached. Its stages are the plan itself.
 ///
 /// ```
 /// # use clebsch::{Clebsch, Controlled, Target};
@@ -128,10 +164,12 @@ copied!(Stage<S, D, U, C> where [S: Controlled<D, U, C, Scalar: Real>, const D: 
 /// ```
 pub struct Optimum<'p, S: Controlled<D, U, C, Scalar: Real>, const D: usize, const U: usize, const C: usize> {
     pub(super) stages: &'p [Stage<S, D, U, C>],
+    pub(super) ended: Ended,
     pub(super) step_size: S::Scalar,
     pub(super) price: S::Scalar,
     pub(super) residual: S::Scalar,
     pub(super) gap: S::Scalar,
+    pub(super) violation: S::Scalar,
     pub(super) negative: usize,
     pub(super) iterations: u32,
     pub(super) end: S::Place,
@@ -151,6 +189,10 @@ impl<'p, S: Controlled<D, U, C, Scalar: Real>, const D: usize, const U: usize, c
         /// The distance from the end to the target, as the root of the sum of squares of all entries; 0 for
         /// [`Target::Free`](crate::Target).
         copy gap: S::Scalar;
+        /// How the search ended.
+        copy ended: Ended;
+        /// The largest a of bounds a ≤ 0 that are violated by more than round-off; 0 where the search has converged.
+        copy violation: S::Scalar;
         /// The Morse index: the number of independent changes of the inputs that keep target and active bounds and lower the price. 0 on a local minimum.
         copy negative: usize;
         /// The place x_N: the target up to the [`gap`](Self::gap).
@@ -161,12 +203,13 @@ impl<'p, S: Controlled<D, U, C, Scalar: Real>, const D: usize, const U: usize, c
         copy stages: &'p [Stage<S, D, U, C>];
     }
 
-    /// Whether no small change of the inputs, to second order, makes the price smaller.
+    /// Whether no small change of the inputs, to second order, makes the price smaller. It is only known of a plan that has
+    /// converged.
     pub fn is_minimum(&self) -> bool {
-        self.negative == 0
+        self.negative == 0 && self.ended == Ended::Converged
     }
 }
 
 // without the plan, which is long
 debug!(Optimum<'_, S, D, U, C> where [S: Controlled<D, U, C, Scalar: Real>, const D: usize, const U: usize, const C: usize]:
-    price, iterations, residual, gap, negative);
+    ended, price, iterations, residual, gap, violation, negative);

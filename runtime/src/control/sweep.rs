@@ -41,8 +41,9 @@ pub(super) struct Plan<'a, S: Controlled<D, U, C, Scalar: Real>, const D: usize,
     pub last: S::Place,
     /// The number of bounds of all stages, without those that are none.
     pub bounds: S::Scalar,
-    /// The backward sweeps that were made.
+    /// The backward sweeps that were made, and the most that may be.
     pub sweeps: u32,
+    pub most: u32,
 }
 
 /// The settings of a backward sweep.
@@ -146,7 +147,7 @@ impl<'a, T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: u
     /// The guess that the stages hold.
     pub fn new(problem: Problem<'a, S, D, U, C>, stages: &'a mut [Stage<S, D, U, C>]) -> Self {
         let last = *problem.start;
-        Self { problem, stages, last, bounds: T::zero(), sweeps: 0 }
+        Self { problem, stages, last, bounds: T::zero(), sweeps: 0, most: u32::MAX }
     }
 
     /// Linearises and eliminates: fills costates, gains and shifts of the stages.

@@ -3,7 +3,7 @@
 use super::{GRADIENT, Stepper, first_without, whole_or_lane};
 use crate::parts::{Mu, Q, T, U};
 use crate::scheme::{Left, Scheme};
-use crate::{Clebsch, Error, Mask, Method, Scalar, Space, State, Stopped, Time, Trajectory};
+use crate::{Clebsch, Error, Mask, Method, NoInputs, Scalar, Space, State, Stopped, Time, Trajectory};
 use num_traits::Zero;
 
 impl<S: Clebsch, M: Method<S>> Stepper<S, M> {
@@ -94,7 +94,7 @@ impl<S: Clebsch, M: Method<S>> Stepper<S, M> {
     /// The states of all steps, `start` first; ends after the first error.
     #[inline]
     pub fn trajectory(&self, start: State<S, M>) -> Trajectory<'_, S, M> {
-        Trajectory { stepper: self, state: start, has_started: false, has_failed: false }
+        Trajectory { stepper: self, state: start, has_started: false, has_failed: false, inputs: NoInputs }
     }
 
     /// One step during which the input of the forces is `u`; [`step`](Self::step) is that with none, all zero.

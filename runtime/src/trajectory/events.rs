@@ -2,7 +2,7 @@
 
 mod search;
 
-use super::Trajectory;
+use super::{Inputs, NoInputs, Trajectory};
 use crate::space::larger;
 use crate::{Clebsch, Clock, Declared, Error, Method, Real, Scalar, State, Stepper, Time};
 use core::fmt::{self, Debug, Formatter};
@@ -117,7 +117,7 @@ type End<S, M, const K: usize> = (State<S, M>, [<S as Clebsch>::Scalar; K]);
 /// assert_eq!((never.steps_left(), never.state().configuration().x), (0, 150.0));
 /// # Ok::<(), clebsch::Error>(())
 /// ```
-pub struct Events<'a, S: Clebsch, G, const K: usize, M: Method<S> = Declared> {
+pub struct Events<'a, S: Clebsch, G, const K: usize, M: Method<S> = Declared, U = NoInputs> {
     stepper: &'a Stepper<S, M>,
     function: G,
     /// The end of a step before the next event.
@@ -143,9 +143,12 @@ pub struct Events<'a, S: Clebsch, G, const K: usize, M: Method<S> = Declared> {
     set_at: Option<usize>,
     steps_left: usize,
     has_ended: bool,
+    inputs: U,
+    /// The input of the step from the node, once it has been asked for.
+    input: Option<S::Input>,
 }
 
-impl<'a, S: Clebsch<Scalar: Real>, M: Method<S>> Trajectory<'a, S, M> {
+impl<'a, S: Clebsch<Scalar: Real>, M: Method<S>, U: Inputs<S, M>> Trajectory<'a, S, M, U> {
     /// The events in at most `steps` steps: the crossings of zero of the K numbers that `function` computes from a state.
     ///
     /// A crossing shows by the signs at the ends of a step. Its time is then found to the last places. Steps of a
@@ -196,11 +199,11 @@ impl<'a, S: Clebsch<Scalar: Real>, M: Method<S>> Trajectory<'a, S, M> {
     /// Each event may be an error. [`Error::EventNotFinite`] is for a value that is not finite. [`Error::EventGrazes`] is for a function that
     /// touches zero, so that rounding decides whether it crosses. [`Error::EventStays`] comes after [`go_on_from`](Events::go_on_from).
     /// The others are those of [`Stepper::step`].
-    pub fn events<G, const K: usize>(self, steps: usize, function: G) -> Events<'a, S, G, K, M>
+    pub fn events<G, const K: usize>(self, steps: usize, function: G) -> Events<'a, S, G, K, M, U>
     where
         G: FnMut(&State<S, M>) -> [Crossing<S::Scalar>; K],
     {
-        let Self { stepper, state, has_failed, .. } = self;
+        let Self { stepper, state, has_failed, inputs, .. } = self;
         Events {
             stepper,
             function,
@@ -217,11 +220,13 @@ impl<'a, S: Clebsch<Scalar: Real>, M: Method<S>> Trajectory<'a, S, M> {
             set_at: None,
             steps_left: steps,
             has_ended: has_failed,
+            inputs,
+            input: None,
         }
     }
 }
 
-impl<S: Clebsch, G, M: Method<S>, const K: usize> Events<'_, S, G, K, M> {
+impl<S: Clebsch, G, M: Method<S>, U, const K: usize> Events<'_, S, G, K, M, U> {
     /// The last state that is known to be good: that of the last event, or the end of a step after it. After an error it
     /// is the state before the step that failed.
     pub fn state(&self) -> &State<S, M> {
@@ -252,18 +257,24 @@ impl<S: Clebsch, G, M: Method<S>, const K: usize> Events<'_, S, G, K, M> {
         if size_of::<S::Time>() > 0 {
             self.clock = Clock::at(state.time.now());
         }
-        self.node = state;
+        (self.node, self.input) = (state, None);
         (self.values, self.before, self.next) = (None, None, None);
         self.found = [[None; 2]; K];
         self.has_ended = false;
     }
 }
 
-impl<S, M: Method<S>, G, const K: usize> Events<'_, S, G, K, M>
+impl<S, M: Method<S>, G, U, const K: usize> Events<'_, S, G, K, M, U>
 where
     S: Clebsch<Scalar: Real>,
     G: FnMut(&State<S, M>) -> [Crossing<S::Scalar>; K],
+    U: Inputs<S, M>,
 {
+    /// The input of the step from the node.
+    fn input_of_step(&mut self) -> S::Input {
+        *self.input.get_or_insert_with(|| self.inputs.input(&self.node))
+    }
+
     /// The functions at a state, all of them finite.
     fn look(&mut self, state: &State<S, M>) -> Result<[Crossing<S::Scalar>; K], Error> {
         let crossings = (self.function)(state);
@@ -275,7 +286,8 @@ where
 
     /// The state at a part of the step from the node, and the value of function k there.
     fn part(&mut self, part: S::Scalar, k: usize) -> Result<(State<S, M>, S::Scalar), Error> {
-        let state = self.stepper.step_for(&self.node, part * self.stepper.h)?;
+        let input = self.input_of_step();
+        let state = self.stepper.step_for_with(&self.node, part * self.stepper.h, &input)?;
         Ok((state, self.look(&state)?[k].value()))
     }
 
@@ -315,7 +327,8 @@ where
     fn search(&mut self) -> Result<bool, Error> {
         let values = self.values_at_node()?;
         let Some(left) = self.steps_left.checked_sub(1) else { return Ok(false) };
-        let next = self.stepper.step(&self.node)?;
+        let input = self.input_of_step();
+        let next = self.stepper.step_with(&self.node, &input)?;
         let ends = self.look(&next)?;
         for k in 0..K {
             self.found[k] = self.crossings(k, values[k], &ends[k])?;
@@ -397,7 +410,7 @@ where
     /// Goes on from the end of the step, once all of its events have been told.
     fn pass(&mut self) {
         if let Some((next, values)) = self.next.take() {
-            self.node = next;
+            (self.node, self.input) = (next, None);
             self.clock = self.clock.after_step(self.stepper.h);
             self.before = self.values;
             self.values = Some(values);
@@ -408,10 +421,11 @@ where
     }
 }
 
-impl<S, M: Method<S>, G, const K: usize> Iterator for Events<'_, S, G, K, M>
+impl<S, M: Method<S>, G, U, const K: usize> Iterator for Events<'_, S, G, K, M, U>
 where
     S: Clebsch<Scalar: Real>,
     G: FnMut(&State<S, M>) -> [Crossing<S::Scalar>; K],
+    U: Inputs<S, M>,
 {
     type Item = Result<Event<S, M>, Error>;
 
@@ -434,7 +448,7 @@ where
     }
 }
 
-impl<S: Clebsch, G, M: Method<S>, const K: usize> Debug for Events<'_, S, G, K, M> {
+impl<S: Clebsch, G, M: Method<S>, U, const K: usize> Debug for Events<'_, S, G, K, M, U> {
     fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
         let mut shown = f.debug_struct("Events");
         shown.field("state", self.state()).field("time", &self.time()).field("steps_left", &self.steps_left);
@@ -442,8 +456,8 @@ impl<S: Clebsch, G, M: Method<S>, const K: usize> Debug for Events<'_, S, G, K, 
     }
 }
 
-impl<S: Clebsch, G: Clone, M: Method<S>, const K: usize> Clone for Events<'_, S, G, K, M> {
+impl<S: Clebsch, G: Clone, M: Method<S>, U: Clone, const K: usize> Clone for Events<'_, S, G, K, M, U> {
     fn clone(&self) -> Self {
-        Self { function: self.function.clone(), ..*self }
+        Self { function: self.function.clone(), inputs: self.inputs.clone(), ..*self }
     }
 }

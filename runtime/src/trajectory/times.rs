@@ -1,6 +1,6 @@
 //! The states of a trajectory at given times.
 
-use super::Trajectory;
+use super::{Inputs, NoInputs, Trajectory};
 use crate::fields::debug_fields;
 use crate::parameters::check_finite;
 use crate::{Clebsch, Clock, Declared, Error, Method, Real, Scalar, State, Stepper, Time};
@@ -26,7 +26,7 @@ use num_traits::Zero;
 /// assert_eq!(timed.next(), None);
 /// # Ok::<(), clebsch::Error>(())
 /// ```
-pub struct Timed<'a, S: Clebsch, I, M: Method<S> = Declared> {
+pub struct Timed<'a, S: Clebsch, I, M: Method<S> = Declared, U = NoInputs> {
     stepper: &'a Stepper<S, M>,
     /// The last step's end that is not after the last time.
     node: State<S, M>,
@@ -35,6 +35,9 @@ pub struct Timed<'a, S: Clebsch, I, M: Method<S> = Declared> {
     /// The last time, that of the start at first.
     last: S::Scalar,
     has_failed: bool,
+    inputs: U,
+    /// The input of the step from the node, once it has been asked for.
+    input: Option<S::Input>,
 }
 
 /// The times t₀ + kΔ, k = 0, 1, 2, …, of a [`Timed`] that [`every`](Trajectory::every) makes.
@@ -69,7 +72,7 @@ impl<T: Real> Iterator for Multiples<T> {
     }
 }
 
-impl<'a, S: Clebsch<Scalar: Real>, M: Method<S>> Trajectory<'a, S, M> {
+impl<'a, S: Clebsch<Scalar: Real>, M: Method<S>, U: Inputs<S, M>> Trajectory<'a, S, M, U> {
     /// The states at these times, one for each: a slice, a vector or any iterator of times, in the order of the steps.
     ///
     /// A time between the ends of two steps is reached by one step of a smaller size from the end before, as by
@@ -101,13 +104,14 @@ impl<'a, S: Clebsch<Scalar: Real>, M: Method<S>> Trajectory<'a, S, M> {
     /// # Errors
     /// Each state may be an error: [`Error::NotFinite`] for its time, [`Error::TimeOrder`] where it is before the last one, and those of
     /// [`Stepper::step`].
-    pub fn at<I>(self, times: I) -> Timed<'a, S, I::IntoIter, M>
+    pub fn at<I>(self, times: I) -> Timed<'a, S, I::IntoIter, M, U>
     where
         I: IntoIterator<Item: Borrow<S::Scalar>>,
     {
-        let Self { stepper, state: node, has_failed, .. } = self;
+        let Self { stepper, state: node, has_failed, inputs, .. } = self;
         let last = node.time.now();
-        Timed { stepper, node, clock: Clock::at(last), times: times.into_iter(), last, has_failed }
+        let (clock, times) = (Clock::at(last), times.into_iter());
+        Timed { stepper, node, clock, times, last, has_failed, inputs, input: None }
     }
 
     /// The states at the times t₀, t₀ + Δ, t₀ + 2Δ, …, the start first. Endless; see [`at`](Self::at).
@@ -129,13 +133,16 @@ impl<'a, S: Clebsch<Scalar: Real>, M: Method<S>> Trajectory<'a, S, M> {
     ///
     /// # Errors
     /// Those of [`at`](Self::at). An interval against the direction of the steps is [`Error::TimeOrder`], in place of the second state.
-    pub fn every(self, interval: S::Scalar) -> Timed<'a, S, Multiples<S::Scalar>, M> {
+    pub fn every(self, interval: S::Scalar) -> Timed<'a, S, Multiples<S::Scalar>, M, U> {
         let start = self.state.time.now();
         self.at(Multiples { start, interval, number: 0 })
     }
 }
 
-impl<S: Clebsch<Scalar: Real>, M: Method<S>, I: Iterator<Item: Borrow<S::Scalar>>> Timed<'_, S, I, M> {
+impl<S, M: Method<S>, I: Iterator<Item: Borrow<S::Scalar>>, U: Inputs<S, M>> Timed<'_, S, I, M, U>
+where
+    S: Clebsch<Scalar: Real>,
+{
     /// The state at a time that is not before the last one, from the end of the last step before.
     fn reach(&mut self, time: S::Scalar) -> Result<State<S, M>, Error> {
         check_finite("the time", &time)?;
@@ -153,15 +160,28 @@ impl<S: Clebsch<Scalar: Real>, M: Method<S>, I: Iterator<Item: Borrow<S::Scalar>
             if behind(time, ahead.now()) > rounding {
                 break;
             }
-            self.node = self.stepper.step(&self.node)?;
-            self.clock = ahead;
+            let input = self.input_of_step();
+            self.node = self.stepper.step_with(&self.node, &input)?;
+            (self.clock, self.input) = (ahead, None);
         }
         let left = time - self.clock.now();
-        if left.abs() <= rounding { Ok(self.node) } else { self.stepper.step_for(&self.node, left) }
+        if left.abs() <= rounding {
+            return Ok(self.node);
+        }
+        let input = self.input_of_step();
+        self.stepper.step_for_with(&self.node, left, &input)
+    }
+
+    /// The input of the step from the node.
+    fn input_of_step(&mut self) -> S::Input {
+        *self.input.get_or_insert_with(|| self.inputs.input(&self.node))
     }
 }
 
-impl<S: Clebsch<Scalar: Real>, M: Method<S>, I: Iterator<Item: Borrow<S::Scalar>>> Iterator for Timed<'_, S, I, M> {
+impl<S, M: Method<S>, I: Iterator<Item: Borrow<S::Scalar>>, U: Inputs<S, M>> Iterator for Timed<'_, S, I, M, U>
+where
+    S: Clebsch<Scalar: Real>,
+{
     type Item = Result<State<S, M>, Error>;
 
     fn next(&mut self) -> Option<Self::Item> {
@@ -175,8 +195,10 @@ impl<S: Clebsch<Scalar: Real>, M: Method<S>, I: Iterator<Item: Borrow<S::Scalar>
     }
 }
 
-impl<S: Clebsch<Scalar: Real>, M: Method<S>, I: FusedIterator<Item: Borrow<S::Scalar>>> FusedIterator
-    for Timed<'_, S, I, M>
+impl<S, M: Method<S>, I: FusedIterator<Item: Borrow<S::Scalar>>, U: Inputs<S, M>> FusedIterator
+    for Timed<'_, S, I, M, U>
+where
+    S: Clebsch<Scalar: Real>,
 {
 }
 
@@ -197,9 +219,12 @@ impl<S: Clebsch<Scalar: Real>, M: Method<S>, I: FusedIterator<Item: Borrow<S::Sc
 /// }
 /// # Ok::<(), clebsch::Error>(())
 /// ```
-pub struct WithTimes<'a, S: Clebsch, I, M: Method<S> = Declared>(Timed<'a, S, I, M>);
+pub struct WithTimes<'a, S: Clebsch, I, M: Method<S> = Declared, U = NoInputs>(Timed<'a, S, I, M, U>);
 
-impl<S: Clebsch<Scalar: Real>, M: Method<S>, I: Iterator<Item: Borrow<S::Scalar>>> Iterator for WithTimes<'_, S, I, M> {
+impl<S, M: Method<S>, I: Iterator<Item: Borrow<S::Scalar>>, U: Inputs<S, M>> Iterator for WithTimes<'_, S, I, M, U>
+where
+    S: Clebsch<Scalar: Real>,
+{
     type Item = Result<(S::Scalar, State<S, M>), Error>;
 
     fn next(&mut self) -> Option<Self::Item> {
@@ -208,37 +233,39 @@ impl<S: Clebsch<Scalar: Real>, M: Method<S>, I: Iterator<Item: Borrow<S::Scalar>
     }
 }
 
-impl<S: Clebsch<Scalar: Real>, M: Method<S>, I: FusedIterator<Item: Borrow<S::Scalar>>> FusedIterator
-    for WithTimes<'_, S, I, M>
+impl<S, M: Method<S>, I: FusedIterator<Item: Borrow<S::Scalar>>, U: Inputs<S, M>> FusedIterator
+    for WithTimes<'_, S, I, M, U>
+where
+    S: Clebsch<Scalar: Real>,
 {
 }
 
-impl<S: Clebsch, M: Method<S>, I: Clone> Clone for WithTimes<'_, S, I, M> {
+impl<S: Clebsch, M: Method<S>, I: Clone, U: Clone> Clone for WithTimes<'_, S, I, M, U> {
     fn clone(&self) -> Self {
         Self(self.0.clone())
     }
 }
 
-debug_fields!(WithTimes<'_, S, I, M> where [S: Clebsch, I: Debug, M: Method<S>]: 0);
+debug_fields!(WithTimes<'_, S, I, M, U> where [S: Clebsch, I: Debug, M: Method<S>, U]: 0);
 
-impl<'a, S: Clebsch, M: Method<S>, I> Timed<'a, S, I, M> {
+impl<'a, S: Clebsch, M: Method<S>, I, U> Timed<'a, S, I, M, U> {
     /// The same states, each with its time: `(time, state)`.
-    pub fn with_times(self) -> WithTimes<'a, S, I, M> {
+    pub fn with_times(self) -> WithTimes<'a, S, I, M, U> {
         WithTimes(self)
     }
 }
 
-impl<S: Clebsch, M: Method<S>, I> Timed<'_, S, I, M> {
+impl<S: Clebsch, M: Method<S>, I, U> Timed<'_, S, I, M, U> {
     /// The end of the last step that has been made: after an error, the state before the step that failed.
     pub fn state(&self) -> &State<S, M> {
         &self.node
     }
 }
 
-impl<S: Clebsch, M: Method<S>, I: Clone> Clone for Timed<'_, S, I, M> {
+impl<S: Clebsch, M: Method<S>, I: Clone, U: Clone> Clone for Timed<'_, S, I, M, U> {
     fn clone(&self) -> Self {
-        Self { times: self.times.clone(), ..*self }
+        Self { times: self.times.clone(), inputs: self.inputs.clone(), ..*self }
     }
 }
 
-debug_fields!(Timed<'_, S, I, M> where [S: Clebsch, I: Debug, M: Method<S>]: node, clock, times, last, has_failed);
+debug_fields!(Timed<'_, S, I, M, U> where [S: Clebsch, I: Debug, M: Method<S>, U]: node, clock, times, last, has_failed);

@@ -6,7 +6,7 @@
 
 mod systems;
 
-use clebsch::{Controlled, Target};
+use clebsch::{Controlled, Limits, Target};
 use clebsch_tests::fixtures::unicycle::Unicycle;
 use clebsch_tests::oracle::random::Random;
 use nalgebra::{Matrix3, Matrix4, Rotation3, Vector2, Vector3, Vector4, Vector6};
@@ -15,12 +15,27 @@ use systems::{Place, Quadrotor, SteeredBody, quadrotor};
 fn main() {
     let numbers: Vec<u64> = std::env::args().filter_map(|argument| argument.parse().ok()).collect();
     let count = numbers.first().map_or(200, |count| *count as usize);
-    let random = &mut Random::new(numbers.get(1).map_or(1, |seed| *seed));
+    let seed = numbers.get(1).map_or(1, |seed| *seed);
+    let random = &mut Random::new(seed);
     println!("{:<18} {:>9} {:>8} {:>8} {:>8} {:>8}", "problem", "solved", "median", "9 of 10", "most", "all");
     print("unicycle", (0..count).map(|_| car(random)));
     print("body", (0..count).map(|_| body(random)));
     print("quadrotor", (0..count / 2).map(|_| flight(random)));
-    print("quadrotor in gusts", (0..count / 40).flat_map(|_| gusts(random)));
+    print("quadrotor in gusts", (0..count / 40).flat_map(|_| gusts(random, None)).map(|tick| tick.sweeps));
+    println!(
+        "\n{:<18} {:>9} {:>8} {:>14} {:>14}",
+        "sweeps in a tick", "median", "most", "price of all", "gap of plans"
+    );
+    for most in [400, 8, 4, 2, 1] {
+        let random = &mut Random::new(seed + 1);
+        let ticks: Vec<Tick> = (0..count / 40).flat_map(|_| gusts(random, Some(Limits { sweeps: most }))).collect();
+        let mut sweeps: Vec<u32> = ticks.iter().filter_map(|tick| tick.sweeps).collect();
+        sweeps.sort_unstable();
+        let Some((median, greatest)) = sweeps.get(sweeps.len() / 2).zip(sweeps.last()) else { continue };
+        let price: f64 = ticks.iter().map(|tick| tick.price).sum();
+        let gap = ticks.iter().map(|tick| tick.gap).sum::<f64>() / ticks.len() as f64;
+        println!("{most:<18} {median:>9} {greatest:>8} {price:>14.6} {gap:>14.1e}");
+    }
 }
 
 /// A line of the table, of the linearisations of each solution that was found.
@@ -89,22 +104,38 @@ fn flight(random: &mut Random) -> Option<u32> {
     control.solve(&start, Target::Place(goal), &mut plan).ok().map(|found| found.iterations())
 }
 
-/// Plans over the next 0.8 s, each from the plan before. The first one is left out.
-fn gusts(random: &mut Random) -> Vec<Option<u32>> {
+/// A hundredth of a second in gusts.
+struct Tick {
+    /// The linearisations of its plan, if there is one.
+    sweeps: Option<u32>,
+    /// The price of the step that is flown.
+    price: f64,
+    /// The distance of the plan's end from the target.
+    gap: f64,
+}
+
+/// Plans over the next 0.8 s, each from the plan before, within limits after the first one. The first one is left out.
+fn gusts(random: &mut Random, limits: Option<Limits>) -> Vec<Tick> {
     const STEPS: usize = 80;
     let control = quadrotor().control(0.01).expect("regular");
     let goal = (pose(&rotation(Vector3::z() * 0.5), &Vector3::new(0.6, 0.2, 0.15)), Vector6::zeros());
     let mut place = (Matrix4::identity(), Vector6::zeros());
     let mut plan = vec![control.stage(&place).with_input(Vector4::repeat(control.system().hover)); STEPS];
     let mut all = Vec::new();
-    for _ in 0..60 {
-        let solved = control.solve(&place, Target::Place(goal), &mut plan).ok().map(|found| found.iterations());
-        all.push(solved);
+    let constants = control.system().prepare(control.step_size()).expect("regular");
+    for tick in 0..60 {
+        let target = Target::Place(goal);
+        let solved = match limits.filter(|_| tick > 0) {
+            Some(limits) => control.solve_within(&place, target, limits, &mut plan),
+            None => control.solve(&place, target, &mut plan),
+        };
+        let (sweeps, gap) = solved.map_or((None, f64::NAN), |found| (Some(found.iterations()), found.gap()));
+        let price = control.system().price(&constants, 0.0, &place, plan[0].input()).expect("a price");
+        all.push(Tick { sweeps, price, gap });
         place = control.follow(&place, plan[0].input()).expect("a step");
         let gust = vector(random, 0.01) * control.system().mass;
         place.1.fixed_rows_mut::<3>(3).iter_mut().zip(gust.iter()).for_each(|(momentum, gust)| *momentum += gust);
-        plan.rotate_left(1);
-        plan[STEPS - 1] = plan[STEPS - 2];
+        control.shift(&mut plan, 1);
     }
     all.split_off(1)
 }

@@ -362,7 +362,7 @@ macro_rules! connecting {
 macro_rules! planning {
     ($name:literal, $type:ty, $d:literal, $u:literal, $c:literal) => {
         const _: () = {
-            use clebsch::{Control, Controlled, Stage, Target};
+            use clebsch::{Control, Controlled, Limits, Stage, Target};
 
             type S = $type;
             type T = <S as Controlled<$d, $u, $c>>::Scalar;
@@ -378,6 +378,14 @@ macro_rules! planning {
                                             price: &mut T| {
                 plan.fill(control.stage(&ends[0]));
                 *price = control.solve(&ends[0], Target::Place(ends[1]), plan)?.price();
+            });
+            $crate::export!("plan_within", $name, |control: &Control<S, $d, $u, $c>,
+                                                   ends: &[X; 2],
+                                                   plan: &mut Stages,
+                                                   gap: &mut T| {
+                control.shift(plan, 1);
+                let limits = Limits { sweeps: 4 };
+                *gap = control.solve_within(&ends[0], Target::Place(ends[1]), limits, plan)?.gap();
             });
             $crate::export!("plan_free_time", $name, |control: &Control<S, $d, $u, $c>,
                                                       ends: &[X; 2],

@@ -1,7 +1,7 @@
 //! Plans of inputs: the derivatives of steps, prices and bounds, and the conditions of an optimum, each evaluated anew.
 
 use crate::arbitrary::{cases, matrix, vector};
-use clebsch::{__private as private, Control, Controlled, Error, Optimum, Space, Target};
+use clebsch::{__private as private, Control, Controlled, Ended, Error, Limits, Optimum, Space, Target};
 use clebsch_tests::fixtures::regulator::Regulator;
 use clebsch_tests::fixtures::unicycle::Unicycle;
 use clebsch_tests::oracle::near::assert_near;
@@ -187,6 +187,54 @@ proptest! {
         is_optimal(&control, &start, Some(&target), &optimum)?;
         prop_assert!(optimum.is_minimum());
         prop_assert!(optimum.price() <= known + control.system().endpoint(&constants, H * STEPS as f64, &target) + 1e-9);
+    }
+
+    /// Little work at a time: each call ends with a motion of the system, and tells its price, its gap and its violation of bounds.
+    /// The calls end at an optimum. Its tail from the next place on is optimal too.
+    #[test]
+    fn bounded_work_adds_up(mut system in unicycles(), inputs in matrix::<2, STEPS>(1.0), sweeps in 1_u32..12) {
+        system.miss_price = 0.0;
+        let start = Matrix3::identity();
+        let control = system.control(H)?;
+        let (mut target, mut plan) = (start, [control.stage(&start); STEPS]);
+        for (stage, input) in plan.iter_mut().zip(inputs.column_iter()) {
+            let u = Vector2::new(input.x * 0.8 * control.system().top_turn, 1.0 + 0.8 * input.y);
+            target = control.follow(&target, &u)?;
+            *stage = stage.with_input(u);
+        }
+        let constants = control.system().prepare(H)?;
+        let (goal, mut calls) = (Target::Place(target), 0);
+        loop {
+            let reached = control.solve_within(&start, goal, Limits { sweeps }, &mut plan)?;
+            prop_assert!(reached.iterations() <= sweeps.max(8));
+            let (mut place, mut violation, mut price) = (start, 0.0_f64, 0.0);
+            for stage in reached.stages() {
+                prop_assert!(place.distance_squared(stage.place()).sqrt() < 1e-11);
+                violation = violation.max(control.system().bounds(&constants, 0.0, &place, stage.input())?.max());
+                price += control.system().price(&constants, 0.0, &place, stage.input())?;
+                place = control.follow(&place, stage.input())?;
+            }
+            price += control.system().endpoint(&constants, H * STEPS as f64, &place);
+            prop_assert!((reached.price() - price).abs() < 1e-10 * (1.0 + price.abs()));
+            prop_assert!((reached.gap() - place.distance_squared(&target).sqrt()).abs() < 1e-12);
+            prop_assert!((reached.violation() - violation.max(0.0)).abs() < 1e-9);
+            if reached.ended() == Ended::Converged {
+                is_optimal(&control, &start, Some(&target), &reached)?;
+                break;
+            }
+            prop_assert!(!reached.is_minimum());
+            calls += 1;
+            prop_assert!(calls < 100, "{:?}", reached.ended());
+        }
+        let next = *plan[1].place();
+        let expected = plan.map(|stage| *stage.input());
+        control.shift(&mut plan, 1);
+        prop_assert_eq!(plan[STEPS - 1].input(), &expected[STEPS - 1]);
+        let left = control.solve_within(&next, goal, Limits { sweeps: 40 }, &mut plan[..STEPS - 1])?;
+        prop_assert_eq!(left.ended(), Ended::Converged);
+        for (stage, expected) in left.stages().iter().zip(&expected[1..]) {
+            assert_near(stage.input(), expected, 1e-6, "the tail of an optimum");
+        }
     }
 
     /// A later start costs its time, and changes nothing else.

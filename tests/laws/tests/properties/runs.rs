@@ -2,7 +2,7 @@
 
 use crate::arbitrary::{attitude, cases, vector};
 use crate::bodies::{H, satellites, staggered_tops, tops};
-use clebsch::{Clebsch, Crossing, Drive, Error, Event, State, Stepper};
+use clebsch::{Clebsch, Crossing, Drive, Error, Event, Inputs, NoInputs, State, Stepper};
 use clebsch_tests::fixtures::spherical_pendulum::SphericalPendulum;
 use clebsch_tests::fixtures::watched_top::WatchedTop;
 use clebsch_tests::oracle::motion::{motion, order};
@@ -11,12 +11,13 @@ use nalgebra::{SVector, Vector2, Vector3};
 use proptest::prelude::*;
 use std::ops::ControlFlow;
 
-/// A ball that falls, as steps of second order compute it exactly.
+/// A ball that falls, with a thruster, as steps of second order compute it exactly.
 #[derive(Clebsch, Clone, Debug)]
 #[clebsch(
     action     = |a: Translation<2>, x: Vector2| x + a,
     lagrangian = |v| self.mass * v.norm_squared() / 2,
     potential  = |x| self.mass * self.gravity * x.y,
+    force      = |v, thrust: Vector2| thrust,
 )]
 pub struct Ball {
     /// Mass, kg.
@@ -171,6 +172,53 @@ proptest! {
             prop_assert!((state.configuration().perp(&state.momentum()) - area).abs() < 1e-12);
         }
         prop_assert_eq!(Some(Ok(*events.state())), stepper.trajectory(start).nth(650));
+    }
+
+    /// A thrust that changes with each step: parabola after parabola, at any time and at the floor. The pilot is asked once for each step.
+    #[test]
+    fn inputs_stay_during_their_step(mass in 0.5_f64..2.0, gravity in 5.0_f64..12.0, thrust in vector::<2>(3.0), parts in vector::<3>(1.0)) {
+        let h = 0.125;
+        let stepper = Ball { mass, gravity }.into_stepper(h)?;
+        let start = stepper.state(Vector2::new(0.0, 2.0), Vector2::new(mass, 0.0))?;
+        prop_assert_eq!(NoInputs.input(&start), Vector2::zeros());
+        let pull = |step: u32| Vector2::new(0.0, -gravity) + thrust * f64::from(step) / (8.0 * mass);
+        let exact = |time: f64| {
+            let (mut x, mut v, last) = (Vector2::new(0.0, 2.0), Vector2::new(1.0, 0.0), (time / h).floor() as u32);
+            for step in 0..=last {
+                let part = if step < last { h } else { time - h * f64::from(last) };
+                x += part * v + part * part / 2.0 * pull(step);
+                v += part * pull(step);
+            }
+            (x, v * mass)
+        };
+        let near = |state: &State<Ball>, time: f64| {
+            let (x, momentum) = exact(time);
+            assert_near(state.configuration(), &x, 1e-13, "the place");
+            assert_near(&state.momentum(), &momentum, 1e-13, "the momentum");
+        };
+        let asked = std::cell::Cell::new(0_u32);
+        let pilot = |_: &State<Ball>| {
+            asked.set(asked.get() + 1);
+            thrust * f64::from(asked.get() - 1) / 8.0
+        };
+        for (step, state) in stepper.trajectory(start).forced_by(pilot).take(5).enumerate() {
+            near(&state?, h * step as f64);
+        }
+        prop_assert_eq!(asked.replace(0), 4);
+        // three times in the second step, and one in the last
+        let mut times: Vec<f64> = parts.iter().map(|part| h * (1.5 + 0.45 * part)).collect();
+        times.sort_by(f64::total_cmp);
+        times.push(4.5 * h);
+        for (time, state) in times.iter().zip(stepper.trajectory(start).forced_by(pilot).at(&times)) {
+            near(&state?, *time);
+        }
+        prop_assert_eq!(asked.replace(0), 5);
+        let height = |state: &State<Ball>| [Crossing::Falling(state.configuration().y)];
+        let mut falls = stepper.trajectory(start).forced_by(pilot).events(100, height);
+        let Some(landed) = falls.next().transpose()? else { return Err(TestCaseError::fail("it falls")) };
+        near(&landed.state, landed.time);
+        prop_assert!(exact(landed.time).0.y.abs() < 1e-13);
+        prop_assert_eq!(asked.get(), (landed.time / h).ceil() as u32);
     }
 
     /// Burns at pericentres: a larger orbit, whose period is known, and a smaller one. The event goes on through zero.

@@ -109,6 +109,7 @@ pub const PROPERTIES: &[(&str, &[Property])] = &[
     ("tests/laws/tests/properties/runs.rs", &[
         ("bounces_have_their_times",                   &["Trajectory::events", "Events::go_on_from", "Events::state", "Events::time", "Events::steps_left"]),
         ("walls_fold_straight_lines",                  &["Trajectory::events"]),
+        ("inputs_stay_during_their_step",              &["Trajectory::forced_by", "Inputs::input"]),
         ("orbits_have_their_apsides",                  &["Trajectory::events"]),
         ("burns_change_orbits",                        &["Events::go_on_from"]),
         ("grazing_is_told",                            &["Trajectory::events"]),
@@ -200,6 +201,7 @@ pub const PROPERTIES: &[(&str, &[Property])] = &[
             "Optimum::iterations", "Optimum::residual", "Optimum::gap", "Optimum::negative", "Optimum::is_minimum", "Optimum::end", "Optimum::final_costate", "Optimum::stages",
         ]),
         ("unicycles_park",            &["Stage::with_input", "Stage::multipliers", "Stage::active"]),
+        ("bounded_work_adds_up",      &["Control::solve_within", "Control::shift", "Optimum::ended", "Optimum::violation"]),
         ("plans_start_at_their_time", &["Control::starting_at"]),
         ("free_times_are_critical",   &["Control::solve_free_time"]),
         ("maps_are_followed",         &["Controlled::follow", "Controlled::expand"]),
