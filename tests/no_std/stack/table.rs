@@ -10,7 +10,10 @@ const COLUMNS: [(&str, &[&str]); 7] = [
     ("step", &["step", "step_with", "step_each", "follow"]),
     ("advance", &["advance", "trajectory"]),
     ("tangent", &["step_tangent", "step_sensitivity"]),
-    ("plan", &["plan", "plan_within", "plan_free_time", "connect", "connect_free", "connect_free_time", "connect_several"]),
+    (
+        "plan",
+        &["plan", "plan_within", "plan_free_time", "connect", "connect_free", "connect_free_time", "connect_several"],
+    ),
     ("other", &[]),
 ];
 
