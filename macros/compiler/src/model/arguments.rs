@@ -108,10 +108,12 @@ impl<'d> TypedArguments<'d> {
 /// Refuses a space before the group that moves it.
 pub(super) fn check_order(types: &TypedArguments, names: GroupNames) -> Result<(), Diagnostic> {
     let is_group = group(first_leaf(types.space), names).is_some();
-    if !is_group || !is_column(first_leaf(types.group), names.generics) {
+    let (element, space) = (types.element.spell(), spell_type(types.group));
+    // unit quaternions are elements of a group with another name
+    let are_unit_quaternions = last_name(first_leaf(types.group)) == "Unit" && space.contains("Quaternion");
+    if !is_group || are_unit_quaternions || !is_column(first_leaf(types.group), names.generics) {
         return Ok(());
     }
-    let (element, space) = (types.element.spell(), spell_type(types.group));
     let (configuration, of_group) = (types.configuration.spell(), spell_type(types.space));
     bail!(types.group, "`{space}` is a space, but the first argument of the action is a group element";
         help "write the group first: `|{configuration}: {of_group}, {element}: {space}|`")

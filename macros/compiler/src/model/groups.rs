@@ -5,7 +5,7 @@ use std::cell::Cell;
 use clebsch_symbolic::{Elements, Graph, Group};
 use proc_macro2::Ident;
 use syn::ext::IdentExt;
-use syn::{GenericArgument, Generics, Type};
+use syn::{GenericArgument, Generics, PathSegment, Type};
 
 use super::features::{self, Feature, Found};
 use super::shapes::{GROWS, LARGEST, arguments, last_name, last_segment, named_shape, size_argument};
@@ -200,18 +200,35 @@ pub(super) fn without_cayley_map<'f, 'g>(graph: &Graph, factors: &'f [Factor<'g>
     factors.iter().find(|factor| !factor.group.is_translation() && !factor.group.has_cayley_chart(graph))
 }
 
+/// Spaces whose points are vectors or matrices with a property.
+const SPACES_OF_VECTORS: [&str; 4] = ["Unit", "Symmetric", "Projector", "Orthonormal"];
+
+/// The name of the type in angle brackets.
+fn vectors_of(segment: &PathSegment) -> Option<String> {
+    match arguments(segment).first() {
+        Some(GenericArgument::Type(inner)) => Some(last_name(inner)),
+        _ => None,
+    }
+}
+
 /// The error for a type that is no group, where a group is expected.
 fn unknown_group(ty: &Type, names: GroupNames) -> Diagnostic {
     let (text, name) = (spell_type(ty), last_name(ty));
-    if let Some(shape) = named_shape(&name) {
+    // the vectors of a space like `Unit<Vector3>`
+    let vectors = last_segment(ty).filter(|_| SPACES_OF_VECTORS.contains(&name.as_str())).and_then(vectors_of);
+    if let Some(shape) = named_shape(vectors.as_ref().unwrap_or(&name)) {
         let (n, error) =
             (shape.rows, error!(ty, "`{text}` is a space, but the first argument of the action is a group element"));
-        return error.help(if shape.is_column() {
-            format!("write `Translation<{n}>` to shift by a vector")
-        } else {
-            format!("write `SO<{n}>` for rotations, `GL<{n}>` for all invertible matrices")
+        return error.help(match vectors {
+            Some(_) if name == "Symmetric" => {
+                format!("write `GL<{n}>` for invertible matrices, which act by `F * P * F.transpose()`")
+            }
+            Some(_) => format!("write `SO<{n}>` for rotations, which move its points"),
+            None if shape.is_column() => format!("write `Translation<{n}>` to shift by a vector"),
+            None => format!("write `SO<{n}>` for rotations, `GL<{n}>` for all invertible matrices"),
         });
     }
+    let name = vectors.unwrap_or(name);
     let error = error!(ty, "unknown group `{text}`");
     let known = format!("the groups that are built in are {}", listed(GROUPS.iter().map(|maker| maker.name)));
     if name.is_empty() {
