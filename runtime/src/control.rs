@@ -185,10 +185,7 @@ impl<S: Controlled<D, U, C, Scalar: Real>, const D: usize, const U: usize, const
         plan: &'p mut [Stage<S, D, U, C>],
     ) -> Result<Optimum<'p, S, D, U, C>, Error> {
         self.check(start, &target, plan)?;
-        let Self { system, step_size: h, constants, time } = self;
-        let (target, lengths) = (&target, Problem::lengths(system, &target));
-        let problem = Problem { system, constants, h: *h, time: *time, start, target, lengths };
-        let solved = Plan::new(problem, plan).attempt()?;
+        let solved = Plan::new(self.problem(start, &target), plan).attempt()?;
         Ok(Optimum { stages: plan, ..solved })
     }
 
@@ -237,9 +234,7 @@ impl<S: Controlled<D, U, C, Scalar: Real>, const D: usize, const U: usize, const
         plan: &'p mut [Stage<S, D, U, C>],
     ) -> Result<Optimum<'p, S, D, U, C>, Error> {
         self.check(start, &target, plan)?;
-        let Self { system, step_size: h, constants, time } = self;
-        let (target, lengths) = (&target, Problem::lengths(system, &target));
-        let problem = Problem { system, constants, h: *h, time: *time, start, target, lengths };
+        let problem = self.problem(start, &target);
         let reached = Plan { most: limits.sweeps, ..Plan::new(problem, plan) }.attempt_once()?;
         Ok(Optimum { stages: plan, ..reached })
     }
@@ -308,6 +303,12 @@ impl<S: Controlled<D, U, C, Scalar: Real>, const D: usize, const U: usize, const
         };
         let (solved, iterations) = bracket.critical(self.step_size, accuracy, true, trial)?;
         Ok(Optimum { stages: plan, iterations, ..solved })
+    }
+
+    fn problem<'a>(&'a self, start: &'a S::Place, target: &'a Target<S::Place>) -> Problem<'a, S, D, U, C> {
+        let Self { system, step_size: h, constants, time } = self;
+        let lengths = Problem::lengths(system, target);
+        Problem { system, constants, h: *h, time: *time, start, target, lengths }
     }
 
     /// Start, target and guess are finite and where places are.

@@ -270,8 +270,14 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: usize
 
     /// The largest a of all bounds, 0 where none is violated by more than round-off.
     pub fn violation(&self) -> T {
-        let worst = if self.is_violated() { self.worst_bound() } else { None };
-        worst.map_or(T::zero(), |(.., violation)| violation)
+        if !self.is_violated() {
+            return T::zero();
+        }
+        self.stages.iter().enumerate().fold(T::zero(), |largest, (index, stage)| {
+            let (Problem { system, constants, .. }, t) = (&self.problem, self.problem.time_after(index));
+            let values = system.bounds(constants, t, &stage.place, &stage.input);
+            values.map_or(largest, |values| values.iter().fold(largest, |largest, value| larger(largest, *value)))
+        })
     }
 
     /// The bound that keeps all from being relaxed less: its stage, its name and by how much it is violated.
