@@ -67,7 +67,7 @@ pub use crate::scheme::{At, JoinedInStorage, Kicks, Scheme, Sizes, Stages, compo
 pub use crate::sphere::{push, tangent, turn_freely, turn_great_circle, turned_in_plane};
 pub use crate::steered::{
     Link, Price, along_end, arrival_of_state, bounds, check_reached, displacement, endpoint, forced_step, no_endpoint,
-    pair, pushed_along_end,
+    pair, parted, pushed_along_end,
 };
 pub use crate::stepper::{check_on_orbit, check_state};
 pub use crate::stumpff::stumpff;

@@ -9,6 +9,7 @@ mod attempt;
 mod barrier;
 mod end;
 mod iterate;
+mod lift;
 mod newton;
 mod optimum;
 mod quadratic;
@@ -163,8 +164,9 @@ impl<S: Controlled<D, U, C, Scalar: Real>, const D: usize, const U: usize, const
     ///
     /// Work: two or three linearisations where the system is linear and its price quadratic, four to eight from a good
     /// guess. With bounds, or from standing still, some tens, and hundreds where several attempts are needed; at most
-    /// 400 in each of up to six attempts. Each is linear in the number of stages. Where the guess does not lead to the
-    /// target, the gap is priced and inputs are varied. The result is then a local minimum, and need not be the best one.
+    /// 400 in each of up to seven attempts. Each is linear in the number of stages. Where the first correction does not come near the
+    /// target, multiple shooting goes on, with places as unknowns. Where that fails, the gap is priced and inputs are varied. The result
+    /// is then a local minimum, and need not be the best one.
     ///
     /// Every bound holds up to round-off of its own terms, whatever the sizes of the others. One with a = −∞, from an infinite parameter, is none.
     ///

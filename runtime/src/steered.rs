@@ -46,6 +46,12 @@ pub fn pair<T: Scalar, const M: usize, const D: usize>(a: &SVector<T, M>, b: &SV
     SVector::from_fn(|i, _| if i < M { a[i] } else { b[i - M] })
 }
 
+/// The parts a and b of (a, b).
+#[inline]
+pub fn parted<T: Scalar, const M: usize, const D: usize>(ab: &SVector<T, D>) -> (SVector<T, M>, SVector<T, M>) {
+    (SVector::from_fn(|i, _| ab[i]), SVector::from_fn(|i, _| ab[M + i]))
+}
+
 /// The difference of one state from another: (Gᵀ(q* − q), N* − N) and (GᵀG, I).
 #[inline]
 pub fn arrival_of_state<T: Scalar, const M: usize, const D: usize>(

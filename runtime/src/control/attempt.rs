@@ -1,7 +1,7 @@
 //! One attempt after another, from the guess to plans that only a search finds.
 //!
-//! Corrections that close all of the gap to the target at once are the fastest. If they drive the slacks of bounds to
-//! zero, they get stuck. The gap g then has the price ν·g + ½ g·Rg, in addition to the barriers of the bounds. ν and R
+//! Corrections that close all of the gap to the target at once are the fastest. If the first of them leads astray, multiple shooting goes
+//! on. If corrections drive the slacks of bounds to zero, they get stuck. The gap g then has the price ν·g + ½ g·Rg, in addition to the barriers of the bounds. ν and R
 //! are raised between critical plans until little of the gap is left. Where that ends at a plan from which no small
 //! change leads nearer, inputs are varied before.
 //!
@@ -9,13 +9,15 @@
 //! programming* (2000). Bertsekas, *Constrained Optimization and Lagrange Multiplier Methods* (1982), chapter 2.
 
 use super::iterate::Iterate;
-use super::sweep::{Plan, PlanSummary};
+use super::sweep::{Plan, PlanSummary, Way};
 use super::{Ended, Optimum, Stage, Target};
 use crate::{Controlled, Error, Real, Space};
 use nalgebra::SVector;
 
 /// Variations of the inputs from which the target is approached.
 const VARIATIONS: u32 = 3;
+/// How many of them, with the guess as it is, are tried by multiple shooting.
+const LIFTS: u32 = 2;
 
 /// The amplitudes of a pattern that are tried: the smallest, in those that close the gap where nothing bends, and how often it is doubled.
 pub struct Amplitudes(f64, usize);
@@ -33,10 +35,22 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: usize
     pub fn attempt<'p>(&mut self) -> Result<Optimum<'p, S, D, U, C>, Error> {
         self.stages.iter_mut().for_each(|stage| stage.guess = stage.input);
         let is_warm = self.stages.iter().any(|stage| stage.next_costate.max_abs() > T::zero());
-        let variations = if matches!(self.problem.target, Target::Free) { 0 } else { 1 + VARIATIONS };
-        let cold = is_warm.then_some((false, 0));
+        let is_aimed = !matches!(self.problem.target, Target::Free);
+        self.way = if is_aimed && !is_warm { Way::Open } else { Way::Kept };
         let mut solved = self.newton(false);
-        for (is_priced, variation) in cold.into_iter().chain((0..variations).map(|variation| (true, variation))) {
+        let gave_way = self.way == Way::Given;
+        self.way = Way::Kept;
+        if gave_way {
+            self.stages.iter_mut().for_each(Stage::forget);
+            if (0..LIFTS).any(|variation| self.lift(variation)) {
+                solved = self.newton(false);
+            }
+        }
+        let again = (is_warm || gave_way).then_some((false, 0));
+        let variations = if is_aimed { 0..1 + VARIATIONS } else { 0..0 };
+        let (before, after) = if is_warm { (again, None) } else { (None, again) };
+        let priced = variations.map(|variation| (true, variation));
+        for (is_priced, variation) in before.into_iter().chain(priced).chain(after) {
             let error = match solved {
                 Err(error) if may_be_found(&error) => error,
                 _ => break,
@@ -75,7 +89,7 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: usize
 
     /// Varies the inputs of the guess so that they end nearer to the target; those of variation 0 stay as they are.
     #[cold]
-    fn vary(&mut self, variation: u32) -> Result<(), Error> {
+    pub fn vary(&mut self, variation: u32) -> Result<(), Error> {
         if variation > 0 {
             self.follow()?;
             let end = self.problem.end(&self.last);

@@ -172,6 +172,18 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: usize
                 _ => moved[i],
             });
         })?;
+        self.size_by(&sizes, &moved);
+        Ok(())
+    }
+
+    /// Relaxes the bounds that are 0 in all stages, and that nothing changes, by the smallest size of the others.
+    #[cold]
+    pub fn size_by_others(&mut self) {
+        self.size_by(&self.sizes(), &SVector::zeros());
+    }
+
+    fn size_by(&mut self, sizes: &SVector<T, C>, moved: &SVector<T, C>) {
+        let zero = T::zero();
         let known = sizes.iter().chain(moved.iter()).copied().filter(|size| *size > zero);
         let least = known.reduce(|least, size| if size < least { size } else { least });
         let part = |size: T, (numerator, denominator)| size * T::from_ratio(numerator, denominator);
@@ -180,7 +192,6 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: usize
             (_, true) => Some(part(moved[i], PART_OF_CHANGE)),
             _ => least.map(|least| part(least, PART)),
         });
-        Ok(())
     }
 
     /// Multipliers μ/s for the slacks.

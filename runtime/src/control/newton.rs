@@ -4,7 +4,7 @@ use super::attempt::Amplitudes;
 use super::end::PlanEnd;
 use super::iterate::{Iterate, Verdict};
 use super::search::Descent;
-use super::sweep::{Plan, PlanSummary, Problem, Settings};
+use super::sweep::{Plan, PlanSummary, Problem, Settings, Way};
 use super::{Ended, Optimum, barrier};
 use crate::newton::{Curvature, Equilibrated};
 use crate::parameters::check_finite;
@@ -106,6 +106,7 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: usize
                 }
                 Verdict::Stir => {
                     stirs += 1;
+                    self.way = Way::Kept;
                     self.stir(&summary, end.lack.max_abs(), stirs, &Amplitudes::NEAR);
                     now = self.start(false)?;
                     continue;
@@ -114,6 +115,10 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: usize
             }
             let is_trusted = now.is_exact() && size * size <= T::EPSILON.sqrt();
             let made = self.descend(&mut now, &descent, magnitude, is_trusted);
+            if self.way == Way::Open && !has_corrected && descent.reaches() && self.is_astray(&end) {
+                self.way = Way::Given;
+                return Err(self.failure(&end, size));
+            }
             has_corrected = true;
             let is_whole = made.is_some_and(|(fraction, _)| fraction >= T::from_ratio(9, 10));
             now.advance(made, size, summary.negative, end.distance);
@@ -178,7 +183,7 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: usize
     }
 
     /// The end of a plan; round-off of its gap is relative to the largest place.
-    fn end(&self) -> PlanEnd<T, D> {
+    pub fn end(&self) -> PlanEnd<T, D> {
         let end = self.problem.end(&self.last);
         PlanEnd { scale: self.stages.iter().fold(end.scale, |max, stage| larger(max, stage.place.max_abs())), ..end }
     }
@@ -238,6 +243,12 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: usize
             end: self.last,
             final_costate: summary.costate,
         }
+    }
+
+    /// Whether the end is still more than half as far from the target as it was.
+    fn is_astray(&self, before: &PlanEnd<T, D>) -> bool {
+        let is_nearer = self.end().distance <= before.distance * T::from_ratio(1, 2);
+        !before.is_reached() && !is_nearer
     }
 
     /// Why nothing was found.

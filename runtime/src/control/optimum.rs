@@ -37,6 +37,8 @@ pub struct Stage<S: Controlled<D, U, C, Scalar: Real>, const D: usize, const U: 
     /// k and G: the change of the input is k + G δν + K δ.
     pub(super) shift: SVector<S::Scalar, U>,
     pub(super) by_multiplier: SMatrix<S::Scalar, U, D>,
+    /// The change δ_k of the place by a correction, where places are unknowns.
+    pub(super) motion: SVector<S::Scalar, D>,
     /// The proposal of a roll-out.
     pub(super) next_place: S::Place,
     pub(super) next_input: SVector<S::Scalar, U>,
@@ -59,6 +61,7 @@ impl<S: Controlled<D, U, C, Scalar: Real>, const D: usize, const U: usize, const
             excess: Space::origin(),
             shift: Space::origin(),
             by_multiplier: Space::origin(),
+            motion: Space::origin(),
             next_place: *x,
             next_input: Space::origin(),
             next_slack: Space::origin(),

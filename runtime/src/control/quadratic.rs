@@ -2,6 +2,7 @@
 
 use super::Stage;
 use super::end::PlanEnd;
+use super::lift::Gap;
 use super::sweep::Settings;
 use crate::linear::rows;
 use crate::newton::{Curvature, Equilibrated, Ldl, UNITS};
@@ -73,6 +74,16 @@ impl<T: Real, const D: usize> Value<T, D> {
 }
 
 impl<T: Real, const D: usize> Value<T, D> {
+    /// The value at c + M δ becomes that at δ. Returns Ψᵀc, the part of c in V_ν.
+    pub fn cross(&mut self, Gap { change, transport }: &Gap<T, D>) -> SVector<T, D> {
+        let lack = self.by_multiplier.tr_mul(change);
+        self.costate = transport.tr_mul(&(self.costate + self.hessian * change));
+        self.hessian = transport.tr_mul(&(self.hessian * transport));
+        self.by_multiplier = transport.tr_mul(&self.by_multiplier);
+        self.violation = transport.tr_mul(&self.violation);
+        lack
+    }
+
     /// Whether P is positive semidefinite, but for parts √ε of its diagonal.
     pub fn is_convex(&self) -> bool {
         let largest = self.hessian.diagonal().max_abs();

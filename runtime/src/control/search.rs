@@ -16,11 +16,13 @@ use super::iterate::Iterate;
 use super::sweep::{Plan, PlanSummary, Problem, Settings};
 use crate::parameters::check_finite;
 use crate::space::larger;
-use crate::{Controlled, Error, Real};
+use crate::{Controlled, Error, Real, Space};
 use nalgebra::{SMatrix, SVector};
 
 /// Roll-outs of one correction.
 const TRIALS: usize = 12;
+/// A correction that gains this part of the gain by its model is not made shorter.
+const GOOD: (i64, i64) = (4, 5);
 /// Halvings of the first change away from a saddle, which would take a hundredth of the price: the minimum next to the saddle is wanted.
 const HALVINGS: usize = 30;
 
@@ -58,6 +60,13 @@ impl<T: Real, const D: usize, const U: usize> Descent<'_, T, D, U> {
         (change, *descent + gain)
     }
 
+    /// Whether the model of inputs reaches the target. Where it does not, no first derivative leads there.
+    pub fn reaches(&self) -> bool {
+        let lack = &self.summary.lack;
+        let left: SVector<T, D> = self.summary.gramian * (self.inverse * lack) - lack;
+        left.max_abs() <= T::from_ratio(1, 100) * lack.max_abs()
+    }
+
     /// ν⁺·g + ½ g·Rg, or ½ w d²
     fn penalty(&self, change: &SVector<T, D>, end: &PlanEnd<T, D>) -> T {
         let half = T::from_ratio(1, 2);
@@ -74,7 +83,8 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: usize
     /// Makes a part of the correction. Returns its fraction and how many roll-outs were refused, other than by slacks;
     /// `None` where no part that is large enough helps. Prices have the size `magnitude`, and a part ε of it is
     /// round-off. A full step that is trusted needs no proof. Where slacks allow only a part, as much of the gap is
-    /// left to later corrections, before the correction is made shorter.
+    /// left to later corrections, before the correction is made shorter. If the model is poor, shorter corrections are tried as long as
+    /// they gain more.
     pub fn descend(
         &mut self,
         now: &mut Iterate<T, D>,
@@ -85,9 +95,10 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: usize
         let one = T::one();
         let half = T::from_ratio(1, 2);
         let (mut fraction, mut part, mut refused) = (one, one, 0);
-        let Settings { barrier, gap_price, .. } = descent.settings;
-        let is_closed = gap_price.is_none();
+        let is_closed = descent.settings.gap_price.is_none();
         let is_relaxed = self.is_relaxed();
+        // the best fraction so far, with its part of the gap and its gain
+        let mut best: Option<(T, T, T)> = None;
         for _ in 0..TRIALS {
             let (change, decrement) = descent.correction(part);
             if let Ok(rolled) = self.roll_out(descent, fraction, &change) {
@@ -109,15 +120,37 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: usize
                 let is_feasible = is_relaxed && fraction >= T::from_ratio(1, 10);
                 let is_enough = is_lower || is_nearer || is_feasible || is_trusted && fraction >= one;
                 if rolled.difference.is_finite() && is_enough {
-                    self.accept(fraction, barrier, rolled.last);
-                    now.settings.multipliers += change * fraction;
-                    return Some((fraction, refused));
+                    if best.is_some_and(|(_, _, difference)| difference <= rolled.difference) {
+                        break;
+                    }
+                    let by_model = decrement * fraction * (one - fraction * half);
+                    let is_good = rolled.difference <= -by_model * T::from_ratio(GOOD.0, GOOD.1);
+                    if is_good || !is_lower || is_relaxed || is_trusted || is_closed {
+                        return Some((self.take(now, descent, (fraction, &change), rolled.last), refused));
+                    }
+                    best = Some((fraction, part, rolled.difference));
                 }
             }
-            refused += 1;
+            refused += usize::from(best.is_none());
             fraction *= half;
         }
-        None
+        let (fraction, part, _) = best?;
+        let (change, _) = descent.correction(part);
+        let rolled = self.roll_out(descent, fraction, &change).ok()?;
+        Some((self.take(now, descent, (fraction, &change), rolled.last), refused))
+    }
+
+    /// Takes the plan of a roll-out, and gives its fraction.
+    fn take(
+        &mut self,
+        now: &mut Iterate<T, D>,
+        descent: &Descent<'_, T, D, U>,
+        (fraction, change): (T, &SVector<T, D>),
+        last: S::Place,
+    ) -> T {
+        self.accept(fraction, descent.settings.barrier, last);
+        now.settings.multipliers += change * fraction;
+        fraction
     }
 
     /// Goes down from where a sweep with all curvature as it is found a direction to do so. `false` where nothing gets smaller.

@@ -13,6 +13,7 @@
 //! * for the bounds Rao, Wright and Rawlings, *Application of interior-point methods to model predictive control* (1998).
 
 use super::end::PlanEnd;
+use super::lift::Gap;
 use super::quadratic::{Bounded, Fall, Policy, Value};
 use super::{Stage, Target};
 use crate::newton::{Curvature, Equilibrated};
@@ -33,6 +34,17 @@ pub(super) struct Problem<'a, S: Controlled<D, U, C, Scalar: Real>, const D: usi
     pub lengths: SVector<S::Scalar, D>,
 }
 
+/// Whether a search ends where its first correction does not come near the target.
+#[derive(Clone, Copy, PartialEq)]
+pub(super) enum Way {
+    /// It goes on.
+    Kept,
+    /// It will end there.
+    Open,
+    /// It has ended there, for multiple shooting to go on.
+    Given,
+}
+
 /// A plan, on the way from a guess to one of least price.
 pub(super) struct Plan<'a, S: Controlled<D, U, C, Scalar: Real>, const D: usize, const U: usize, const C: usize> {
     pub problem: Problem<'a, S, D, U, C>,
@@ -44,6 +56,9 @@ pub(super) struct Plan<'a, S: Controlled<D, U, C, Scalar: Real>, const D: usize,
     /// The backward sweeps that were made, and the most that may be.
     pub sweeps: u32,
     pub most: u32,
+    pub way: Way,
+    /// Whether places are unknowns too, with gaps between steps.
+    pub is_lifted: bool,
 }
 
 /// The settings of a backward sweep.
@@ -147,7 +162,7 @@ impl<'a, T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: u
     /// The guess that the stages hold.
     pub fn new(problem: Problem<'a, S, D, U, C>, stages: &'a mut [Stage<S, D, U, C>]) -> Self {
         let last = *problem.start;
-        Self { problem, stages, last, bounds: T::zero(), sweeps: 0, most: u32::MAX }
+        Self { problem, stages, last, bounds: T::zero(), sweeps: 0, most: u32::MAX, way: Way::Kept, is_lifted: false }
     }
 
     /// Linearises and eliminates: fills costates, gains and shifts of the stages.
@@ -175,15 +190,16 @@ impl<'a, T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: u
             violation: zero,
             yielding: zero,
         };
+        let mut following = self.last;
         for (index, stage) in self.stages.iter_mut().enumerate().rev() {
             let t = self.problem.time_after(index);
             // the step, with its curvature or without
-            let expand = |is_straight: bool| {
+            let expand = |value: &Value<T, D>, is_straight: bool| {
                 let costate = if is_straight { SVector::zeros() } else { value.costate };
                 system.expand(constants, t, &stage.place, &stage.input, &costate)
             };
             // its model, with the curvature of its bounds or without
-            let model = |step: &Expansion<S::Place, T, D, U>, is_straight: bool| {
+            let model = |value: &Value<T, D>, step: &Expansion<S::Place, T, D, U>, is_straight: bool| {
                 let mut step = *step;
                 let mut bounded = None;
                 if self.bounds > zero {
@@ -194,17 +210,21 @@ impl<'a, T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: u
                     bounded = Some(Bounded { natural, slopes, violated });
                 }
                 let violated = bounded.as_ref().map_or(zero, |bounded| bounded.violated);
-                let (policy, before) = Policy::of(&step, bounded, &value, settings.curvature);
+                let (policy, before) = Policy::of(&step, bounded, value, settings.curvature);
                 Ok::<_, Error>((policy, before, violated))
             };
-            let mut step = expand(settings.is_straight)?;
+            let mut step = expand(&value, settings.is_straight)?;
+            if self.is_lifted {
+                summary.lack += value.cross(&Gap::of(system, &following, &step.next));
+                following = stage.place;
+            }
             if settings.is_last {
                 let bounds = self.bounds > zero;
                 let expanded = || system.bounds_expanded(constants, t, &stage.place, &stage.input, &stage.multipliers);
                 let pushes = bounds.then(expanded).transpose()?.map(|bounds| stage.pushes(&bounds.by_input));
                 summary.terms = larger(summary.terms, stage.terms(&step, &value.costate, pushes).max_abs());
             }
-            let (mut policy, mut before, violated) = model(&step, false)?;
+            let (mut policy, mut before, violated) = model(&value, &step, false)?;
             summary.violation += violated;
             if settings.is_guarded() {
                 // where the price of later steps has no minimum, this step is not the cause
@@ -212,12 +232,12 @@ impl<'a, T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: u
                     policy.negative > 0 || is_convex && !before.is_convex()
                 };
                 if !settings.is_straight && is_wrong(&policy, &before) {
-                    step = expand(true)?;
-                    (policy, before, _) = model(&step, false)?;
+                    step = expand(&value, true)?;
+                    (policy, before, _) = model(&value, &step, false)?;
                     summary.straightened += 1;
                 }
                 if self.bounds > zero && is_wrong(&policy, &before) {
-                    (policy, before, _) = model(&step, true)?;
+                    (policy, before, _) = model(&value, &step, true)?;
                 }
                 is_convex = is_convex && before.is_convex();
             }

@@ -209,4 +209,12 @@ impl<const U: usize> Controlled<3, U, 0> for Group<U> {
         let Arrival { residual, slope } = self.arrival(x, y);
         slope.lu().solve(&residual).unwrap_or_default()
     }
+
+    fn moved(&self, x: &Matrix3<f64>, eta: &Vector3<f64>) -> Matrix3<f64> {
+        x * self.exp(eta.as_slice())
+    }
+
+    fn infinitesimal_motion(&self, x: &Matrix3<f64>, eta: &Vector3<f64>) -> Matrix3<f64> {
+        x * self.algebra(eta.as_slice())
+    }
 }

@@ -126,4 +126,12 @@ impl<const D: usize, const U: usize, const C: usize, const M: usize> Controlled<
     fn displacement(&self, x: &SVector<f64, D>, y: &SVector<f64, D>) -> SVector<f64, D> {
         y - x
     }
+
+    fn moved(&self, x: &SVector<f64, D>, delta: &SVector<f64, D>) -> SVector<f64, D> {
+        x + delta
+    }
+
+    fn infinitesimal_motion(&self, _: &SVector<f64, D>, delta: &SVector<f64, D>) -> SVector<f64, D> {
+        *delta
+    }
 }

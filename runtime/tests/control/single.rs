@@ -76,6 +76,12 @@ impl Controlled<1, 1, 2> for Tank {
     fn displacement(&self, x: &Level, y: &Level) -> Level {
         y - x
     }
+    fn moved(&self, x: &Level, delta: &Level) -> Level {
+        x + delta
+    }
+    fn infinitesimal_motion(&self, _: &Level, delta: &Level) -> Level {
+        *delta
+    }
 }
 
 /// From 2 to 0: as fast as allowed until the exponential decay needs less. The condition of first order is computed in

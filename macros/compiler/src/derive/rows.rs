@@ -129,6 +129,7 @@ impl<'g> SteeredFormulas<'g> {
         let mut rows = Vec::from(self.rows_of_action(&names));
         rows.push(self.row_of_membership());
         rows.push(self.row_of_orbit_metric(&names));
+        rows.push(self.row_of_retraction(&names));
         rows.push(Formula::new(Id::Increment, d, self.step.increment.clone()));
         rows.push(Formula::new(Id::Advance, format!("{q}⁺"), self.at_increments(&self.model.action)));
         rows.push(match &self.model.motion {

@@ -156,6 +156,17 @@ impl SystemEmitter<'_, '_> {
                     let next = { #within #advance };
                 }
             }
+            "Retracted" => {
+                let scope = self.scope_of_system();
+                let [retraction, advance] = both([Id::Retraction, Id::Advance], |id| self.kernels.kernel(id));
+                let coordinates = self.chart_coordinates();
+                let [before, within] = both([retraction, advance], |kernel| scope.locals(kernel));
+                let (element, advance) = (scope.element(retraction, 0), scope.configuration(advance));
+                quote! {
+                    let d = { #coordinates #before #element };
+                    #within #advance
+                }
+            }
             "Crossed" => {
                 let drifted = self.word_of_control("Drifted", types);
                 let (scope, kernel) = (self.scope_of_system(), self.kernels.kernel(Id::ByInput));

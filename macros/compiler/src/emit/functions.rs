@@ -482,6 +482,10 @@ functions! {
             let (q, next) = (x, y);
             runtime::displacement(&OrbitMetric, &Approach)
         }
+        /// The configuration that a small motion moves q to: Φ_{τ(η)}(q).
+        fn moved(&self, q: &Q, eta: &Costates) -> Q { Id::Retraction } = { Retracted }
+        /// The infinitesimal motion ξ_Q(q).
+        fn infinitesimal_motion(&self, q: &Q, x: &Costates) -> Q { Id::Generator }
     }
 
     /// `Controlled`: the effect of inputs of forces on states, by the constants of steps and their size.
@@ -505,6 +509,17 @@ functions! {
             let approach = runtime::Variational::approach(self, &x.0, &y.0);
             let motion = runtime::displacement(&runtime::Variational::orbit_metric(self, &x.0), &approach);
             runtime::pair(&motion, &(y.1 - x.1))
+        }
+        /// The state (Φ_{τ(η)}(q), N + ν).
+        fn moved(&self, x: &(Q, Mu), delta: &Costates) -> (Q, Mu) { Id::Retraction => } = {
+            let (eta, nu): (Mu, Mu) = runtime::parted(delta);
+            let d = runtime::Variational::retraction(self, &eta);
+            (runtime::Variational::advance(self, &x.0, &d), x.1 + nu)
+        }
+        /// The infinitesimal motion (η_Q(q), ν).
+        fn infinitesimal_motion(&self, x: &(Q, Mu), delta: &Costates) -> (Q, Mu) { Id::Generator => } = {
+            let (eta, nu): (Mu, Mu) = runtime::parted(delta);
+            (runtime::Variational::infinitesimal_motion(self, &x.0, &eta), nu)
         }
     }
 

@@ -133,6 +133,8 @@ struct SystemEmitter<'a, 'g> {
     kernels: &'a KernelTable,
     /// The functions of inputs that take the velocity of a step.
     on_edge: OnEdge,
+    /// For each component of η, the chart coordinate of exp η to first order, as numerator and denominator.
+    slopes_of_retraction: Vec<(i64, i64)>,
     keeps_matrices: bool,
     /// Whether it is the site of a field. Sites do not wait for each other: the number of operations counts, not their chain.
     is_of_field: bool,
@@ -264,6 +266,7 @@ impl<'a, 'g> SystemEmitter<'a, 'g> {
             rows,
             kernels,
             on_edge: formulas.steering.as_ref().map(|steering| steering.on_edge).unwrap_or_default(),
+            slopes_of_retraction: formulas.slopes_of_retraction(),
             keeps_matrices: false,
             is_of_field: false,
             power,

@@ -9,7 +9,7 @@ use super::function::{Body, Function, no_words, number};
 use super::functions::{CONSTRAINED_EDGE, EDGE, VARIATIONAL};
 use super::scope::{nested, size};
 use super::system::matrix_of_kernel;
-use super::{Emitter, flag};
+use super::{Emitter, SystemEmitter, flag};
 use crate::derive::Id;
 use crate::lower::Kernel;
 
@@ -142,23 +142,6 @@ impl Emitter<'_, '_> {
         })
     }
 
-    /// The coordinates of exp η in the chart of small motions, to first order.
-    fn chart_coordinates(&self) -> TokenStream {
-        let slopes = self.formulas.slopes_of_retraction();
-        if slopes.iter().all(|slope| *slope == (1, 1)) {
-            return quote!(let x = eta;);
-        }
-        let scope = self.scope_of_system();
-        let entries = slopes.iter().enumerate().map(|(i, &(numerator, denominator))| {
-            let i = size(i);
-            let slope = scope.number(&clebsch_symbolic::rational(numerator, denominator));
-            if (numerator, denominator) == (1, 1) { quote!(eta[#i]) } else { quote!(#slope * eta[#i]) }
-        });
-        // operations on matrices take references
-        let reference = self.keeps_matrices.then(|| quote!(&));
-        quote!(let x = #reference runtime::vector([#(#entries),*]);)
-    }
-
     /// The implementation of `Sensitive`, where it is asked for.
     pub(super) fn sensitive(&self) -> TokenStream {
         if !self.is_sensitive() {
@@ -228,4 +211,23 @@ impl Emitter<'_, '_> {
 /// Whether something is the direction of a motion.
 fn along_motion(role: Role) -> bool {
     matches!(role, Role::Algebra(_))
+}
+
+impl SystemEmitter<'_, '_> {
+    /// The coordinates of exp η in the chart of small motions, to first order.
+    pub(super) fn chart_coordinates(&self) -> TokenStream {
+        let slopes = &self.slopes_of_retraction;
+        if slopes.iter().all(|slope| *slope == (1, 1)) {
+            return quote!(let x = eta;);
+        }
+        let scope = self.scope_of_system();
+        let entries = slopes.iter().enumerate().map(|(i, &(numerator, denominator))| {
+            let i = size(i);
+            let slope = scope.number(&clebsch_symbolic::rational(numerator, denominator));
+            if (numerator, denominator) == (1, 1) { quote!(eta[#i]) } else { quote!(#slope * eta[#i]) }
+        });
+        // operations on matrices take references
+        let reference = self.keeps_matrices.then(|| quote!(&));
+        quote!(let x = #reference runtime::vector([#(#entries),*]);)
+    }
 }

@@ -111,6 +111,8 @@ const OF_STEERING: Names<Id> = &[
     ("approach", Id::Approach),
     ("increment", Id::Increment),
     ("advance", Id::Advance),
+    ("retraction", Id::Retraction),
+    ("infinitesimal_motion", Id::Generator),
     ("expand", Id::StepExpanded),
 ];
 

@@ -41,7 +41,7 @@ impl<'g> Maker<'_, 'g> {
         let made = |maker: &mut Self, id: Id| maker.matrices(id, &choice.matrices(id));
         if is_steered {
             made(self, Id::StepExpanded);
-            self.rows([Id::Increment, Id::Advance]);
+            self.rows([Id::Increment, Id::Advance, Id::Retraction, Id::Generator]);
             self.orbit_metric();
         } else {
             [Id::ByInput, Id::Bend, Id::Bracket].into_iter().for_each(|id| made(self, id));

@@ -211,6 +211,7 @@ proptest! {
     fn places_are_pairs(a in vector::<3>(1.0), b in vector::<3>(1.0), metric in matrix::<3, 3>(1.0), price in -1.0_f64..1.0) {
         let both: SVector<f64, 6> = private::pair(&a, &b);
         prop_assert_eq!((both.fixed_rows::<3>(0).into_owned(), both.fixed_rows::<3>(3).into_owned()), (a, b));
+        prop_assert_eq!(private::parted(&both), (a, b));
         let arrival = private::arrival_of_state::<f64, 3, 6>(&metric, &a, &b);
         prop_assert_eq!(arrival.residual, both);
         let expected = private::pair::<f64, 3, 6>(&(metric * a), &b);

@@ -1,11 +1,12 @@
 //! Plans of inputs: the derivatives of steps, prices and bounds, and the conditions of an optimum, each evaluated anew.
 
-use crate::arbitrary::{cases, matrix, vector};
+use crate::arbitrary::{attitude, cases, matrix, vector};
 use clebsch::{__private as private, Control, Controlled, Ended, Error, Limits, Optimum, Space, Target};
 use clebsch_tests::fixtures::regulator::Regulator;
+use clebsch_tests::fixtures::steered_body::SteeredBody;
 use clebsch_tests::fixtures::unicycle::Unicycle;
 use clebsch_tests::oracle::near::assert_near;
-use nalgebra::{Matrix2, Matrix3, SMatrix, Vector1, Vector2, Vector3};
+use nalgebra::{Matrix2, Matrix3, Rotation3, SMatrix, Vector1, Vector2, Vector3};
 use proptest::prelude::*;
 
 const H: f64 = 0.1;
@@ -37,6 +38,15 @@ fn regulators() -> BoxedStrategy<Regulator> {
     (0.5_f64..2.0, 0.0_f64..2.0, 0.1_f64..2.0)
         .prop_map(|(mass, stiffness, price)| Regulator { mass, stiffness, price })
         .boxed()
+}
+
+fn bodies() -> BoxedStrategy<SteeredBody> {
+    let made = |(moments, damping, top): ([f64; 3], f64, f64)| SteeredBody {
+        inertia: Matrix3::from_diagonal(&moments.into()),
+        damping,
+        top,
+    };
+    (prop::array::uniform3(1.0_f64..1.5), 0.0_f64..0.5, 0.5_f64..1.0).prop_map(made).boxed()
 }
 
 /// The claims of a plan and its answer about themselves. Places follow from inputs, and the price is that of the steps.
@@ -291,5 +301,35 @@ proptest! {
         assert_near(&step.place_curvature, &(Matrix2::identity() * H), 1e-15, "∂²ℓ/∂x²");
         assert_near(&step.input_curvature, &SMatrix::<f64, 1, 1>::new(H * system.price), 1e-15, "∂²ℓ/∂u²");
         assert_near(&step.mixed_curvature, &SMatrix::<f64, 1, 2>::zeros(), 1e-15, "∂²ℓ/∂u∂x");
+    }
+
+    /// A small change εδ moves a place as the exponential does, but for ε³, and its displacement is εδ again, but for ε².
+    /// Large changes lead to places too.
+    #[test]
+    fn small_changes_move_places(
+        (car, q) in (unicycles(), vector::<3>(1.5)), (regulator, x) in (regulators(), vector::<2>(1.0)),
+        (body, r, n) in (bodies(), attitude(), vector::<3>(1.0)), (delta, eta, nu) in (vector::<3>(2.0), vector::<3>(2.0), vector::<3>(1.0)),
+    ) {
+        let q = moved(&Matrix3::identity(), &q);
+        for epsilon in [1e-2, 1e-3] {
+            let small = delta * epsilon;
+            let near = car.moved(&q, &small);
+            assert_near(&near, &moved(&q, &small), 20.0 * epsilon.powi(3), "the exponential");
+            assert_near(&car.displacement(&q, &near), &small, 20.0 * epsilon.powi(2), "the displacement");
+            let step = private::pair::<f64, 3, 6>(&(eta * epsilon), &(nu * epsilon));
+            let (turned, momentum) = body.moved(&(r, n), &step);
+            let exact = r * Rotation3::new(eta * epsilon).matrix();
+            assert_near(&turned, &exact, 20.0 * epsilon.powi(3), "the rotation");
+            assert_near(&momentum, &(n + nu * epsilon), 1e-15, "N + ν");
+        }
+        assert_near(&car.infinitesimal_motion(&q, &delta), &(q * twist(&delta)), NEAR, "q ξ");
+        let (turning, pushed) = body.infinitesimal_motion(&(r, n), &private::pair(&eta, &nu));
+        assert_near(&turning, &(r * eta.cross_matrix()), NEAR, "R η^");
+        assert_near(&pushed, &nu, 0.0, "ν");
+        car.check_place(&car.moved(&q, &delta))?;
+        body.check_place(&body.moved(&(r, n), &private::pair(&eta, &nu)))?;
+        let shift = delta.fixed_rows::<2>(0).into_owned();
+        assert_near(&regulator.moved(&x, &shift), &(x + shift), 0.0, "x + δ");
+        assert_near(&regulator.infinitesimal_motion(&x, &shift), &shift, 0.0, "δ");
     }
 }

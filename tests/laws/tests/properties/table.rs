@@ -187,7 +187,7 @@ pub const PROPERTIES: &[(&str, &[Property])] = &[
         ("slopes_are_those_of_values",                   &["check_slope"]),
         ("gibbs_vectors_are_tangents_of_half_angles",    &["gibbs_vector_of_matrix", "gibbs_vector_of_quaternion"]),
         ("displacements_are_shortest",                   &["displacement"]),
-        ("places_are_pairs",                             &["pair", "arrival_of_state", "endpoint", "no_endpoint"]),
+        ("places_are_pairs",                             &["pair", "parted", "arrival_of_state", "endpoint", "no_endpoint"]),
         ("bounds_do_not_depend_on_momenta",              &["bounds"]),
         ("places_are_checked",                           &["check_on_orbit", "check_reached"]),
     ]),
@@ -205,6 +205,7 @@ pub const PROPERTIES: &[(&str, &[Property])] = &[
         ("plans_start_at_their_time", &["Control::starting_at"]),
         ("free_times_are_critical",   &["Control::solve_free_time"]),
         ("maps_are_followed",         &["Controlled::follow", "Controlled::expand"]),
+        ("small_changes_move_places", &["Controlled::moved", "Controlled::infinitesimal_motion"]),
     ]),
     ("tests/laws/tests/properties/powers.rs", &[
         ("sites_are_systems_alone",    &["Power::site", "Power::each", "Power::matrices_of", "Power::components_of", "Power::moved", "Power::kicked_and_moved", "Power::at_site", "Power::power_kinetic_energy", "Power::power_isotropy_defect", "Power::power_orbit_defect"]),

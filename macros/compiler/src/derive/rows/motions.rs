@@ -1,12 +1,12 @@
 //! The rows of small motions: how they retract, follow each other, and move a configuration.
 
-use clebsch_symbolic::{Chart, Expr, IntoElements, indexed};
+use clebsch_symbolic::{Chart, Expr, IntoElements, IntoList, indexed};
 
 use super::Names;
 use crate::derive::moves::from_increment;
 use crate::derive::symbols::of_columns;
 use crate::derive::{Formula, Id, MatrixForm, MechanicsFormulas, SystemFormulas};
-use crate::model::Side;
+use crate::model::{Factor, Side};
 
 impl<'g> SystemFormulas<'g> {
     /// J(q, ξ_Q(q)).
@@ -24,20 +24,6 @@ impl<'g> SystemFormulas<'g> {
         let motions = self.symbols.along_basis(&self.leaves_by_generator());
         MatrixForm::Columns(motions.into_each(column))
     }
-}
-
-impl<'g> MechanicsFormulas<'g> {
-    /// The formulas of motions for variations and for the choice of inputs.
-    pub(super) fn rows_of_motions(&self, names: &Names) -> Vec<Formula<'g>> {
-        if !self.model.has_variations() {
-            return Vec::new();
-        }
-        vec![
-            self.row_of_orbit_metric(names),
-            Formula::new(Id::Retraction, "(τ(x) − I, τ(−x) − I)", self.retractions()),
-            Formula::new(Id::Composition, format!("{d}, then {d}⁺", d = names.d), self.compositions()),
-        ]
-    }
 
     /// The chart of small motions of a factor. It is Cayley's if that stays in the group, for it has no end, else that
     /// of the solve.
@@ -46,16 +32,18 @@ impl<'g> MechanicsFormulas<'g> {
         if has_cayley_chart { Chart::Cayley } else { self.symbols.charts[k] }
     }
 
-    /// τ(x) − I of each factor, then τ(−x) − I of each.
-    fn retractions(&self) -> Vec<Expr<'g>> {
-        let mut increments = Vec::new();
-        for sign in [1, -1] {
-            for (k, factor) in self.model.factors.iter().enumerate() {
-                let coordinates: Vec<_> = self.symbols.coordinates(k).into_each(|x| sign * x);
-                increments.push(self.retraction(k).increment(factor.group, &coordinates));
-            }
-        }
-        increments
+    /// τ(±x) − I of each factor.
+    fn retractions(&self, sign: i64) -> Vec<Expr<'g>> {
+        let increment = |(k, factor): (usize, &Factor<'g>)| {
+            let coordinates: Vec<_> = self.symbols.coordinates(k).into_each(|x| sign * x);
+            self.retraction(k).increment(factor.group, &coordinates)
+        };
+        self.model.factors.iter().enumerate().map(increment).into_list()
+    }
+
+    /// τ(x) − I, for the choice of inputs that move the configuration by themselves.
+    pub(super) fn row_of_retraction(&self, Names { x, .. }: &Names) -> Formula<'g> {
+        Formula::new(Id::Retraction, format!("τ({x}) − I"), self.retractions(1))
     }
 
     /// For each component of ξ, the chart coordinate of exp ξ to first order, as numerator and denominator.
@@ -68,6 +56,20 @@ impl<'g> MechanicsFormulas<'g> {
             }
         }
         slopes
+    }
+}
+
+impl<'g> MechanicsFormulas<'g> {
+    /// The formulas of motions for variations and for the choice of inputs.
+    pub(super) fn rows_of_motions(&self, names: &Names) -> Vec<Formula<'g>> {
+        if !self.model.has_variations() {
+            return Vec::new();
+        }
+        vec![
+            self.row_of_orbit_metric(names),
+            Formula::new(Id::Retraction, "(τ(x) − I, τ(−x) − I)", [self.retractions(1), self.retractions(-1)].concat()),
+            Formula::new(Id::Composition, format!("{d}, then {d}⁺", d = names.d), self.compositions()),
+        ]
     }
 
     /// F₂ F₁ − I for a left action, F₁ F₂ − I for a right one, with F = I + D.

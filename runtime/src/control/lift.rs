@@ -1,0 +1,369 @@
+//! Multiple shooting: places are unknowns as inputs are, and steps leave gaps between them.
+//!
+//! The gap c_k is the small change that moves x_{k+1} to f(x_k, u_k). M_k is the derivative of this change where its end moves. A correction
+//! closes all gaps to first order:
+//! ```text
+//! δ_{k+1} = c_k + M_k (A_k δ_k + B_k δu_k)
+//! ```
+//! The sweep has the value V(c + M(Aδ + Bδu)) of later steps. A plan that is far from its target bends over
+//! all of its length, and a step only over its own. So these corrections lead on where a roll-out goes astray.
+//!
+//! A correction is made as far as a filter accepts it. The filter compares the sum of all gaps, and price with barriers. Neither needs a
+//! weight against the other.
+//!
+//! Sources: Bock and Plitt, *A multiple shooting algorithm for direct solution of optimal control problems* (1984). Wächter and Biegler, *On
+//! the implementation of an interior-point filter line-search algorithm* (2006), for the filter.
+
+use super::Stage;
+use super::barrier::{FIRST, TO_BOUNDARY, is_none};
+use super::iterate::Iterate;
+use super::search::Descent;
+use super::sweep::{Plan, Problem};
+use crate::newton::{Curvature, Equilibrated};
+use crate::space::{larger, plus};
+use crate::{Controlled, Error, Real};
+use nalgebra::{SMatrix, SVector};
+
+/// The most sweeps from one guess.
+const SWEEPS: u32 = 60;
+/// The first barrier, in units of that of roll-outs: a plan with gaps is further away.
+const WIDER: f64 = 10.0;
+/// The motions that bend a place to the target, one after the other.
+const PARTS: usize = 8;
+/// Fractions of corrections that are tried.
+const TRIALS: usize = 10;
+/// Corrections that are shorter than this part lead nowhere, after so many in a row.
+const SHORT: (i64, i64) = (1, 20);
+const PATIENCE: u32 = 2;
+/// The part of gaps, or of price with barriers, that a correction has to gain.
+const GAIN: f64 = 1e-5;
+/// Gaps that are none, relative to the first correction.
+const CLOSED: f64 = 1e-6;
+/// The corrections and gaps from which a roll-out goes on.
+const NEAR: (f64, f64) = (0.03, 1e-2);
+/// Corrections and gaps for which the barrier is lowered.
+const CENTRAL: (f64, f64) = (0.5, 1.0);
+
+/// The gap between two steps.
+pub(super) struct Gap<T, const D: usize> {
+    /// c
+    pub change: SVector<T, D>,
+    /// M
+    pub transport: SMatrix<T, D, D>,
+}
+
+impl<T: Real, const D: usize> Gap<T, D> {
+    /// From a place to the one that the step before has `reached`.
+    pub fn of<S, const U: usize, const C: usize>(system: &S, place: &S::Place, reached: &S::Place) -> Self
+    where
+        S: Controlled<D, U, C, Scalar = T>,
+    {
+        let mut transport = SMatrix::<T, D, D>::zeros();
+        for (i, mut column) in transport.column_iter_mut().enumerate() {
+            let unit = SVector::from_fn(|j, _| if i == j { T::one() } else { T::zero() });
+            let velocity = system.infinitesimal_motion(reached, &unit);
+            column.copy_from(&system.displacement(place, &plus(place, &velocity)));
+        }
+        Self { change: system.displacement(place, reached), transport }
+    }
+}
+
+/// A plan that a correction proposes.
+#[derive(Clone, Copy)]
+struct Proposal<X, T> {
+    last: X,
+    /// The sum of all gaps, that to the target with them, and the part to which bounds are relaxed.
+    gaps: T,
+    /// Σℓ + φ
+    price: T,
+    /// Σ ln s
+    logarithms: T,
+    /// The fraction of the correction that slacks allow, where it is smaller than the one that was made.
+    allowed: Option<T>,
+}
+
+/// The units of gaps, and the plan after the first correction.
+type Begun<X, T, const D: usize> = (SVector<T, D>, Proposal<X, T>);
+
+impl<X, T: Real> Proposal<X, T> {
+    /// The gaps, and the price with barriers.
+    fn measures(&self, barrier: T) -> (T, T) {
+        (self.gaps, self.price - barrier * self.logarithms)
+    }
+}
+
+/// The plans that later ones have to improve on, in gaps or in price.
+struct Filter<T> {
+    entries: [(T, T); 16],
+    count: usize,
+}
+
+impl<T: Real> Filter<T> {
+    const fn new(zero: T) -> Self {
+        Self { entries: [(zero, zero); 16], count: 0 }
+    }
+
+    fn accepts(&self, gaps: T, price: T, now: (T, T)) -> bool {
+        let gain = T::from_f64(GAIN);
+        let improves =
+            |&(before, dearer): &(T, T)| gaps <= before * (T::one() - gain) || price <= dearer - gain * before;
+        improves(&now) && self.entries.iter().take(self.count).all(improves)
+    }
+
+    /// The oldest one is forgotten where there are too many.
+    fn add(&mut self, plan: (T, T)) {
+        self.entries.rotate_right(1);
+        if let Some(first) = self.entries.first_mut() {
+            *first = plan;
+        }
+        self.count = (self.count + 1).min(self.entries.len());
+    }
+}
+
+impl<T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: usize, const C: usize> Plan<'_, S, D, U, C> {
+    /// Goes from the inputs that the stages hold, or a variation of them, to near a critical plan, with its multipliers. `false` where that
+    /// fails. The stages then hold the inputs of the guess.
+    pub fn lift(&mut self, variation: u32) -> bool {
+        let lifted = self.vary(variation).and_then(|()| {
+            self.follow()?;
+            self.reach();
+            self.is_lifted = true;
+            let is_near = self.close()?;
+            self.land().map(|()| is_near)
+        });
+        self.is_lifted = false;
+        let is_near = matches!(lifted, Ok(true));
+        if !is_near {
+            self.stages.iter_mut().for_each(Stage::forget);
+        }
+        is_near
+    }
+
+    /// Bends the places of a plan so that its end reaches the target, by and by.
+    fn reach(&mut self) {
+        let Problem { system, lengths, .. } = &self.problem;
+        let lack = self.problem.end(&self.last).lack.component_div(lengths);
+        let steps = T::from_f64((PARTS * self.stages.len()) as f64);
+        // small motions, one after the other: a large retraction need not go as far as the exponential
+        let bent = |place: &S::Place, index: usize| {
+            let part = lack * (T::from_f64(index as f64) / steps);
+            (0..PARTS).fold(*place, |place, _| system.moved(&place, &part))
+        };
+        for (index, stage) in self.stages.iter_mut().enumerate() {
+            stage.place = bent(&stage.place, index);
+        }
+        self.last = bent(&self.last, self.stages.len());
+    }
+
+    /// Rolls out the inputs with the feedback of the last sweep, which keeps the plan near its places.
+    fn land(&mut self) -> Result<(), Error> {
+        let Problem { system, constants, start, .. } = self.problem;
+        let mut x = *start;
+        for (index, stage) in self.stages.iter_mut().enumerate() {
+            stage.input += stage.gain * system.displacement(&stage.place, &x);
+            stage.place = x;
+            x = system.follow(constants, self.problem.time_after(index), &x, &stage.input)?;
+        }
+        self.last = x;
+        Ok(())
+    }
+
+    /// Closes gaps until a roll-out can go on; `false` where corrections get stuck.
+    fn close(&mut self) -> Result<bool, Error> {
+        let (zero, one) = (T::zero(), T::one());
+        let end = self.end();
+        let barrier = self.resume_or_relax()?;
+        let mut now = Iterate::new(SVector::zeros(), barrier, end.distance);
+        let (mut filter, mut at, mut units, mut stuck) = (Filter::new(zero), None, SVector::zeros(), 0);
+        for _ in 0..SWEEPS {
+            self.sweeps += 1;
+            let end = self.end();
+            let summary = self.eliminate(&end, &now.settings)?;
+            let gramian = Equilibrated::of(&summary.gramian);
+            let descent = Descent { summary: &summary, end: &end, settings: now.settings, inverse: gramian.inverse() };
+            let (change, decrement) = descent.correction(one);
+            if now.settings.curvature.is_mirrored {
+                now.rank = now.rank.max(gramian.rank());
+            } else if !decrement.is_finite() || gramian.index(summary.negative, now.rank) > 0 {
+                now.settings.curvature = Curvature::mirrored(zero, zero);
+                continue;
+            }
+            if !decrement.is_finite() {
+                return Ok(false);
+            }
+            let last_motion = self.make_linear(&change)?;
+            let Some(before) = at else {
+                // the first correction is made without bounds, and tells the sizes of changes and of prices
+                now.settings.weight = gramian.weight(&summary.gramian, &now.settings.weight);
+                let begun;
+                (units, begun) = self.begin_lifted(&mut now, &last_motion, summary.repair())?;
+                at = Some(begun);
+                continue;
+            };
+            now.largest = larger(now.largest, summary.magnitude);
+            let magnitude = summary.magnitude + T::EPSILON.sqrt() * now.largest;
+            let size = (decrement.abs() / magnitude).sqrt();
+            let measures = before.measures(now.settings.barrier);
+            let Some((fraction, proposal)) = self.try_parts(&last_motion, &filter, measures, (&now, &units)) else {
+                return Ok(false);
+            };
+            filter.add(measures);
+            self.accept(fraction, now.settings.barrier, proposal.last);
+            now.settings.multipliers += change * fraction;
+            at = Some(proposal);
+            stuck = if fraction < T::from_ratio(SHORT.0, SHORT.1) { stuck + 1 } else { 0 };
+            if stuck > PATIENCE {
+                return Ok(false);
+            }
+            let is_below =
+                |(of_size, of_gaps): (f64, f64)| size <= T::from_f64(of_size) && proposal.gaps <= T::from_f64(of_gaps);
+            if fraction >= one && is_below(NEAR) {
+                return Ok(true);
+            }
+            if fraction >= T::from_ratio(9, 10) && is_below(CENTRAL) {
+                let barrier = now.settings.barrier;
+                now.tighten(self.bounds, magnitude);
+                if now.settings.barrier < barrier {
+                    filter.count = 0;
+                }
+            }
+            now.settings.curvature = if size <= one { Curvature::exact(zero) } else { Curvature::mirrored(zero, zero) };
+        }
+        Ok(false)
+    }
+
+    /// Makes all of the first correction. Bounds are relaxed after it, as far as it violates them. The first barrier has the size of its
+    /// price, as the guess may be far dearer. Returns the units of gaps, and the plan.
+    fn begin_lifted(
+        &mut self,
+        now: &mut Iterate<T, D>,
+        last_motion: &SVector<T, D>,
+        repair: T,
+    ) -> Result<Begun<S::Place, T, D>, Error> {
+        let zero = T::zero();
+        let proposal = self.propose(T::one(), last_motion, &SVector::zeros())?;
+        for stage in self.stages.iter_mut() {
+            (stage.place, stage.input) = (stage.next_place, stage.next_input);
+        }
+        self.last = proposal.last;
+        self.resume_or_relax()?;
+        let price = larger(proposal.price.abs(), repair);
+        now.largest = price;
+        if self.bounds > zero {
+            self.size_by_others();
+            let price = if price > zero { price } else { T::one() };
+            now.settings.barrier = T::from_f64(WIDER * FIRST) * price / self.bounds;
+            self.begin(now.settings.barrier);
+        }
+        let units = self.units();
+        Ok((units, self.propose(zero, last_motion, &units)?))
+    }
+
+    /// The first fraction of the correction that the filter accepts, with its plan.
+    fn try_parts(
+        &mut self,
+        last_motion: &SVector<T, D>,
+        filter: &Filter<T>,
+        measures: (T, T),
+        (now, units): (&Iterate<T, D>, &SVector<T, D>),
+    ) -> Option<(T, Proposal<S::Place, T>)> {
+        let mut fraction = T::one();
+        for _ in 0..TRIALS {
+            if let Ok(proposal) = self.propose(fraction, last_motion, units) {
+                if let Some(allowed) = proposal.allowed {
+                    fraction = larger(allowed * T::from_ratio(99, 100), fraction * T::from_f64(1e-3));
+                    continue;
+                }
+                let (gaps, price) = proposal.measures(now.settings.barrier);
+                let is_closed = gaps <= T::from_f64(CLOSED);
+                if gaps.is_finite() && price.is_finite() && (is_closed || filter.accepts(gaps, price, measures)) {
+                    return Some((fraction, proposal));
+                }
+            }
+            fraction *= T::from_ratio(1, 2);
+        }
+        None
+    }
+
+    /// The correction to first order: the motions δ_k and the changes δu_k of the stages. Returns δ_N.
+    ///
+    /// The effect of both on the next place is a difference quotient. A step costs less than its derivatives, and a correction is judged by
+    /// its plan, so that its last digits do not matter.
+    fn make_linear(&mut self, change: &SVector<T, D>) -> Result<SVector<T, D>, Error> {
+        let Problem { system, constants, .. } = self.problem;
+        let part = T::EPSILON.sqrt();
+        let mut motion = SVector::<T, D>::from_element(T::zero());
+        let mut stages = self.stages.iter_mut().enumerate().peekable();
+        while let Some((index, stage)) = stages.next() {
+            let t = self.problem.time_after(index);
+            let input = stage.shift + stage.by_multiplier * change + stage.gain * motion;
+            (stage.motion, stage.shift) = (motion, input);
+            let following = stages.peek().map_or(self.last, |(_, next)| next.place);
+            let reached = system.follow(constants, t, &stage.place, &stage.input)?;
+            let x = system.moved(&stage.place, &(motion * part));
+            let moved = system.follow(constants, t, &x, &(stage.input + input * part))?;
+            let gap: SVector<T, D> = system.displacement(&following, &reached);
+            motion = gap + (system.displacement(&following, &moved) - gap) / part;
+        }
+        Ok(motion)
+    }
+
+    /// The units of gaps: one by the largest change from the start to any place, for each component, 0 where nothing moves.
+    fn units(&self) -> SVector<T, D> {
+        let Problem { system, start, .. } = self.problem;
+        let places = self.stages.iter().map(|stage| &stage.place).chain([&self.last]);
+        let largest = places.fold(SVector::<T, D>::zeros(), |largest, place| {
+            let change = system.displacement(start, place);
+            SVector::from_fn(|i, _| larger(largest[i], change[i].abs()))
+        });
+        largest.map(|size| if size > T::zero() && size.is_finite() { size.recip() } else { T::zero() })
+    }
+
+    /// The plan after a part of the correction.
+    fn propose(
+        &mut self,
+        fraction: T,
+        last_motion: &SVector<T, D>,
+        units: &SVector<T, D>,
+    ) -> Result<Proposal<S::Place, T>, Error> {
+        let Problem { system, constants, .. } = self.problem;
+        let (zero, one) = (T::zero(), T::one());
+        let size = |change: SVector<T, D>| change.component_mul(units).iter().fold(zero, |sum, part| sum + part.abs());
+        let (mut price, mut logarithms, mut gaps, mut relaxed, mut allowed) = (zero, zero, zero, zero, None);
+        let mut reached: Option<S::Place> = None;
+        for (index, stage) in self.stages.iter_mut().enumerate() {
+            let t = self.problem.time_after(index);
+            let x = system.moved(&stage.place, &(stage.motion * fraction));
+            let input = stage.input + stage.shift * fraction;
+            if let Some(reached) = &reached {
+                gaps += size(system.displacement(&x, reached));
+            }
+            if C > 0 {
+                let bounds = system.bounds(constants, t, &x, &input)?;
+                for i in (0..C).filter(|i| !is_none(stage.slack[*i])) {
+                    let (s, excess) = (stage.slack[i], (one - fraction) * stage.excess[i]);
+                    let next = excess - bounds[i];
+                    stage.next_slack[i] = next;
+                    relaxed = larger(relaxed, excess / s);
+                    let ratio = next / s;
+                    if ratio < one - T::from_f64(TO_BOUNDARY) {
+                        let limit = fraction * T::from_f64(TO_BOUNDARY) / (one - ratio);
+                        allowed = Some(allowed.map_or(limit, |least| if limit < least { limit } else { least }));
+                    } else {
+                        logarithms += next.ln();
+                    }
+                }
+            }
+            price += system.price(constants, t, &x, &input)?;
+            reached = Some(system.follow(constants, t, &x, &input)?);
+            (stage.next_place, stage.next_input) = (x, input);
+        }
+        let last = system.moved(&self.last, &(last_motion * fraction));
+        if let Some(reached) = &reached {
+            gaps += size(system.displacement(&last, reached));
+        }
+        gaps += size(self.problem.end(&last).lack.component_div(&self.problem.lengths));
+        price += system.endpoint(constants, self.problem.time_after(self.stages.len()), &last);
+        Ok(Proposal { last, gaps: gaps + relaxed, price, logarithms, allowed })
+    }
+}
