@@ -50,6 +50,8 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: usize
         let variations = if is_aimed { 0..1 + VARIATIONS } else { 0..0 };
         let (before, after) = if is_warm { (again, None) } else { (None, again) };
         let priced = variations.map(|variation| (true, variation));
+        // a search that has given way says nothing of the plan
+        let mut says_nothing = gave_way;
         for (is_priced, variation) in before.into_iter().chain(priced).chain(after) {
             let error = match solved {
                 Err(error) if may_be_found(&error) => error,
@@ -57,9 +59,14 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: usize
             };
             self.stages.iter_mut().for_each(Stage::forget);
             solved = match self.vary(variation) {
-                Ok(()) => self.newton(is_priced).map_err(|next| nearer(error, next)),
+                Ok(()) => self.newton(is_priced).map_err(|next| match (says_nothing, gave_way && !is_priced) {
+                    (true, _) => next,
+                    (_, true) => nearer(next, error),
+                    _ => nearer(error, next),
+                }),
                 Err(error) => Err(error),
             };
+            says_nothing = false;
         }
         if solved.is_err() {
             self.stages.iter_mut().for_each(Stage::forget);
