@@ -184,7 +184,8 @@ pub trait Controlled<const D: usize, const U: usize, const C: usize>: Sized {
     /// The small change δ that moves x to y, to first order; the shortest where several do.
     fn displacement(&self, x: &Self::Place, y: &Self::Place) -> SVector<Self::Scalar, D>;
 
-    /// The place that a small change δ moves x to: Φ_{τ(η)}(q), and N + ν. The retraction τ is that of Cayley, or the exponential.
+    /// The place that a small change δ moves x to: Φ_{τ(η)}(q), and N + ν. The retraction τ is Cayley's map
+    /// where that stays in the group, else the exponential.
     fn moved(&self, x: &Self::Place, delta: &SVector<Self::Scalar, D>) -> Self::Place;
 
     /// The velocity of x along a small change δ: η_Q(q), and ν.

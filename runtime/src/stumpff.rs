@@ -3,13 +3,14 @@
 use crate::{Mask, Real, Scalar};
 
 /// c_k(s) = Σ_j (−s)ʲ/(k + 2j)! for k ≤ 7: c₀ = cos √s, c₁ = sin √s/√s, and cosh, sinh for negative s. A polynomial
-/// stands for the series where |s| ≤ 1, for k ≥ 3 where |s| ≤ 16; beyond, the closed form is used, by
+/// stands for the series where |s| ≤ 1, for k ≥ 3 where |s| ≤ 16. Beyond, the closed form is used, by
 /// c_{k+2} = (1/k! − c_k)/s, which loses no digits there.
 ///
-/// Measured against sums of 31 digits, the error is below 1.5 ε |c_k| where |s| ≤ 1. For k ≥ 3 it is below 2.5 ε |c_k|
-/// up to |s| = 16. Beyond it is below 4 ε (1 + √|s|)|c_k|, by the rounding of √|s|. Where c₀, c₁ or c₂ crosses 0, the
-/// bound is this part of the amplitude s^(−k/2) of its oscillation. The exponential of a skew 3×3 matrix is
-/// exp x^ = I + c₁(|x|²)x^ + c₂(|x|²)x^x^, and φ(x^) = I + c₂ x^ + c₃ x^x^.
+/// Measured against sums of 31 digits, the error is below 1.5 ε |c_k| where |s| ≤ 1, and below 2.5 ε |c_k| up to
+/// |s| = 16. Beyond it is below 4 ε (1 + √|s|)|c_k|, by the rounding of √|s|. Where c₀, c₁ or c₂ crosses 0, the bound
+/// is this part of the amplitude s^(−k/2) of its oscillation.
+///
+/// The exponential of a skew 3×3 matrix is exp x^ = I + c₁(|x|²)x^ + c₂(|x|²)x^x^, and φ(x^) = I + c₂ x^ + c₃ x^x^.
 ///
 /// Source: Stumpff, *Himmelsmechanik* I, 1959, section V.
 #[inline]

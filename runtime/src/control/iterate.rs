@@ -49,6 +49,8 @@ pub(super) struct Iterate<T, const D: usize> {
     calm: u32,
     /// The largest price.
     pub largest: T,
+    /// The part of the gap that the last correction closes by its model.
+    pub closes: T,
     /// The smallest distance to the target.
     pub nearest: T,
     /// Steps in a row that were next to nothing.
@@ -108,6 +110,7 @@ impl<T: Real, const D: usize> Iterate<T, D> {
             stagnations: 0,
             calm: 0,
             largest: zero,
+            closes: zero,
             nearest: distance,
             stalls: 0,
             is_cornered: false,

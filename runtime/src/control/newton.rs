@@ -115,7 +115,7 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: usize
             }
             let is_trusted = now.is_exact() && size * size <= T::EPSILON.sqrt();
             let made = self.descend(&mut now, &descent, magnitude, is_trusted);
-            if self.way == Way::Open && !has_corrected && descent.reaches() && self.is_astray(&end) {
+            if self.way == Way::Open && !has_corrected && descent.reaches() && self.is_astray(&end, now.closes) {
                 self.way = Way::Given;
                 return Err(self.failure(&end, size));
             }
@@ -245,10 +245,14 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: usize
         }
     }
 
-    /// Whether the end is still more than half as far from the target as it was.
-    fn is_astray(&self, before: &PlanEnd<T, D>) -> bool {
-        let is_nearer = self.end().distance <= before.distance * T::from_ratio(1, 2);
-        !before.is_reached() && !is_nearer
+    /// Whether the end is still more than half as far from the target as it was, and not where the model leads. The correction closes this
+    /// part of the gap by its model. Where bounds alone have made it short, the end is where the model leads.
+    fn is_astray(&self, before: &PlanEnd<T, D>, closes: T) -> bool {
+        let end = self.end();
+        let missed: SVector<T, D> = end.lack - before.lack * (T::one() - closes);
+        let is_nearer = end.distance <= before.distance * T::from_ratio(1, 2);
+        let is_as_modelled = missed.max_abs() <= before.lack.max_abs() * T::from_ratio(1, 100);
+        !before.is_reached() && !is_nearer && !is_as_modelled
     }
 
     /// Why nothing was found.

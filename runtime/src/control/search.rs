@@ -126,7 +126,7 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: usize
                     let by_model = decrement * fraction * (one - fraction * half);
                     let is_good = rolled.difference <= -by_model * T::from_ratio(GOOD.0, GOOD.1);
                     if is_good || !is_lower || is_relaxed || is_trusted || is_closed {
-                        return Some((self.take(now, descent, (fraction, &change), rolled.last), refused));
+                        return Some((self.take(now, descent, (fraction, part, &change), rolled.last), refused));
                     }
                     best = Some((fraction, part, rolled.difference));
                 }
@@ -137,7 +137,7 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: usize
         let (fraction, part, _) = best?;
         let (change, _) = descent.correction(part);
         let rolled = self.roll_out(descent, fraction, &change).ok()?;
-        Some((self.take(now, descent, (fraction, &change), rolled.last), refused))
+        Some((self.take(now, descent, (fraction, part, &change), rolled.last), refused))
     }
 
     /// Takes the plan of a roll-out, and gives its fraction.
@@ -145,11 +145,12 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: usize
         &mut self,
         now: &mut Iterate<T, D>,
         descent: &Descent<'_, T, D, U>,
-        (fraction, change): (T, &SVector<T, D>),
+        (fraction, part, change): (T, T, &SVector<T, D>),
         last: S::Place,
     ) -> T {
         self.accept(fraction, descent.settings.barrier, last);
         now.settings.multipliers += change * fraction;
+        now.closes = fraction * part;
         fraction
     }
 

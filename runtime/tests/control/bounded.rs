@@ -222,7 +222,7 @@ fn a_wall_is_not_passed() -> Result<(), Error> {
             let ways = (2..=steps).map(|k| braked(h, k, wall)).filter(|(_, furthest)| *furthest <= wall + 1e-12);
             let price = ways.map(|(price, _)| price).fold(f64::MAX, f64::min);
             assert!((found.price() - price).abs() < 1e-11 * price, "{wall}: {found:?} after {price}");
-            assert!(found.is_minimum() && found.gap() < 1e-12 && found.iterations() <= 60, "{wall}: {found:?}");
+            assert!(found.is_minimum() && found.gap() < 1e-12 && found.iterations() <= 40, "{wall}: {found:?}");
         }
     }
     Ok(())

@@ -72,7 +72,7 @@ fn is_found_from_nothing(
                 for (stage, u) in found.stages().iter().zip(expected) {
                     assert!((stage.input()[0] - u).abs() < 1e-6, "{} after {u}", stage.input()[0]);
                 }
-                assert!(found.is_minimum() && found.iterations() <= 50, "{scale:e}, {part:e}: {found:?}");
+                assert!(found.is_minimum() && found.iterations() <= 40, "{scale:e}, {part:e}: {found:?}");
             }
         }
     }
