@@ -1,7 +1,7 @@
 //! One attempt after another, from the guess to plans that only a search finds.
 //!
-//! Corrections that close all of the gap to the target at once are the fastest. If the first of them leads astray, multiple shooting goes
-//! on. If corrections drive the slacks of bounds to zero, they get stuck. The gap g then has the price ν·g + ½ g·Rg, in addition to the barriers of the bounds. ν and R
+//! Corrections that close all of the gap to the target at once are the fastest. If the first whose model reaches the target leads astray,
+//! multiple shooting goes on. If corrections drive the slacks of bounds to zero, they get stuck. The gap g then has the price ν·g + ½ g·Rg, in addition to the barriers of the bounds. ν and R
 //! are raised between critical plans until little of the gap is left. Where that ends at a plan from which no small
 //! change leads nearer, inputs are varied before.
 //!
@@ -20,13 +20,14 @@ const VARIATIONS: u32 = 3;
 const LIFTS: u32 = 2;
 
 /// The amplitudes of a pattern that are tried: the smallest, in those that close the gap where nothing bends, and how often it is doubled.
-pub struct Amplitudes(f64, usize);
+#[derive(Clone, Copy, PartialEq)]
+pub(super) struct Amplitudes(f64, usize);
 
 impl Amplitudes {
-    /// Those that lead out of symmetry, where the first derivative vanishes.
+    /// Those that lead out of symmetry, where the first derivative vanishes or nearly does.
     pub const NEAR: Amplitudes = Amplitudes(0.25, 6);
     /// Those that lead away from the plan that misled a search.
-    const FAR: Amplitudes = Amplitudes(16.0, 3);
+    pub const FAR: Amplitudes = Amplitudes(16.0, 3);
 }
 
 impl<T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: usize, const C: usize> Plan<'_, S, D, U, C> {
@@ -38,11 +39,11 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: usize
         let is_aimed = !matches!(self.problem.target, Target::Free);
         self.way = if is_aimed && !is_warm { Way::Open } else { Way::Kept };
         let mut solved = self.newton(false);
-        let gave_way = self.way == Way::Given;
-        self.way = Way::Kept;
-        if gave_way {
+        let way = core::mem::replace(&mut self.way, Way::Kept);
+        let gave_way = matches!(way, Way::Given(_));
+        if let Way::Given(amplitudes) = way {
             self.stages.iter_mut().for_each(Stage::forget);
-            if (0..LIFTS).any(|variation| self.lift(variation)) {
+            if (0..LIFTS).any(|variation| self.lift(variation, &amplitudes)) {
                 solved = self.newton(false);
             }
         }
@@ -58,7 +59,7 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: usize
                 _ => break,
             };
             self.stages.iter_mut().for_each(Stage::forget);
-            solved = match self.vary(variation) {
+            solved = match self.vary(variation, &Amplitudes::FAR) {
                 Ok(()) => self.newton(is_priced).map_err(|next| match (says_nothing, gave_way && !is_priced) {
                     (true, _) => next,
                     (_, true) => nearer(next, error),
@@ -96,14 +97,14 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: usize
 
     /// Varies the inputs of the guess so that they end nearer to the target; those of variation 0 stay as they are.
     #[cold]
-    pub fn vary(&mut self, variation: u32) -> Result<(), Error> {
+    pub fn vary(&mut self, variation: u32, amplitudes: &Amplitudes) -> Result<(), Error> {
         if variation > 0 {
             self.follow()?;
             let end = self.problem.end(&self.last);
             // multipliers and slacks are forgotten: the reach of inputs is that without bounds
             self.bounds = T::zero();
             let summary = self.eliminate(&end, &Iterate::new(SVector::zeros(), None, end.distance).settings)?;
-            self.stir(&summary, end.lack.max_abs(), variation, &Amplitudes::FAR);
+            self.stir(&summary, end.lack.max_abs(), variation, amplitudes);
         }
         Ok(())
     }

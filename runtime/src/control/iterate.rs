@@ -231,6 +231,18 @@ impl<T: Real, const D: usize> Iterate<T, D> {
         may_be
     }
 
+    /// Whether the exact model, tried after a small correction, promises more than all of the price: it is next to having no minimum.
+    /// Its correction may lead to plans that are far dearer, so the next sweep goes without.
+    pub fn leaps(&mut self, size: T) -> bool {
+        let is_tried = self.before.is_some_and(|before| before <= T::from_ratio(TRIED.0, TRIED.1));
+        let leaps = is_tried && !self.settings.curvature.is_mirrored && size > T::one();
+        if leaps {
+            self.settings.curvature = self.mirrored();
+            self.is_probed = true;
+        }
+        leaps
+    }
+
     /// Near a solution √ε, as a part of the price's curvature: else corrections go far where round-off alone bends the price, as along a symmetry.
     fn steadiness(&self) -> T {
         let seen = T::EPSILON.sqrt();

@@ -15,6 +15,7 @@
 //! the implementation of an interior-point filter line-search algorithm* (2006), for the filter.
 
 use super::Stage;
+use super::attempt::Amplitudes;
 use super::barrier::{FIRST, TO_BOUNDARY, is_none};
 use super::iterate::Iterate;
 use super::search::Descent;
@@ -123,8 +124,8 @@ impl<T: Real> Filter<T> {
 impl<T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: usize, const C: usize> Plan<'_, S, D, U, C> {
     /// Goes from the inputs that the stages hold, or a variation of them, to near a critical plan, with its multipliers. `false` where that
     /// fails. The stages then hold the inputs of the guess.
-    pub fn lift(&mut self, variation: u32) -> bool {
-        let lifted = self.vary(variation).and_then(|()| {
+    pub fn lift(&mut self, variation: u32, amplitudes: &Amplitudes) -> bool {
+        let lifted = self.vary(variation, amplitudes).and_then(|()| {
             self.follow()?;
             self.reach();
             self.is_lifted = true;

@@ -18,6 +18,9 @@ const SWEEPS: u32 = 400;
 const DAMPING_LIMIT: f64 = 1e9;
 /// Patterns that are added to inputs where no first derivative leads to the target.
 const STIRS: u32 = 3;
+/// How many times dearer than its plan a correction may be, where the model of the guess could not reach the target. Dearer ones do not
+/// bend the plan but turn it over and over.
+const DEAR: f64 = 1e4;
 /// Steps in a row that may be next to nothing.
 const STALLS: u32 = 8;
 
@@ -65,6 +68,9 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: usize
             let bounds = self.bounds;
             let unit = if bounds > zero { T::EPSILON.powf(T::from_ratio(3, 5)) } else { exact };
             size = if decrement == zero { zero } else { (decrement.abs() / magnitude).sqrt() };
+            if now.leaps(size) {
+                continue;
+            }
             match now.verdict(&end, size, unit, barrier::last(bounds, magnitude)) {
                 Verdict::Done | Verdict::Tighten
                     if now.may_be_at_saddle(summary.negative + summary.straightened, size) =>
@@ -115,9 +121,14 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: usize
             }
             let is_trusted = now.is_exact() && size * size <= T::EPSILON.sqrt();
             let made = self.descend(&mut now, &descent, magnitude, is_trusted);
-            if self.way == Way::Open && !has_corrected && descent.reaches() && self.is_astray(&end, now.closes) {
-                self.way = Way::Given;
-                return Err(self.failure(&end, size));
+            if self.way == Way::Open && descent.reaches() {
+                // after the first correction the guess could not reach the target: only its new motion can
+                let is_dear = has_corrected && !end.is_reached() && decrement > summary.magnitude * T::from_f64(DEAR);
+                if is_dear || self.is_astray(&end, now.closes) {
+                    self.way = Way::Given(if has_corrected { Amplitudes::NEAR } else { Amplitudes::FAR });
+                    return Err(self.failure(&end, size));
+                }
+                self.way = Way::Kept;
             }
             has_corrected = true;
             let is_whole = made.is_some_and(|(fraction, _)| fraction >= T::from_ratio(9, 10));

@@ -12,6 +12,7 @@
 //! * for the multipliers of the target Bryson and Ho, *Applied Optimal Control* (1975), section 6.3;
 //! * for the bounds Rao, Wright and Rawlings, *Application of interior-point methods to model predictive control* (1998).
 
+use super::attempt::Amplitudes;
 use super::end::PlanEnd;
 use super::lift::Gap;
 use super::quadratic::{Bounded, Fall, Policy, Value};
@@ -34,15 +35,15 @@ pub(super) struct Problem<'a, S: Controlled<D, U, C, Scalar: Real>, const D: usi
     pub lengths: SVector<S::Scalar, D>,
 }
 
-/// Whether a search ends where its first correction does not come near the target.
+/// Whether a search ends where the first correction whose model reaches the target leads astray.
 #[derive(Clone, Copy, PartialEq)]
 pub(super) enum Way {
     /// It goes on.
     Kept,
     /// It will end there.
     Open,
-    /// It has ended there, for multiple shooting to go on.
-    Given,
+    /// It has ended there, for multiple shooting to go on from inputs that vary by these amplitudes.
+    Given(Amplitudes),
 }
 
 /// A plan, on the way from a guess to one of least price.
