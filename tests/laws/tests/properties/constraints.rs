@@ -2,6 +2,7 @@
 
 use crate::arbitrary::{cases, definite, matrix, vector};
 use crate::bodies::H;
+use crate::runner::proptest;
 use clebsch::__private::{
     At, ConstrainedSubstep, Correction, Parts, Scheme, Substep, VariedSubstep, Violation, check_place, constrained,
     multipliers, placed, reactions, slopes_with_constraint, violation, with_constraint,

@@ -5,6 +5,7 @@
 
 use crate::arbitrary::{attitude, cases, matrix, rotation, vector};
 use crate::bodies::{H, particles, tops};
+use crate::runner::proptest;
 use clebsch::__private as private;
 use clebsch::{Carried, Clebsch, Momenta, Sensitive, Sensitivity, Space, State, Tangent, Variation, Variational};
 use clebsch_tests::fixtures::watched_top::WatchedTop;

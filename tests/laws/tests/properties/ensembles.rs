@@ -2,6 +2,7 @@
 
 use crate::arbitrary::{attitude, cases, definite, vector};
 use crate::bodies::{H, generic_top, satellites};
+use crate::runner::proptest;
 use clebsch::{Body, Clebsch, Conserved, Drive, Ensemble, F64x8, Scalar, Stepper};
 use clebsch_tests::fixtures::generic_body::GenericBody;
 use nalgebra::{Matrix3, Vector3};

@@ -1,6 +1,7 @@
 //! Implicit equations, transforms and flows: each against the equation that it solves.
 
 use crate::arbitrary::{cases, definite, vector};
+use crate::runner::proptest;
 use clebsch::__private as private;
 use clebsch::Error;
 use clebsch::implicit::{self, Equation, LinearEquation};

@@ -1,6 +1,7 @@
 //! Fields: grids, the forces of edges, and steps of all sites.
 
 use crate::arbitrary::{cases, vector};
+use crate::runner::proptest;
 use clebsch::__private as private;
 use clebsch::{
     Alike, CellComplex, Clebsch, Clock, ConnectedField, Error, Field, FieldSite, FieldState, Grid, Lattice, Mesh,

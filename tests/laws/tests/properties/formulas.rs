@@ -3,6 +3,7 @@
 
 use crate::arbitrary::{attitude, cases, matrix, rotation, unit, vector};
 use crate::bodies::{H, inertia_of, pendulums, satellites, tops, vehicles};
+use crate::runner::proptest;
 use clebsch::{__private as private, Clebsch, Stepper};
 use clebsch_tests::oracle::near::assert_near;
 use clebsch_tests::oracle::rotation::hat;

@@ -2,6 +2,7 @@
 
 use crate::arbitrary::{attitude, cases, definite, unit, vector};
 use crate::bodies::{H, generic_top, pendulums, satellites, staggered_tops, tops};
+use crate::runner::proptest;
 use crate::whole::Neumann;
 use clebsch::__private::{At, Scheme};
 use clebsch::{Clebsch, Error, F64x4, SiteStorage, Stepper};

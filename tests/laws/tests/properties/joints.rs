@@ -1,6 +1,7 @@
 //! Joints between neighbouring sites: their rows are differences of their equations, and states and steps obey them.
 
 use crate::arbitrary::{cases, vector};
+use crate::runner::proptest;
 use clebsch::__private::{
     At, Border, Branch, Joined, JoinedInStorage, JointRows, Limb, Loop, LoopedLimb, Loops, Mobile, Power,
     put_loop_values, put_loops, put_places,

@@ -22,6 +22,7 @@ mod powers;
 mod public;
 mod recording;
 mod rotations;
+mod runner;
 mod runs;
 mod scalars;
 mod schemes;

@@ -3,6 +3,7 @@
 //! Matrices here have entries up to one, so that sums of products are of order one and are rounded by a few ε.
 
 use crate::arbitrary::{attitude, cases, definite, matrix, unit, vector};
+use crate::runner::proptest;
 use clebsch::__private as private;
 use clebsch::{Error, F64x8, Scalar, Space};
 use clebsch_tests::oracle::near::assert_near;

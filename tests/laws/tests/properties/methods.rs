@@ -2,6 +2,7 @@
 
 use crate::arbitrary::{attitude, cases, vector};
 use crate::bodies::H;
+use crate::runner::proptest;
 use clebsch::{Clebsch, Error, Method};
 use clebsch_tests::fixtures::three_ways::{Fine, Quick, ThreeWays};
 use clebsch_tests::oracle::near::assert_near;

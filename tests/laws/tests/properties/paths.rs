@@ -2,6 +2,7 @@
 
 use crate::arbitrary::{attitude, cases, vector};
 use crate::bodies::{particles, tops};
+use crate::runner::proptest;
 use clebsch::{Boundary, Clebsch, Error, Extremal, Guess, Variational, Way};
 use clebsch_tests::fixtures::watched_top::WatchedTop;
 use clebsch_tests::oracle::near::assert_near;

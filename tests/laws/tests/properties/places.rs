@@ -3,6 +3,7 @@
 //! Entries are of order one, so that sums of products are rounded by a few ε.
 
 use crate::arbitrary::{attitude, cases, definite, matrix, rotation, unit, vector};
+use crate::runner::proptest;
 use clebsch::__private as private;
 use clebsch::Error;
 use clebsch_tests::oracle::near::assert_near;

@@ -1,6 +1,7 @@
 //! Plans of inputs: the derivatives of steps, prices and bounds, and the conditions of an optimum, each evaluated anew.
 
 use crate::arbitrary::{attitude, cases, matrix, vector};
+use crate::runner::proptest;
 use clebsch::{__private as private, Control, Controlled, Ended, Error, Limits, Optimum, Space, Target};
 use clebsch_tests::fixtures::regulator::Regulator;
 use clebsch_tests::fixtures::steered_body::SteeredBody;

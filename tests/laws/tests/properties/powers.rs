@@ -1,6 +1,7 @@
 //! Powers: each site is a system of its own, tied to the others by kicks alone.
 
 use crate::arbitrary::{cases, unit, vector};
+use crate::runner::proptest;
 use clebsch::__private::{At, FreeSites, PowerConstants, Scheme, SitesOfFirstOrder, SitesOfSecondOrder, wrapped};
 use clebsch::{Clebsch, Power, SiteStorage};
 use clebsch_tests::stepping::Stepping;

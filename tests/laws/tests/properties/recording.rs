@@ -4,6 +4,7 @@ mod readers;
 
 use crate::arbitrary::{attitude, cases, unit, vector};
 use crate::bodies::{H, satellites, tops};
+use crate::runner::proptest;
 use clebsch::record::{Npz, RecordError, Recorder};
 use clebsch::{
     Clebsch, Columns, Conserves, Declared, Error, Event, Form, Method, Names, Quantities, Sample, Space, State, Stepper,

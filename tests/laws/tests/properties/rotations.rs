@@ -1,6 +1,7 @@
 //! The free motion of rigid bodies: its laws, and the momenta of given rotations.
 
 use crate::arbitrary::{cases, vector};
+use crate::runner::proptest;
 use clebsch::__private::{FreeRotation, FreeRotation4, free_momentum, free_momentum_4d};
 use clebsch_tests::oracle::near::assert_near;
 use nalgebra::{Matrix3, Matrix4, SMatrix, SVector, Vector3};

@@ -2,6 +2,7 @@
 
 use crate::arbitrary::{attitude, cases, vector};
 use crate::bodies::{H, satellites, staggered_tops, tops};
+use crate::runner::proptest;
 use clebsch::{Clebsch, Crossing, Drive, Error, Event, Inputs, NoInputs, State, Stepper};
 use clebsch_tests::fixtures::spherical_pendulum::SphericalPendulum;
 use clebsch_tests::fixtures::watched_top::WatchedTop;

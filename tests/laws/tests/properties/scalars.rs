@@ -1,6 +1,7 @@
 //! Numbers, masks, spaces and times: the types that generated code computes with.
 
 use crate::arbitrary::{cases, vector};
+use crate::runner::proptest;
 use clebsch::__private as private;
 use clebsch::{Clock, Conserved, F64x8, Mask, Scalar, Space, Time};
 use nalgebra::{Matrix2, Quaternion, SMatrix, Vector2};

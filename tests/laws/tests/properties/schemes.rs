@@ -2,6 +2,7 @@
 
 use crate::arbitrary::{attitude, cases, definite, matrix, vector};
 use crate::bodies::{H, damped_bodies, tops};
+use crate::runner::proptest;
 use clebsch::__private::{
     At, FreeMotion, GreatCircles, HamiltonEquations, Parts, Scheme, SplitKicks, Substep, VariedSubstep,
 };

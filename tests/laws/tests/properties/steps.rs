@@ -2,6 +2,7 @@
 
 use crate::arbitrary::{attitude, cases, definite, matrix, unit, vector};
 use crate::bodies::{H, damped_bodies, generic_top, particles, pendulums, satellites, staggered_tops, tops};
+use crate::runner::proptest;
 use clebsch::__private::{At, Scheme};
 use clebsch::{Clebsch, Clock, Conserved, Conserves, Error, F64x8, Mask, Scalar, Space, Time};
 use clebsch_tests::fixtures::generic_body::GenericBody;

@@ -1,6 +1,7 @@
 //! Operations on matrices, and points on spheres in (q, w): the operations of code of large systems.
 
 use crate::arbitrary::{cases, matrix, vector};
+use crate::runner::proptest;
 use clebsch::__private::{
     At, Blocks, InertiaInverse, Jacobian, Orientation, Scheme, Sylvester, axial, determinant, distance_of_projection,
     embedded, hat, invert_uniform, kinetic_energy_uniform, matrix_of, orientation_of_inertia, orientation_of_uniform,

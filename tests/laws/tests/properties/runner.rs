@@ -1,0 +1,65 @@
+//! `proptest!` as in the library, but all properties have one runner: the library compiles another for each, a sixth of this test.
+
+use proptest::prelude::*;
+use proptest::test_runner::{TestCaseResult, TestRunner};
+use std::fmt::Debug;
+
+/// A property of drawn values, whatever their types.
+trait Case: Debug {
+    fn holds(self: Box<Self>) -> TestCaseResult;
+}
+
+/// The values, with their names and their property. A failure shows the first two.
+struct Drawn<T> {
+    names: &'static str,
+    values: T,
+    property: fn(T) -> TestCaseResult,
+}
+
+impl<T: Debug> Debug for Drawn<T> {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "{} = ", self.names)?;
+        self.values.fmt(f)
+    }
+}
+
+impl<T: Debug> Case for Drawn<T> {
+    fn holds(self: Box<Self>) -> TestCaseResult {
+        (self.property)(self.values)
+    }
+}
+
+/// Draws cases until one fails, and panics with the smallest of those that do.
+pub fn check<S>(config: ProptestConfig, names: &'static str, strategy: S, property: fn(S::Value) -> TestCaseResult)
+where
+    S: Strategy<Value: 'static> + 'static,
+{
+    let cases = strategy.prop_map(move |values| Box::new(Drawn { names, values, property }) as Box<dyn Case>);
+    run(config, &cases.boxed());
+}
+
+fn run(config: ProptestConfig, cases: &BoxedStrategy<Box<dyn Case>>) {
+    let mut runner = TestRunner::new(config);
+    if let Err(error) = runner.run(cases, |case| case.holds()) {
+        panic!("{error}\n{runner}");
+    }
+}
+
+/// Properties as tests, with the syntax of the library.
+macro_rules! proptest {
+    (#![proptest_config($config:expr)] $(
+        $(#[$meta:meta])*
+        fn $name:ident($($value:pat in $strategy:expr),+ $(,)?) $body:block
+    )*) => { $(
+        $(#[$meta])*
+        fn $name() {
+            let names = stringify!($($value),+);
+            $crate::runner::check($config, names, ($($strategy,)+), |($($value,)+)| {
+                let (): () = $body;
+                Ok(())
+            });
+        }
+    )* };
+}
+
+pub(crate) use proptest;
