@@ -40,7 +40,7 @@ fn every_error_says_what_to_change() {
 /// The variants are those of the source, read as it is written: each follows its documentation.
 #[test]
 fn no_error_is_left_out() {
-    let source = include_str!("../../../runtime/src/error.rs");
+    let source = include_str!("../../../../runtime/src/error.rs");
     let file = syn::parse_file(source).expect("error.rs is Rust");
     let declared = file.items.iter().find_map(|item| match item {
         syn::Item::Macro(item) if item.mac.path.is_ident("errors") => item.mac.tokens.clone().into_iter().last(),
@@ -56,7 +56,7 @@ fn no_error_is_left_out() {
     });
     let declared: BTreeSet<String> = declared.collect();
     let provoked: BTreeSet<String> = scenes().iter().map(|scene| variant(&scene.error)).collect();
-    assert_eq!(declared, provoked, "each variant needs a scene in tests/tests/errors/scenes.rs");
+    assert_eq!(declared, provoked, "each variant needs a scene in tests/laws/tests/errors/scenes.rs");
 }
 
 /// The sources of errors chain, and errors can be handed on as any other.
