@@ -75,8 +75,8 @@ pub use crate::sums::{Compensated, Plain, accumulate};
 pub use crate::sylvester::Sylvester;
 pub use crate::{
     Arrival, BoundsExpansion, Carried, Clebsch, Clock, Conserved, Conserves, Constrained, Controlled, Declared, Edge,
-    EndpointExpansion, Ends, Error, Expansion, Method, Momenta, Names, Reacting, Scalar, Sensitive, Space, Time,
-    Variational, group,
+    EndpointExpansion, Ends, Error, Expansion, Method, Momenta, Names, Reacting, Referring, Scalar, Sensitive, Space,
+    Time, Variational, group,
 };
 pub use core;
 pub use core::option::Option::{self, None, Some};

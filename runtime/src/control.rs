@@ -13,15 +13,17 @@ mod lift;
 mod newton;
 mod optimum;
 mod quadratic;
+mod reference;
 mod search;
 mod sweep;
 
 pub use optimum::{Ended, Optimum, Stage};
+pub use reference::{Referenced, Referring};
 
 use crate::fields::getters;
 use crate::newton::{Bracket, Trial};
 use crate::parameters::check_finite;
-use crate::{Controlled, Error, Real, Scalar};
+use crate::{Controlled, Error, Real, Scalar, Space};
 use core::ops::RangeInclusive;
 use nalgebra::SVector;
 use sweep::{Plan, Problem};
@@ -144,6 +146,70 @@ impl<S: Controlled<D, U, C, Scalar: Real>, const D: usize, const U: usize, const
         Stage::rest(x)
     }
 
+    /// Gives the reference r_k = `reference(k, t_k)` to each step of a plan, for its price and bounds.
+    ///
+    /// ```
+    /// # use clebsch::{Clebsch, Controlled, Target};
+    /// # use nalgebra::{Vector1, Vector2};
+    /// #[derive(Clebsch, Clone, Debug)]
+    /// #[clebsch(
+    ///     dynamics = |h, x: Vector2, u: Vector1| x + h * vector![x.y, u.x],
+    ///     cost     = |h, x, u, track: Vector2| h * ((x - track).norm_squared() + self.price * u.norm_squared()) / 2,
+    ///     endpoint = |x, last: Vector2| (x - last).norm_squared() / 2,
+    /// )]
+    /// struct Cart { price: f64 }
+    ///
+    /// // a cart follows a swing
+    /// let track = |t: f64| Vector2::new(t.sin(), t.cos());
+    /// let control = Cart { price: 1e-4 }.control(0.1)?.with_end_reference(track(2.0))?;
+    /// let start = track(0.0);
+    /// let mut plan = [control.stage(&start); 20];
+    /// control.refer(&mut plan, |_, t| track(t));
+    /// let optimum = control.solve(&start, Target::Free, &mut plan)?;
+    /// assert!((optimum.end() - track(2.0)).norm() < 0.1);
+    /// # Ok::<(), clebsch::Error>(())
+    /// ```
+    pub fn refer(
+        &self,
+        plan: &mut [Stage<S, D, U, C>],
+        mut reference: impl FnMut(usize, S::Scalar) -> <S::Constants as Referenced<S::Scalar>>::Reference,
+    ) {
+        for (k, stage) in plan.iter_mut().enumerate() {
+            let t = self.time + S::Scalar::from_f64(k as f64) * self.step_size;
+            stage.reference = reference(k, t);
+        }
+    }
+
+    /// The same with this reference r_N of the end, for the price that `endpoint` declares.
+    ///
+    /// ```
+    /// # use clebsch::{Clebsch, Controlled, Target};
+    /// # use nalgebra::{Vector1, Vector2};
+    /// # #[derive(Clebsch, Clone, Debug)]
+    /// # #[clebsch(
+    /// #     dynamics = |h, x: Vector2, u: Vector1| x + h * vector![x.y, u.x],
+    /// #     cost     = |h, u| h * self.price * u.norm_squared() / 2,
+    /// #     endpoint = |x, goal: Vector2| (x - goal).norm_squared() / 2,
+    /// # )]
+    /// # struct Cart { price: f64 }
+    /// // with endpoint = |x, goal: Vector2| (x - goal).norm_squared() / 2
+    /// let control = Cart { price: 1e-6 }.control(0.1)?.with_end_reference(Vector2::x())?;
+    /// let mut plan = [control.stage(&Vector2::zeros()); 20];
+    /// let optimum = control.solve(&Vector2::zeros(), Target::Free, &mut plan)?;
+    /// assert!((optimum.end() - Vector2::x()).norm() < 1e-4);
+    /// # Ok::<(), clebsch::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// [`Error::NotFinite`].
+    pub fn with_end_reference(
+        self,
+        reference: <S::Constants as Referenced<S::Scalar>>::EndReference,
+    ) -> Result<Self, Error> {
+        check_finite("the reference of the end", &reference)?;
+        Ok(Self { constants: self.constants.with_end_reference(reference), ..self })
+    }
+
     /// One step at the start time: f(t₀, h, x, u).
     ///
     /// # Errors
@@ -171,8 +237,8 @@ impl<S: Controlled<D, U, C, Scalar: Real>, const D: usize, const U: usize, const
     /// Every bound holds up to round-off of its own terms, whatever the sizes of the others. One with a = −∞, from an infinite parameter, is none.
     ///
     /// # Errors
-    /// * [`Error::PathLength`], [`Error::NotFinite`], [`Error::OffOrbit`], [`Error::OutsideMomentumSpace`] for the
-    ///   arguments;
+    /// * [`Error::PathLength`], [`Error::NotFinite`], [`Error::OffOrbit`], [`Error::OutsideMomentumSpace`],
+    ///   [`Error::NoReference`] for the arguments;
     /// * [`Error::Uncontrollable`] where inputs do not move the end towards the target;
     /// * [`Error::Infeasible`] and [`Error::TargetMissed`] where bounds cannot be satisfied, or leave no way to the target;
     /// * [`Error::NoExtremal`] where the work was not enough;
@@ -242,7 +308,7 @@ impl<S: Controlled<D, U, C, Scalar: Real>, const D: usize, const U: usize, const
     }
 
     /// The plan from its stage `steps` on, with the last input repeated at its end. It is the guess of the plan that is made
-    /// so many steps later. Multipliers move along.
+    /// so many steps later. Multipliers and references move along.
     ///
     /// ```
     /// # use clebsch::{Clebsch, Controlled};
@@ -295,7 +361,7 @@ impl<S: Controlled<D, U, C, Scalar: Real>, const D: usize, const U: usize, const
         let system = &self.system;
         let lengths = Problem::lengths(system, &target);
         let trial = |h| {
-            let constants = system.prepare(h)?;
+            let constants = system.prepare(h)?.with_end_reference(self.constants.end_reference());
             let problem =
                 Problem { system, constants: &constants, h, time: self.time, start, target: &target, lengths };
             let mut plan = Plan::new(problem, plan);
@@ -320,14 +386,19 @@ impl<S: Controlled<D, U, C, Scalar: Real>, const D: usize, const U: usize, const
         }
         self.system.check_place(start)?;
         target.place().map_or(Ok(()), |goal| self.system.check_place(goal))?;
-        plan.iter().try_for_each(|stage| check_finite("the guessed inputs", &stage.input))
+        plan.iter().try_for_each(|stage| check_finite("the guessed inputs", &stage.input))?;
+        let steps = plan.len();
+        let missing = plan.iter().position(|stage| !stage.reference.all_finite());
+        let of_end = || (!self.constants.end_reference().all_finite()).then_some(steps);
+        missing.or_else(of_end).map_or(Ok(()), |step| Err(Error::NoReference { step, steps }))
     }
 }
 
 impl<T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: usize, const C: usize> Plan<'_, S, D, U, C> {
     /// dV/dh of a solution, and the sum of the sizes of its terms.
     fn slope(&self) -> Result<(T, T), Error> {
-        let Problem { system, constants, h, .. } = self.problem;
+        let problem = &self.problem;
+        let Problem { system, constants, h, .. } = *problem;
         let steps = self.stages.len();
         let endpoint = system.endpoint_expanded(constants, self.problem.time_after(steps), &self.last);
         let mut slope = endpoint.by_time * T::from_f64(steps as f64);
@@ -342,13 +413,16 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: usize
             let t = self.problem.time_after(index);
             let k = T::from_f64(index as f64);
             let (x, u, z) = (&stage.place, &stage.input, &stage.multipliers);
-            let mut part = system.price_of_time(constants, t, k, x, u, &stage.next_costate)?;
+            let by_time = |constants: &_| system.price_of_time(constants, t, k, x, u, &stage.next_costate);
+            let mut part = constants.at(&stage.reference, by_time)?;
             if let Some((longer, shorter)) = &prepared {
                 let later = third * (t.abs() + h);
-                let by_time = (system.bounds(constants, t + later, x, u)?
-                    - system.bounds(constants, t - later, x, u)?)
+                let by_time = (problem.bounds(stage, t + later, x, u)? - problem.bounds(stage, t - later, x, u)?)
                     / (later + later);
-                let by_step = (system.bounds(longer, t, x, u)? - system.bounds(shorter, t, x, u)?) / (apart + apart);
+                let with = |constants: &S::Constants| {
+                    constants.at(&stage.reference, |constants| system.bounds(constants, t, x, u))
+                };
+                let by_step = (with(longer)? - with(shorter)?) / (apart + apart);
                 let pushing = (0..C).filter(|i| z[*i] > T::zero());
                 part += pushing.fold(T::zero(), |sum, i| sum + z[i] * (k * by_time[i] + by_step[i]));
             }

@@ -1,8 +1,7 @@
 //! The trait of systems whose inputs are chosen, which `#[derive(Clebsch)]` implements: one step, its price, its
 //! bounds, and their derivatives.
 
-use crate::{Control, Error, Real, Scalar, Space};
-use core::fmt::Debug;
+use crate::{Control, Error, Real, Referenced, Scalar, Space};
 use nalgebra::{SMatrix, SVector};
 use num_traits::Zero;
 
@@ -47,8 +46,8 @@ pub trait Controlled<const D: usize, const U: usize, const C: usize>: Sized {
     type Scalar: Scalar;
     /// The place that inputs steer.
     type Place: Space<Self::Scalar>;
-    /// The constants, which no step changes.
-    type Constants: Clone + Debug;
+    /// The constants, which no step changes, and the references of prices and bounds.
+    type Constants: Referenced<Self::Scalar>;
 
     /// The name of the struct.
     const NAME: &'static str;

@@ -451,6 +451,15 @@ errors! {
             "no small change of the inputs brings the end nearer to the target, {distance:.3e} away: check that the \
              inputs control all that the target fixes, and that there are enough steps; else guess inputs that lead \
              near it";
+        /// Price or bounds read a reference that was not given.
+        NoReference {
+            /// The step whose reference is missing, counted from 0. It is `steps` for the reference of the end.
+            step: usize,
+            /// The number of steps.
+            steps: usize,
+        } =>
+            "reference {step} is missing or not finite: steps 0 to {steps} − 1 get theirs from `Control::refer`, and the \
+             end, number {steps}, gets its own from `Control::with_end_reference`";
         /// No inputs were found that keep the bounds.
         Infeasible {
             /// The bound that is violated most, as it was written.

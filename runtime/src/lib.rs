@@ -214,7 +214,7 @@ pub use clebsch_macros::Clebsch;
 pub use columns::{Column, Columns, Form, Names};
 pub use conserved::{Conserved, Conserves};
 pub use constraint::{Constrained, Reacting};
-pub use control::{Control, Ended, Limits, Optimum, Stage, Target};
+pub use control::{Control, Ended, Limits, Optimum, Referenced, Referring, Stage, Target};
 pub use controlled::{Arrival, BoundsExpansion, Controlled, EndpointExpansion, Expansion};
 #[cfg(feature = "double-double")]
 pub use double_double::DoubleDouble;

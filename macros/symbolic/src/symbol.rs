@@ -23,6 +23,10 @@ pub enum Role {
     Element(usize),
     /// A leaf of the input u of a step.
     Input(usize),
+    /// A leaf of the reference of a step, data of a plan.
+    Reference(usize),
+    /// A leaf of the reference of the end of a plan.
+    EndReference(usize),
     /// The coordinates of log F of a factor.
     Logarithm(usize),
     /// The Cayley coordinates of F of a factor.

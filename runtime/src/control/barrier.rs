@@ -12,7 +12,7 @@
 
 use super::Stage;
 use super::quadratic::Slopes;
-use super::sweep::{Plan, Problem, Settings};
+use super::sweep::{Plan, Settings};
 use crate::space::larger;
 use crate::{BoundsExpansion, Controlled, Error, Expansion, Real, Space};
 use nalgebra::{SMatrix, SVector};
@@ -107,7 +107,7 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: usize
         let mut bounds: usize = 0;
         for (index, stage) in self.stages.iter_mut().enumerate() {
             let t = self.problem.time_after(index);
-            stage.slack = -self.problem.system.bounds(self.problem.constants, t, &stage.place, &stage.input)?;
+            stage.slack = -self.problem.bounds(stage, t, &stage.place, &stage.input)?;
             stage.excess = SVector::from_element(zero);
             for i in 0..C {
                 match stage.slack[i] {
@@ -237,12 +237,12 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: usize
         change: &SVector<T, D>,
         mut visit: impl FnMut(&mut Stage<S, D, U, C>, SVector<T, C>),
     ) -> Result<(), Error> {
-        let Problem { system, constants, .. } = self.problem;
+        let problem = &self.problem;
         let mut displacement = SVector::<T, D>::from_element(T::zero());
         for (index, stage) in self.stages.iter_mut().enumerate().filter(|_| C > 0) {
             let t = self.problem.time_after(index);
-            let step = system.expand(constants, t, &stage.place, &stage.input, &stage.next_costate)?;
-            let bounds = system.bounds_expanded(constants, t, &stage.place, &stage.input, &stage.multipliers)?;
+            let step = problem.expand(stage, t, &stage.next_costate)?;
+            let bounds = problem.bounds_expanded(stage, t, &stage.multipliers)?;
             let input = stage.shift + stage.by_multiplier * change + stage.gain * displacement;
             let moved = bounds.by_place * displacement + bounds.by_input * input;
             visit(stage, moved);
@@ -266,9 +266,8 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: usize
                 return false;
             }
             let (t, x, u) = (self.problem.time_after(index), &stage.place, &stage.input);
-            let Problem { system, constants, .. } = self.problem;
             // bounds of a step that cannot be made are not satisfied
-            let Ok(bounds) = system.bounds_expanded(constants, t, x, u, &stage.multipliers) else { return true };
+            let Ok(bounds) = self.problem.bounds_expanded(stage, t, &stage.multipliers) else { return true };
             let place = x.max_abs();
             // Written so that NaN is a violation.
             !(0..C).all(|i| {
@@ -285,8 +284,8 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: usize
             return T::zero();
         }
         self.stages.iter().enumerate().fold(T::zero(), |largest, (index, stage)| {
-            let (Problem { system, constants, .. }, t) = (&self.problem, self.problem.time_after(index));
-            let values = system.bounds(constants, t, &stage.place, &stage.input);
+            let t = self.problem.time_after(index);
+            let values = self.problem.bounds(stage, t, &stage.place, &stage.input);
             values.map_or(largest, |values| values.iter().fold(largest, |largest, value| larger(largest, *value)))
         })
     }
@@ -295,8 +294,8 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: usize
     pub fn worst_bound(&self) -> Option<(usize, &'static str, T)> {
         let (mut most, mut worst) = (T::zero(), None);
         for (index, stage) in self.stages.iter().enumerate() {
-            let (Problem { system, constants, .. }, t) = (&self.problem, self.problem.time_after(index));
-            let Ok(values) = system.bounds(constants, t, &stage.place, &stage.input) else { continue };
+            let t = self.problem.time_after(index);
+            let Ok(values) = self.problem.bounds(stage, t, &stage.place, &stage.input) else { continue };
             for i in 0..C {
                 let part = values[i] / stage.excess[i];
                 if part > most && stage.excess[i] > T::zero() {

@@ -327,7 +327,8 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: usize
         last_motion: &SVector<T, D>,
         units: &SVector<T, D>,
     ) -> Result<Proposal<S::Place, T>, Error> {
-        let Problem { system, constants, .. } = self.problem;
+        let problem = &self.problem;
+        let Problem { system, constants, .. } = *problem;
         let (zero, one) = (T::zero(), T::one());
         let size = |change: SVector<T, D>| change.component_mul(units).iter().fold(zero, |sum, part| sum + part.abs());
         let (mut price, mut logarithms, mut gaps, mut relaxed, mut allowed) = (zero, zero, zero, zero, None);
@@ -340,7 +341,7 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: usize
                 gaps += size(system.displacement(&x, reached));
             }
             if C > 0 {
-                let bounds = system.bounds(constants, t, &x, &input)?;
+                let bounds = problem.bounds(stage, t, &x, &input)?;
                 for i in (0..C).filter(|i| !is_none(stage.slack[*i])) {
                     let (s, excess) = (stage.slack[i], (one - fraction) * stage.excess[i]);
                     let next = excess - bounds[i];
@@ -355,7 +356,7 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: usize
                     }
                 }
             }
-            price += system.price(constants, t, &x, &input)?;
+            price += problem.price(stage, t, &x, &input)?;
             reached = Some(system.follow(constants, t, &x, &input)?);
             (stage.next_place, stage.next_input) = (x, input);
         }

@@ -1,8 +1,14 @@
 //! The answer to a problem of optimal control, and the storage that the caller provides.
 
+use super::Referenced;
+use super::reference::ungiven;
 use crate::fields::{copied, debug, getters};
 use crate::{Controlled, Error, Real, Space};
 use nalgebra::{SMatrix, SVector};
+
+/// The reference of a step of `S`; `()` where price and bounds read none.
+pub(super) type Reference<S, const D: usize, const U: usize, const C: usize> =
+    <<S as Controlled<D, U, C>>::Constants as Referenced<<S as Controlled<D, U, C>>::Scalar>>::Reference;
 
 /// One step of a plan. Made by [`Control::stage`](crate::Control::stage), filled by [`Control::solve`](crate::Control::solve).
 ///
@@ -29,6 +35,7 @@ pub struct Stage<S: Controlled<D, U, C, Scalar: Real>, const D: usize, const U: 
     pub(super) costate: SVector<S::Scalar, D>,
     pub(super) next_costate: SVector<S::Scalar, D>,
     pub(super) gain: SMatrix<S::Scalar, U, D>,
+    pub(super) reference: Reference<S, D, U, C>,
     pub(super) multipliers: SVector<S::Scalar, C>,
     /// s > 0 with a + s = excess.
     pub(super) slack: SVector<S::Scalar, C>,
@@ -56,6 +63,7 @@ impl<S: Controlled<D, U, C, Scalar: Real>, const D: usize, const U: usize, const
             costate: Space::origin(),
             next_costate: Space::origin(),
             gain: Space::origin(),
+            reference: ungiven(),
             multipliers: Space::origin(),
             slack: Space::origin(),
             excess: Space::origin(),
@@ -76,9 +84,16 @@ impl<S: Controlled<D, U, C, Scalar: Real>, const D: usize, const U: usize, const
         Self { input, ..self }
     }
 
+    /// The same with this reference r_k, for the price and the bounds of its step.
+    #[inline]
+    #[must_use]
+    pub fn with_reference(self, reference: Reference<S, D, U, C>) -> Self {
+        Self { reference, ..self }
+    }
+
     /// Goes back to the input of the guess, without multipliers.
     pub(super) fn forget(&mut self) {
-        *self = Self { input: self.guess, guess: self.guess, ..Self::rest(&self.place) };
+        *self = Self { input: self.guess, guess: self.guess, reference: self.reference, ..Self::rest(&self.place) };
     }
 
     /// Begins the next search without multipliers.
@@ -91,6 +106,8 @@ impl<S: Controlled<D, U, C, Scalar: Real>, const D: usize, const U: usize, const
         ref place: S::Place;
         /// The input u_k of the step from x_k to x_{k+1}.
         ref input: SVector<S::Scalar, U>;
+        /// The reference r_k of price and bounds: NaN until it is given, `()` where they read none.
+        ref reference: Reference<S, D, U, C>;
         /// The costate p_k = ∂V/∂x at x_k, V the least price from there on: a covector of the small changes of x_k.
         ref costate: SVector<S::Scalar, D>;
         /// The matrix K of optimal feedback, of shape U×D. If x_k is changed by δ, the optimal plan from there to the

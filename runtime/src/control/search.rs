@@ -199,7 +199,8 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: usize
         fraction: T,
         change: &SVector<T, D>,
     ) -> Result<Rolled<S::Place, T>, Error> {
-        let Problem { system, constants, start, .. } = self.problem;
+        let problem = &self.problem;
+        let Problem { system, constants, start, .. } = *problem;
         let barrier = descent.settings.barrier;
         let (zero, one) = (T::zero(), T::one());
         let least = one - T::from_f64(TO_BOUNDARY);
@@ -213,7 +214,7 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: usize
                 input += stage.gain * system.displacement(&stage.place, &x);
             }
             if C > 0 {
-                let bounds = system.bounds(constants, t, &x, &input)?;
+                let bounds = problem.bounds(stage, t, &x, &input)?;
                 for i in 0..C {
                     let (z, s) = (stage.multipliers[i], stage.slack[i]);
                     if is_none(s) {
@@ -239,7 +240,7 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: usize
                     }
                 }
             }
-            price += system.price(constants, t, &x, &input)?;
+            price += problem.price(stage, t, &x, &input)?;
             (stage.next_place, stage.next_input) = (x, input);
             x = system.follow(constants, t, &x, &input)?;
         }

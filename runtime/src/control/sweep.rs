@@ -16,10 +16,10 @@ use super::attempt::Amplitudes;
 use super::end::PlanEnd;
 use super::lift::Gap;
 use super::quadratic::{Bounded, Fall, Policy, Value};
-use super::{Stage, Target};
+use super::{Referenced, Stage, Target};
 use crate::newton::{Curvature, Equilibrated};
 use crate::space::larger;
-use crate::{Controlled, Error, Expansion, Real, Scalar, Space};
+use crate::{BoundsExpansion, Controlled, Error, Expansion, Real, Scalar, Space};
 use nalgebra::{SMatrix, SVector};
 
 /// A problem of optimal control.
@@ -155,6 +155,54 @@ impl<S: Controlled<D, U, C, Scalar: Real>, const D: usize, const U: usize, const
     pub fn time_after(&self, steps: usize) -> S::Scalar {
         self.time + S::Scalar::from_f64(steps as f64) * self.h
     }
+
+    /// ℓ with the reference of a stage, at the time t.
+    #[inline]
+    pub fn price(
+        &self,
+        stage: &Stage<S, D, U, C>,
+        t: S::Scalar,
+        x: &S::Place,
+        u: &SVector<S::Scalar, U>,
+    ) -> Result<S::Scalar, Error> {
+        self.constants.at(&stage.reference, |constants| self.system.price(constants, t, x, u))
+    }
+
+    /// a with the reference of a stage, at the time t.
+    #[inline]
+    pub fn bounds(
+        &self,
+        stage: &Stage<S, D, U, C>,
+        t: S::Scalar,
+        x: &S::Place,
+        u: &SVector<S::Scalar, U>,
+    ) -> Result<SVector<S::Scalar, C>, Error> {
+        self.constants.at(&stage.reference, |constants| self.system.bounds(constants, t, x, u))
+    }
+
+    /// The step of a stage with its derivatives, at the time t.
+    #[inline]
+    pub fn expand(
+        &self,
+        stage: &Stage<S, D, U, C>,
+        t: S::Scalar,
+        costate: &SVector<S::Scalar, D>,
+    ) -> Result<Expansion<S::Place, S::Scalar, D, U>, Error> {
+        let (x, u) = (&stage.place, &stage.input);
+        self.constants.at(&stage.reference, |constants| self.system.expand(constants, t, x, u, costate))
+    }
+
+    /// The bounds of a stage with their derivatives, at the time t.
+    #[inline]
+    pub fn bounds_expanded(
+        &self,
+        stage: &Stage<S, D, U, C>,
+        t: S::Scalar,
+        multipliers: &SVector<S::Scalar, C>,
+    ) -> Result<BoundsExpansion<S::Scalar, D, U, C>, Error> {
+        let (x, u) = (&stage.place, &stage.input);
+        self.constants.at(&stage.reference, |constants| self.system.bounds_expanded(constants, t, x, u, multipliers))
+    }
 }
 
 impl<'a, T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: usize, const C: usize>
@@ -168,7 +216,8 @@ impl<'a, T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: u
 
     /// Linearises and eliminates: fills costates, gains and shifts of the stages.
     pub fn eliminate(&mut self, end: &PlanEnd<T, D>, settings: &Settings<T, D>) -> Result<PlanSummary<T, D, U>, Error> {
-        let Problem { system, constants, .. } = self.problem;
+        let problem = &self.problem;
+        let Problem { system, constants, .. } = *problem;
         let steps = self.stages.len();
         let endpoint = system.endpoint_expanded(constants, self.problem.time_after(steps), &self.last);
         let mut value = Value::of_end(&endpoint, end, settings);
@@ -197,7 +246,7 @@ impl<'a, T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: u
             // the step, with its curvature or without
             let expand = |value: &Value<T, D>, is_straight: bool| {
                 let costate = if is_straight { SVector::zeros() } else { value.costate };
-                system.expand(constants, t, &stage.place, &stage.input, &costate)
+                problem.expand(stage, t, &costate)
             };
             // its model, with the curvature of its bounds or without
             let model = |value: &Value<T, D>, step: &Expansion<S::Place, T, D, U>, is_straight: bool| {
@@ -206,7 +255,7 @@ impl<'a, T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: u
                 if self.bounds > zero {
                     let natural = step.input_curvature.diagonal();
                     let multipliers = if is_straight { SVector::zeros() } else { stage.multipliers };
-                    let mut bounds = system.bounds_expanded(constants, t, &stage.place, &stage.input, &multipliers)?;
+                    let mut bounds = problem.bounds_expanded(stage, t, &multipliers)?;
                     let (violated, slopes) = stage.add_bounds(&mut step, &mut bounds, settings);
                     bounded = Some(Bounded { natural, slopes, violated });
                 }
@@ -221,7 +270,7 @@ impl<'a, T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: u
             }
             if settings.is_last {
                 let bounds = self.bounds > zero;
-                let expanded = || system.bounds_expanded(constants, t, &stage.place, &stage.input, &stage.multipliers);
+                let expanded = || problem.bounds_expanded(stage, t, &stage.multipliers);
                 let pushes = bounds.then(expanded).transpose()?.map(|bounds| stage.pushes(&bounds.by_input));
                 summary.terms = larger(summary.terms, stage.terms(&step, &value.costate, pushes).max_abs());
             }

@@ -51,7 +51,21 @@ pub(super) fn check<S, const D: usize, const U: usize, const C: usize>(
     S: Controlled<D, U, C, Scalar = f64>,
     S::Place: Space<f64>,
 {
-    let constants = system.prepare(H).expect("regular parameters");
+    check_with(system, &|h| system.prepare(h).expect("regular parameters"), chart, x, random);
+}
+
+/// The same with the constants of a step size, and with their references.
+pub(super) fn check_with<S, const D: usize, const U: usize, const C: usize>(
+    system: &S,
+    prepare: &dyn Fn(f64) -> S::Constants,
+    chart: &Chart<S::Place, D>,
+    x: &S::Place,
+    random: &mut Random,
+) where
+    S: Controlled<D, U, C, Scalar = f64>,
+    S::Place: Space<f64>,
+{
+    let constants = prepare(H);
     system.check_place(x).expect("a place");
     let (u, costate, z) = (random.vector::<U>(), random.vector::<D>(), random.vector::<C>());
     let expansion = system.expand(&constants, T, x, &u, &costate).expect("a step");
@@ -105,8 +119,8 @@ pub(super) fn check<S, const D: usize, const U: usize, const C: usize>(
             assert!((found - expected).abs() < 2e-5, "{name}: {k}, {l} of the bounds: {found} is not {expected}");
         }
     }
-    of_time(system, x, &u, &costate, chart);
-    of_end(system, x, chart);
+    of_time(system, prepare, x, &u, &costate, chart);
+    of_end(system, &constants, x, chart);
     of_targets(system, x, chart);
 }
 
@@ -146,6 +160,7 @@ fn second<const D: usize, const U: usize, const R: usize>(
 /// d/dh (ℓ + λ·f) with t = t₀ + kh.
 fn of_time<S, const D: usize, const U: usize, const C: usize>(
     system: &S,
+    prepare: &dyn Fn(f64) -> S::Constants,
     x: &S::Place,
     u: &SVector<f64, U>,
     costate: &SVector<f64, D>,
@@ -154,23 +169,26 @@ fn of_time<S, const D: usize, const U: usize, const C: usize>(
     S: Controlled<D, U, C, Scalar = f64>,
 {
     let k = 3.0;
-    let reference = system.follow(&system.prepare(H).expect("regular"), T, x, u).expect("a step");
+    let reference = system.follow(&prepare(H), T, x, u).expect("a step");
     let at = |step: f64| {
-        let constants = system.prepare(H + step).expect("regular");
+        let constants = prepare(H + step);
         let t = T + k * step;
         let next = system.follow(&constants, t, x, u).expect("a step");
         system.price(&constants, t, x, u).expect("a step") + costate.dot(&(chart.coordinates)(&reference, &next))
     };
     let expected = (at(1e-5) - at(-1e-5)) / 2e-5;
-    let found = system.price_of_time(&system.prepare(H).expect("regular"), T, k, x, u, costate).expect("a step");
+    let found = system.price_of_time(&prepare(H), T, k, x, u, costate).expect("a step");
     assert!((found - expected).abs() < 1e-7, "{}: {found} is not {expected}", S::NAME);
 }
 
-fn of_end<S, const D: usize, const U: usize, const C: usize>(system: &S, x: &S::Place, chart: &Chart<S::Place, D>)
-where
+fn of_end<S, const D: usize, const U: usize, const C: usize>(
+    system: &S,
+    constants: &S::Constants,
+    x: &S::Place,
+    chart: &Chart<S::Place, D>,
+) where
     S: Controlled<D, U, C, Scalar = f64>,
 {
-    let constants = &system.prepare(H).expect("regular");
     let end = system.endpoint_expanded(constants, T, x);
     assert!((end.price - system.endpoint(constants, T, x)).abs() < 1e-14);
     let by_time = (system.endpoint(constants, T + 1e-5, x) - system.endpoint(constants, T - 1e-5, x)) / 2e-5;
@@ -198,19 +216,26 @@ where
     assert!((system.displacement(x, &target) - delta).amax() < 1e-10, "{}", S::NAME);
 }
 
-#[test]
-fn a_group_from_the_right() {
-    let random = &mut Random::new(501);
-    fn algebra(v: &Vector3<f64>) -> Matrix3<f64> {
-        Matrix3::new(0.0, -v.x, v.y, v.x, 0.0, v.z, 0.0, 0.0, 0.0)
-    }
-    let chart = Chart {
+/// An element of the Lie algebra of SE(2).
+fn algebra(v: &Vector3<f64>) -> Matrix3<f64> {
+    Matrix3::new(0.0, -v.x, v.y, v.x, 0.0, v.z, 0.0, 0.0, 0.0)
+}
+
+/// Places in a plane that are moved from the right.
+pub(super) fn chart_of_plane() -> Chart<Matrix3<f64>, 3> {
+    Chart {
         moved: |q: &Matrix3<f64>, delta| q * exponential(&algebra(delta)),
         coordinates: |q, p| {
             let log = logarithm(&(q.try_inverse().expect("a motion") * p - Matrix3::identity()));
             Vector3::new(log[(1, 0)], log[(0, 2)], log[(1, 2)])
         },
-    };
+    }
+}
+
+#[test]
+fn a_group_from_the_right() {
+    let random = &mut Random::new(501);
+    let chart = chart_of_plane();
     for _ in 0..5 {
         let system = Unicycle {
             turn_price: 0.7,

@@ -5,5 +5,6 @@ mod closed_forms;
 mod derivatives;
 mod extremes;
 mod plans;
+mod references;
 mod right_hand_sides;
 mod velocities;

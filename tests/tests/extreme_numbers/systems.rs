@@ -70,11 +70,12 @@ macro_rules! modules {
 
 clebsch_tests::every_scene!(modules);
 
-/// Systems that are not stepped here: `regulator` and `unicycle` are planned, in the tests of control, and
+/// Systems that are not stepped here: `follower`, `regulator` and `unicycle` are planned, in the tests of control, and
 /// `annotated_body` has private fields. `cosserat_rod`, `harmonic_map`, `sine_gordon` and `wave_map` are fields, whose tests step them on grids.
-const OTHERS: [&str; 8] = [
+const OTHERS: [&str; 9] = [
     "annotated_body",
     "cosserat_rod",
+    "follower",
     "harmonic_map",
     "rate_limited_body",
     "regulator",

@@ -136,6 +136,16 @@ fn inputs(model: &System<'_>) -> String {
     model.inputs.each(|leaf| leaf.name.as_str()).join(", ")
 }
 
+/// The sentences about references, each with its end of line; none where none are read.
+fn references(model: &System<'_>) -> String {
+    let told = [(&model.reference, "each step", "refer"), (&model.end_reference, "the end", "with_end_reference")];
+    let told = told.into_iter().filter(|((_, leaves), ..)| !leaves.is_empty()).map(|((_, leaves), of, by)| {
+        let names = leaves.each(|leaf| leaf.name.as_str()).join(", ");
+        format!("References of {of}: {names}; `{by}` gives them.\n")
+    });
+    told.collect()
+}
+
 /// `one bound`, `3 bounds`; `None` where nothing is bounded.
 fn bounds(model: &System<'_>) -> Option<String> {
     match model.control.as_ref().map_or(0, |control| control.bounds.len()) {
@@ -165,10 +175,11 @@ pub fn derivation_of_control(formulas: &SteeredFormulas<'_>, costs: &str) -> Str
     };
     let bounds = bounds(model).map_or(String::new(), |bounds| format!(" and keep {bounds}"));
     format!(
-        "{}\n\n{}Inputs: {}; chosen are those of least price among all that reach the target{bounds}.\n{motion}\n\nFormulas\n\n{}\nCost\n\n{costs}",
+        "{}\n\n{}Inputs: {}; chosen are those of least price among all that reach the target{bounds}.\n{motion}\n{}\nFormulas\n\n{}\nCost\n\n{costs}",
         model.item.ident,
         frames(model),
         inputs(model),
+        references(model),
         formulas.table(),
     )
 }

@@ -10,7 +10,7 @@ use super::constraint::coordinates_of_motion;
 use super::midpoint::MidpointFormulas;
 use super::moves::inverse_by;
 use super::{Formula, FormulaTable, Id, JointRows, MechanicsFormulas, SteeredFormulas, SystemFormulas};
-use crate::model::{EdgeEnergy, LeafSpace, Motion};
+use crate::model::{Configuration, EdgeEnergy, LeafSpace, Motion};
 
 /// More conserved momenta are told by the first and the last of them.
 pub(super) const MOST_LISTED: usize = 16;
@@ -91,6 +91,7 @@ impl<'g> SystemFormulas<'g> {
         if let (Some(control), Some(steering)) = (&self.model.control, &self.steering) {
             let velocity = tuple(control.velocities.iter().map(Expr::to_string));
             let read = if steering.on_edge.price { format!("{velocity}, {u}") } else { u.clone() };
+            let read = referring(read, control.price, &self.model.reference.1);
             let price = Formula::new(Id::Price, format!("ℓ(h, {read})"), [control.price]);
             let bounds: Vec<_> = control.bounds.each(|bound| bound.value);
             let bounds = Formula::new(Id::Bounds, "0 ≥ a", bounds);
@@ -109,11 +110,18 @@ impl<'g> SystemFormulas<'g> {
                 [] => q.clone(),
                 velocities => format!("{q}, {}", tuple(velocities.iter().map(Expr::to_string))),
             };
+            let read = referring(read, price.value, &self.model.end_reference.1);
             let row = Formula::new(Id::PriceOfEnd, format!("φ({read})"), [price.value]);
             rows.push(row.computed_as(vec![endpoint.price.value]));
         }
         rows
     }
+}
+
+/// The arguments of a price, with the references that it reads.
+fn referring<'g>(read: String, price: Expr<'g>, references: &[Configuration<'g>]) -> String {
+    let references = references.iter().filter(|leaf| price.depends_on(leaf.symbol));
+    references.fold(read, |read, leaf| format!("{read}, {}", leaf.name))
 }
 
 impl<'g> SteeredFormulas<'g> {

@@ -5,12 +5,12 @@ use proc_macro2::TokenStream;
 use quote::quote;
 
 use super::SystemEmitter;
-use super::block::{Block, matrix};
-use super::function::Words;
+use super::block::{Block, leaf, matrix};
+use super::function::{Function, Words};
 use super::functions::{
     BOUNDED, BOUNDED_ON_EDGE, ENDED, EXPANDED, EXPANDED_ON_EDGE, FORCED, PRICED, PRICED_ON_EDGE, STEERED,
 };
-use super::scope::size;
+use super::scope::{nested_type, size};
 use crate::derive::Id;
 use crate::lower::Input;
 
@@ -21,6 +21,8 @@ pub(super) struct ControlTypes<'a> {
     pub inputs: usize,
     /// The declared bounds.
     pub bounds: Vec<&'a str>,
+    /// The types of the references of a step and of the end, where there are any.
+    pub references: Option<[TokenStream; 2]>,
 }
 
 impl ControlTypes<'_> {
@@ -30,13 +32,18 @@ impl ControlTypes<'_> {
         block: &Block<'_>,
         functions: impl FnOnce(&Words<'_>) -> TokenStream,
     ) -> TokenStream {
-        let ControlTypes { is_steered, inputs, bounds } = self;
+        let ControlTypes { is_steered, inputs, bounds, references } = self;
         let (motions, name) = (block.dimension, &block.target.name);
         let (dimension, point, constants) =
             if *is_steered { (motions, quote!(Q), quote!(T)) } else { (2 * motions, quote!((Q, Mu)), quote!((C, T))) };
         let [d, u, c, motions] = [dimension, *inputs, bounds.len(), motions].map(size);
+        let constants = match references {
+            Some([of_step, of_end]) => quote!(runtime::Referring<#constants, #of_step, #of_end>),
+            None => constants,
+        };
         let functions = functions(&|word| {
             Some(match word {
+                "Constants" => constants.clone(),
                 "Expansion" => quote!(runtime::Expansion<#point, T, #d, #u>),
                 "Arrival" => quote!(runtime::Arrival<T, #d>),
                 "BoundsExpansion" => quote!(runtime::BoundsExpansion<T, #d, #u, #c>),
@@ -75,6 +82,7 @@ impl SystemEmitter<'_, '_> {
             is_steered,
             inputs: self.model.inputs.iter().map(|leaf| leaf.shape.len()).sum(),
             bounds: control.bounds.each(|bound| bound.text.as_str()),
+            references: self.reference_types(),
         };
         let scope = self.scope_of_system();
         let functions = |words: &Words<'_>| {
@@ -93,6 +101,7 @@ impl SystemEmitter<'_, '_> {
             let written = tables.map(|table| {
                 self.functions(table, (0, 0), &words, |function, kernel| {
                     let body = function.written(&scope, kernel, &words)?;
+                    let body = body.after(self.references_of(function, &types));
                     let is_short = ["follow", "price", "bounds"].contains(&function.name);
                     Some(if is_short { body.inlined(quote!(#[inline])) } else { body })
                 })
@@ -100,6 +109,27 @@ impl SystemEmitter<'_, '_> {
             quote!(#(#written)*)
         };
         Some(types.implementation(self, functions))
+    }
+
+    /// The types of references, where price, bounds or the price of the end read any.
+    fn reference_types(&self) -> Option<[TokenStream; 2]> {
+        let all = [&self.model.reference, &self.model.end_reference];
+        let are_any = all.iter().any(|(_, leaves)| !leaves.is_empty());
+        are_any.then(|| {
+            all.map(|(layout, leaves)| nested_type(layout, |k| leaf(leaves[k].shape, leaves[k].is_quaternion)))
+        })
+    }
+
+    /// The references that a function reads, with the constants that they come with.
+    fn references_of(&self, function: &Function, types: &ControlTypes<'_>) -> Option<TokenStream> {
+        types.references.as_ref().filter(|_| function.arguments.contains("constants"))?;
+        Some(match function.name {
+            "follow" => quote!(let constants = &constants.constants;),
+            "endpoint" | "endpoint_expanded" => {
+                quote!(let runtime::Referring { constants, end_reference, .. } = constants;)
+            }
+            _ => quote!(let runtime::Referring { constants, reference, .. } = constants;),
+        })
     }
 
     /// Further words in the code of `Controlled`.
@@ -117,6 +147,16 @@ impl SystemEmitter<'_, '_> {
             "Bend" => body(Id::Bend),
             "Bracket" => body(Id::Bracket),
             "Curvature" => quote!(runtime::SMatrix<T, #w, #w>),
+            "Prepared" => {
+                let constants = match types.is_steered {
+                    true => quote!(h),
+                    false => quote!((runtime::Clebsch::constants(self, h)?, h)),
+                };
+                match types.references {
+                    Some(_) => quote!(runtime::Referring::new::<T>(#constants)),
+                    None => constants,
+                }
+            }
             "StepSize" if types.is_steered => quote!(*constants),
             "StepSize" => quote!(constants.1),
             "Place" if types.is_steered => quote!(x),

@@ -450,14 +450,14 @@ functions! {
 
     /// `Controlled`: the step that inputs make by themselves, from points and their costates, by its size.
     STEERED(false) {
-        fn prepare(&self, h: T) -> Result<T, Error> { Id::Constants } = { Checks runtime::Ok(h) }
+        fn prepare(&self, h: T) -> Result<Constants, Error> { Id::Constants } = { Checks runtime::Ok(Prepared) }
         fn check_place(&self, q: &Q) -> Result<(), Error> { Id::Membership } = { runtime::check_on_orbit(q, { OrbitDefect }) }
         /// The step that an input makes.
-        fn follow(&self, constants: &T, t: T, x: &Q, u: &Input) -> Result<Q, Error> { Id::Increment => Id::Controls } = {
+        fn follow(&self, constants: &Constants, t: T, x: &Q, u: &Input) -> Result<Q, Error> { Id::Increment => Id::Controls } = {
             Moved runtime::check_reached(next)
         }
         /// The step with its derivatives, and the second derivatives of ℓ + λ·η′.
-        fn expand(&self, constants: &T, t: T, x: &Q, u: &Input, mu: &Costates) -> Result<Expansion, Error> { Id::StepExpanded } = {
+        fn expand(&self, constants: &Constants, t: T, x: &Q, u: &Input, mu: &Costates) -> Result<Expansion, Error> { Id::StepExpanded } = {
             Moved
             let next = runtime::check_reached(next)?;
             Locals
@@ -467,7 +467,7 @@ functions! {
             })
         }
         /// d/dh (ℓ + λ·η′), the start of the step moving with h.
-        fn price_of_time(&self, constants: &T, t: T, k: T, x: &Q, u: &Input, mu: &Costates) -> Result<T, Error> { Id::PriceOfTime } = {
+        fn price_of_time(&self, constants: &Constants, t: T, k: T, x: &Q, u: &Input, mu: &Costates) -> Result<T, Error> { Id::PriceOfTime } = {
             Moved
             let slopes: runtime::SVector<T, 2> = { Locals Value0 };
             runtime::Ok(slopes[0] + k * slopes[1])
@@ -490,12 +490,10 @@ functions! {
 
     /// `Controlled`: the effect of inputs of forces on states, by the constants of steps and their size.
     FORCED(false) {
-        fn prepare(&self, h: T) -> Result<(C, T), Error> { Id::Constants } = {
-            runtime::Ok((runtime::Clebsch::constants(self, h)?, h))
-        }
+        fn prepare(&self, h: T) -> Result<Constants, Error> { Id::Constants } = { runtime::Ok(Prepared) }
         fn check_place(&self, x: &(Q, Mu)) -> Result<(), Error> { Id::Membership } = { runtime::check_state(self, &x.0, &x.1) }
         /// The forced step.
-        fn follow(&self, constants: &(C, T), t: T, x: &(Q, Mu), u: &Input) -> Result<(Q, Mu), Error> { Id::Increment => Id::Controls } = {
+        fn follow(&self, constants: &Constants, t: T, x: &(Q, Mu), u: &Input) -> Result<(Q, Mu), Error> { Id::Increment => Id::Controls } = {
             runtime::forced_step(self, &constants.0, t, x, u)
         }
         /// (Gᵀ(q* − q), N* − N) and (GᵀG, I).
@@ -511,13 +509,13 @@ functions! {
             runtime::pair(&motion, &(y.1 - x.1))
         }
         /// The state (Φ_{τ(η)}(q), N + ν).
-        fn moved(&self, x: &(Q, Mu), delta: &Costates) -> (Q, Mu) { Id::Retraction => } = {
+        fn moved(&self, x: &(Q, Mu), delta: &Costates) -> (Q, Mu) { Id::Retraction } = {
             let (eta, nu): (Mu, Mu) = runtime::parted(delta);
             let d = runtime::Variational::retraction(self, &eta);
             (runtime::Variational::advance(self, &x.0, &d), x.1 + nu)
         }
         /// The infinitesimal motion (η_Q(q), ν).
-        fn infinitesimal_motion(&self, x: &(Q, Mu), delta: &Costates) -> (Q, Mu) { Id::Generator => } = {
+        fn infinitesimal_motion(&self, x: &(Q, Mu), delta: &Costates) -> (Q, Mu) { Id::Generator } = {
             let (eta, nu): (Mu, Mu) = runtime::parted(delta);
             (runtime::Variational::infinitesimal_motion(self, &x.0, &eta), nu)
         }
@@ -527,7 +525,7 @@ functions! {
     EXPANDED(false) {
         /// The forced step with its derivatives, and the second derivatives of ℓ + λ·(η′, N⁺). With the multipliers κ
         /// of the momentum equation they are those of α·η′ + β·F⁺ℓd + κ·(F⁻ℓd − N). η′ contributes ± ½ α·[Ad η, ζ].
-        fn expand(&self, constants: &(C, T), t: T, x: &(Q, Mu), u: &Input, costate: &Costates) -> Result<Expansion, Error> {
+        fn expand(&self, constants: &Constants, t: T, x: &(Q, Mu), u: &Input, costate: &Costates) -> Result<Expansion, Error> {
             Id::PriceExpanded => Id::StepExpanded
         } = {
             Crossed Linked
@@ -544,7 +542,7 @@ functions! {
             runtime::Ok(link.expansion(next, &curvature, &bracket, &price))
         }
         /// d/dh (ℓ + λ·(η′, N⁺)), the start of the step moving with h.
-        fn price_of_time(&self, constants: &(C, T), t: T, k: T, x: &(Q, Mu), u: &Input, costate: &Costates) -> Result<T, Error> {
+        fn price_of_time(&self, constants: &Constants, t: T, k: T, x: &(Q, Mu), u: &Input, costate: &Costates) -> Result<T, Error> {
             Id::PriceOfTime
         } = {
             Crossed Linked
@@ -557,7 +555,7 @@ functions! {
     EXPANDED_ON_EDGE(false) {
         /// The forced step with its derivatives, and the second derivatives of ℓ + λ·(η′, N⁺). With the multipliers κ
         /// of the momentum equation they are those of ℓ + α·η′ + β·F⁺ℓd + κ·(F⁻ℓd − N). η′ contributes ± ½ α·[Ad η, ζ].
-        fn expand(&self, constants: &(C, T), t: T, x: &(Q, Mu), u: &Input, costate: &Costates) -> Result<Expansion, Error> {
+        fn expand(&self, constants: &Constants, t: T, x: &(Q, Mu), u: &Input, costate: &Costates) -> Result<Expansion, Error> {
             Id::PriceExpanded => Id::StepExpanded
         } = {
             Crossed
@@ -571,7 +569,7 @@ functions! {
             runtime::Ok(link.expansion_of_edge(next, &curvature, &bracket, (price, &slope, &bend)))
         }
         /// d/dh (ℓ + λ·(η′, N⁺)), the start of the step moving with h.
-        fn price_of_time(&self, constants: &(C, T), t: T, k: T, x: &(Q, Mu), u: &Input, costate: &Costates) -> Result<T, Error> {
+        fn price_of_time(&self, constants: &Constants, t: T, k: T, x: &(Q, Mu), u: &Input, costate: &Costates) -> Result<T, Error> {
             Id::PriceOfTime
         } = {
             Crossed

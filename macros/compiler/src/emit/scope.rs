@@ -102,6 +102,8 @@ impl Scope<'_, '_> {
             Role::At(place, i) => configuration(&format!("q{place}"), i),
             Role::Covector(i) => configuration("p", i),
             Role::Input(i) => leaf("u", &self.model.inputs[i].accessor),
+            Role::Reference(i) => leaf("reference", &self.model.reference.1[i].accessor),
+            Role::EndReference(i) => leaf("end_reference", &self.model.end_reference.1[i].accessor),
             Role::Element(k) => factor("f", k),
             Role::Increment(k) => factor("d", k),
             Role::Following(k) => factor("second", k),

@@ -11,7 +11,7 @@ use super::function::{Body, Function, Words, no_words};
 use super::functions::{BOUNDED, ENDED, EXPANDED, FORCED, PRICED, STEERED, SYSTEM};
 use super::names::Names;
 use super::scope::nested_type;
-use crate::model::Outline;
+use crate::model::{Nested, Outline};
 use crate::parse::Declaration;
 
 /// The implementation of the trait for a declaration with an error.
@@ -28,8 +28,7 @@ pub fn stub(declaration: &Declaration, outline: &Outline) -> TokenStream {
             quote!([#ty; #length])
         })
     };
-    let [q, f, input] =
-        [configuration, element, input].map(|(layout, leaves)| nested_type(layout, |k| leaf(leaves[k].0, leaves[k].1)));
+    let [q, f, input] = [configuration, element, input].map(nested);
     let block = Block {
         krate: declaration.dials.krate.as_ref().map_or(quote!(::clebsch), |path| quote!(#path)),
         scalar: &outline.scalar,
@@ -44,6 +43,11 @@ pub fn stub(declaration: &Declaration, outline: &Outline) -> TokenStream {
     // an alias has to use its parameter
     let constants = if block.is_generic() { quote!(::core::marker::PhantomData<T>) } else { quote!(()) };
     anonymous(&block.named(&quote!(type C = #constants; #controlled #system)))
+}
+
+/// The type of a product.
+fn nested((layout, leaves): &Nested) -> TokenStream {
+    nested_type(layout, |k| leaf(leaves[k].0, leaves[k].1))
 }
 
 /// Functions of a table that are never called.
@@ -83,10 +87,12 @@ fn controlled(block: &Block<'_>, declaration: &Declaration, outline: &Outline) -
         Some(syn::Expr::Array(list)) => list.elems.len(),
         _ => 0,
     };
+    let are_any = outline.references.iter().any(|(_, leaves)| !leaves.is_empty());
     let types = ControlTypes {
         is_steered: declaration.kinetic.is_steered(),
         inputs: outline.input.1.iter().map(|(shape, _)| shape.len()).sum(),
         bounds: vec![""; bounds],
+        references: are_any.then(|| outline.references.each_ref().map(nested)),
     };
     let step = if types.is_steered { [STEERED, &[]] } else { [FORCED, EXPANDED] };
     let functions = step.into_iter().chain([PRICED, BOUNDED, ENDED]).flatten();

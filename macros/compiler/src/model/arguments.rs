@@ -5,6 +5,7 @@ use syn::{Generics, Type};
 
 use super::groups::{GroupNames, group};
 use super::power::Length;
+use super::references::Introduced;
 use super::scope::check_reserved;
 use super::shapes::{const_generic, last_name, number, plain, vectors};
 use crate::diagnostic::{Diagnostic, Diagnostics, bail, error, refuse, report};
@@ -32,6 +33,8 @@ pub(super) struct TypedArguments<'d> {
     pub input: Option<&'d Pattern>,
     /// The velocity, as the Lagrangian calls it, or else a force.
     pub velocity: Option<&'d Pattern>,
+    /// The references of prices and bounds, with their types.
+    pub references: Introduced<'d>,
     pub diagnostics: &'d Diagnostics,
 }
 
@@ -79,7 +82,10 @@ pub(super) fn of_action<'d>(
         }
     };
     let (group, space) = (group?, space?);
-    let types = TypedArguments { element, group, configuration, space, sites: None, input, velocity, diagnostics };
+    let references = Introduced::default();
+    let types =
+        TypedArguments { element, group, configuration, space, sites: None, input, velocity, references, diagnostics };
+    let types = TypedArguments { references: Introduced::new(declaration, &types), ..types };
     diagnostics.take(types.of_site(&declaration.generics, by_number))
 }
 

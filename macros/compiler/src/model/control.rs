@@ -9,7 +9,7 @@ use super::features::{self, Feature, Found};
 use super::groups::without_cayley_map;
 use super::scope::Scope;
 use super::slots::{
-    BOUNDS, BOUNDS_OF_FORCES, CONTROLS, DYNAMICS, EFFORT, END, Matched, POTENTIAL, PRICE, RIGHT_HAND_SIDE, Slot,
+    BOUNDS, BOUNDS_OF_FORCES, CONTROLS, DYNAMICS, EFFORT, END, END_OF_STATES, Matched, PRICE, RIGHT_HAND_SIDE, Slot,
 };
 use super::space::{Space, new_value_of};
 use super::typed::{ActedSystem, Velocity, part};
@@ -128,7 +128,7 @@ impl<'g> ActedSystem<'_, '_, 'g> {
     /// The price of the end, with the velocity there, one for each factor, where it takes one; `None` if it has an
     /// error.
     pub fn endpoint(&mut self, closure: &Closure, is_steered: bool) -> Option<EndPrice<'g>> {
-        let matched = self.arguments.matched(closure, if is_steered { POTENTIAL } else { END });
+        let matched = self.arguments.matched(closure, if is_steered { END } else { END_OF_STATES });
         let (scope, velocities) = self.with_velocity(&matched, None)?;
         let value = scalar(self.context, closure, scope, "a price is a scalar")?;
         Some(EndPrice { value, velocities, written: written(closure) })

@@ -20,6 +20,7 @@ mod outline;
 mod power;
 mod print;
 mod quaternion;
+mod references;
 mod scalar;
 mod scope;
 mod shapes;
@@ -51,12 +52,14 @@ pub use types::*;
 
 use std::rc::Rc;
 
-use clebsch_symbolic::{Expr, Graph, IntoList};
+use clebsch_symbolic::{Expr, Graph, IntoList, Role};
 
 use self::action_laws::Action;
 use self::closures::{Closures, optional};
 use self::elaborate::Context;
+use self::features::{Feature, Found};
 use self::groups::GroupNames;
+use self::references::References;
 use self::sites::Sites;
 use self::space::Space;
 use self::typed::{ActedSystem, Arguments, Typed};
@@ -114,7 +117,16 @@ pub fn model<'g>(graph: &'g Graph, declaration: &Declaration, by_number: ByNumbe
         diagnostics.push(error);
         return Err(diagnostics);
     }
-    let arguments = typed.arguments(graph, types.clone());
+    let read = |arguments, role| References::read(graph, arguments, role, names);
+    let references = [
+        read(&types.references.of_steps, Role::Reference as fn(usize) -> Role),
+        read(&types.references.of_end, Role::EndReference),
+    ];
+    if let Some(argument) = types.references.of_end.first() {
+        let reference = (Feature::ReferenceOfEnd, Found::at(argument.pattern.place()).named(argument.pattern.spell()));
+        diagnostics.extend(features::refusals_of(reference, |feature| features::declared(declaration, feature)));
+    }
+    let arguments = typed.arguments(graph, types.clone(), references);
     let configuration_names = types.configuration.clone();
     let power = sites.zip(typed.space.clone()).map(|(length, space)| {
         Sites::new(graph, length.clone(), space, types.configuration.spell(), fields.leaf_count())
@@ -122,7 +134,8 @@ pub fn model<'g>(graph: &'g Graph, declaration: &Declaration, by_number: ByNumbe
     let mut context = Context::new(graph, &fields, &declaration.generics, power, &diagnostics);
     let formulas = ClosureValues::read(&mut context, declaration, &arguments, &typed, names);
     let Context { constants, power, .. } = context;
-    let Arguments { step_size, time, .. } = arguments;
+    let Arguments { step_size, time, references, .. } = arguments;
+    let [reference, end_reference] = references.map(|references| references.map(References::joined));
     declared.check_used(&diagnostics);
     groups::check_chart(graph, &declaration.dials, typed.factors.as_deref().unwrap_or_default(), &diagnostics);
     diagnostics.propagate(())?;
@@ -130,6 +143,7 @@ pub fn model<'g>(graph: &'g Graph, declaration: &Declaration, by_number: ByNumbe
     let (Some(formulas), Some(mut factors), Some(space)) = (formulas, typed.factors, typed.space) else {
         return Err(Diagnostics::new());
     };
+    let (Some(reference), Some(end_reference)) = (reference, end_reference) else { return Err(Diagnostics::new()) };
     for (factor, law) in factors.iter_mut().zip(formulas.laws) {
         (factor.side, factor.moves) = law;
     }
@@ -154,6 +168,8 @@ pub fn model<'g>(graph: &'g Graph, declaration: &Declaration, by_number: ByNumbe
         action: formulas.action,
         inputs: formulas.input.leaves,
         input: formulas.input.layout,
+        reference,
+        end_reference,
         control: formulas.control,
         endpoint: formulas.endpoint,
         emit: dials.emit,

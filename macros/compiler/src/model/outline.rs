@@ -5,7 +5,7 @@ use quote::ToTokens;
 
 use super::groups::GroupNames;
 use super::spaces::{self, Product, SpaceType};
-use super::{Layout, Length, ScalarType, arguments, declared};
+use super::{Layout, Length, ScalarType, arguments, declared, references};
 use crate::diagnostic::Diagnostics;
 use crate::parse::{Argument, Declaration, Pattern, Potential};
 
@@ -19,6 +19,8 @@ pub struct Outline {
     pub configuration: Nested,
     /// The input.
     pub input: Nested,
+    /// The reference of a step, and that of the end.
+    pub references: [Nested; 2],
     /// The number of components of a momentum.
     pub dimension: usize,
     /// Whether a closure takes the time.
@@ -46,7 +48,10 @@ pub fn outline(graph: &Graph, declaration: &Declaration) -> Option<Outline> {
     let point = || (Layout::Tuple(Vec::new()), Vec::new());
     let spaces = spaces::read_spaces(types.space, names)?;
     let input = declaration.input().and_then(|argument| spaces::read_spaces(argument.ty.as_ref()?, names));
+    let [of_steps, of_end] = [&types.references.of_steps, &types.references.of_end];
+    let references = [of_steps, of_end].map(|arguments| references::outlined(arguments, names).unwrap_or_else(point));
     Some(Outline {
+        references,
         sites: types.sites.clone(),
         input: input.map_or_else(point, nested),
         dimension: groups.leaves.iter().map(|(group, _)| group.dimension()).sum(),

@@ -128,6 +128,11 @@ impl System<'_> {
 
     fn print_inputs(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         self.inputs.iter().try_for_each(|leaf| writeln!(f, "  input      {}: {}", leaf.name, leaf.shape))?;
+        let referred = [("reference", &self.reference.1), ("at the end", &self.end_reference.1)];
+        for (name, leaf) in referred.into_iter().flat_map(|(name, leaves)| leaves.iter().map(move |leaf| (name, leaf)))
+        {
+            writeln!(f, "  {name:<10} {}: {}", leaf.name, leaf.shape)?;
+        }
         if let Some(control) = &self.control {
             writeln!(f, "  price      {}", control.price)?;
             control.bounds.iter().try_for_each(|bound| writeln!(f, "  bound      {} <= 0", bound.value))?;

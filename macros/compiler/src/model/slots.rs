@@ -4,6 +4,7 @@ use clebsch_symbolic::{Elements, IntoList};
 use syn::ext::IdentExt;
 
 use super::arguments::TypedArguments;
+use super::references;
 use super::scope::check_reserved;
 use crate::diagnostic::{Diagnostic, error, report};
 use crate::parse::{Argument, Closure, Pattern, joined, spell_type};
@@ -21,6 +22,8 @@ pub(super) enum Slot {
     Input,
     /// The same input where it is priced and bounded.
     Chosen,
+    /// A reference, data of a plan, which has a type.
+    Reference,
 }
 
 // the arguments of each closure, in order; the price is of a step
@@ -32,11 +35,14 @@ pub(super) const CONSTRAINT: &[Slot] = &[Slot::Time, Slot::Configuration, Slot::
 pub(super) const CONTROLS: &[Slot] = &[Slot::Time, Slot::Configuration, Slot::Input];
 pub(super) const DYNAMICS: &[Slot] = &[Slot::Time, Slot::Step, Slot::Configuration, Slot::Input];
 pub(super) const RIGHT_HAND_SIDE: &[Slot] = &[Slot::Time, Slot::Configuration, Slot::Input];
-pub(super) const PRICE: &[Slot] = &[Slot::Time, Slot::Step, Slot::Configuration, Slot::Chosen];
-pub(super) const EFFORT: &[Slot] = &[Slot::Time, Slot::Step, Slot::Configuration, Slot::Velocity, Slot::Chosen];
-pub(super) const BOUNDS: &[Slot] = &[Slot::Time, Slot::Configuration, Slot::Chosen];
-pub(super) const BOUNDS_OF_FORCES: &[Slot] = &[Slot::Time, Slot::Configuration, Slot::Velocity, Slot::Chosen];
-pub(super) const END: &[Slot] = &[Slot::Time, Slot::Configuration, Slot::Velocity];
+pub(super) const PRICE: &[Slot] = &[Slot::Time, Slot::Step, Slot::Configuration, Slot::Chosen, Slot::Reference];
+pub(super) const EFFORT: &[Slot] =
+    &[Slot::Time, Slot::Step, Slot::Configuration, Slot::Velocity, Slot::Chosen, Slot::Reference];
+pub(super) const BOUNDS: &[Slot] = &[Slot::Time, Slot::Configuration, Slot::Chosen, Slot::Reference];
+pub(super) const BOUNDS_OF_FORCES: &[Slot] =
+    &[Slot::Time, Slot::Configuration, Slot::Velocity, Slot::Chosen, Slot::Reference];
+pub(super) const END: &[Slot] = &[Slot::Time, Slot::Configuration, Slot::Reference];
+pub(super) const END_OF_STATES: &[Slot] = &[Slot::Time, Slot::Configuration, Slot::Velocity, Slot::Reference];
 pub(super) const SYMMETRY: &[Slot] = &[Slot::Offered, Slot::Configuration, Slot::Element];
 
 /// The arguments of the closure of each key.
@@ -52,7 +58,7 @@ const ARGUMENTS: [(&str, &[Slot]); 12] = [
     ("dynamics", DYNAMICS),
     ("effort", EFFORT),
     ("bounds", BOUNDS_OF_FORCES),
-    ("endpoint", END),
+    ("endpoint", END_OF_STATES),
 ];
 
 /// The arguments that the closure of a key may take, in their order, as the docs say it; `None` for a key without.
@@ -73,9 +79,10 @@ pub(crate) fn arguments_of(key: &str) -> Option<String> {
         Slot::Offered => "a new name with its group (symmetry)",
         Slot::Input => "a new name with its type (input)",
         Slot::Chosen => "the input",
+        Slot::Reference => "new names with their types (references)",
     };
     let also = match key {
-        "cost" => "; with `controls` and `dynamics` the input in place of the group element",
+        "cost" => "; with `controls` and `dynamics` the input and references in place of the group element",
         "dynamics" => "; a right-hand side takes no step",
         "constraint" => "; without a velocity it is on the configuration",
         "bounds" | "endpoint" => "; with `controls` and `dynamics` no velocity",
@@ -97,6 +104,7 @@ impl<'d> TypedArguments<'d> {
             }
             Slot::Input => ("u: Vector3".into(), "the input, a new name and its type"),
             Slot::Chosen => (self.input.map_or("u".into(), Pattern::spell), "the input"),
+            Slot::Reference => ("r: Vector3".into(), "a reference, a new name and its type"),
             Slot::Offered => ("S: SO<3>".into(), "an element of the symmetry, a new name and its group"),
         }
     }
@@ -115,8 +123,20 @@ impl<'d> TypedArguments<'d> {
         slots.iter().copied().find(|&slot| match (slot, pattern) {
             (Slot::Time, Pattern::Name(ident)) => ident == "t",
             (Slot::Step, Pattern::Name(ident)) => ident == "h",
+            (Slot::Reference, _) => references::find(self.references(slots), pattern).is_some(),
             _ => self.pattern(slot).is_some_and(|known| known.holds(pattern)),
         })
+    }
+
+    /// The references that a closure with these slots may read.
+    fn references(&self, slots: &[Slot]) -> &[&'d Argument] {
+        if is_of_step(slots) { &self.references.of_steps } else { &self.references.of_end }
+    }
+
+    /// Whether an argument of a price or of bounds has a meaning without being a reference.
+    pub(super) fn is_other(&self, pattern: &Pattern) -> bool {
+        let others = [Slot::Time, Slot::Step, Slot::Configuration, Slot::Chosen];
+        self.find(pattern, &others).is_some() || self.declared_velocity().is_some_and(|known| known.holds(pattern))
     }
 
     /// The velocity as the Lagrangian or a force calls it.
@@ -126,8 +146,13 @@ impl<'d> TypedArguments<'d> {
 
     /// Whether a pattern has a meaning in some closure.
     fn is_known(&self, pattern: &Pattern) -> bool {
-        self.find(pattern, COST).or_else(|| self.find(pattern, BOUNDS)).is_some()
+        [COST, BOUNDS, END].into_iter().any(|slots| self.find(pattern, slots).is_some())
     }
+}
+
+/// Whether slots are those of a step that is priced or bounded.
+fn is_of_step(slots: &[Slot]) -> bool {
+    slots.contains(&Slot::Chosen)
 }
 
 /// The arguments of a closure, with the slot that each takes.
@@ -194,7 +219,8 @@ impl<'d> Matched<'d> {
         let pattern = &self.closure.arguments[position].pattern;
         let is_declared = self.names.declared_velocity().is_some_and(|velocity| velocity.holds(pattern));
         let is_free = |slot: &Slot| matches!(slot, Slot::Configuration | Slot::Chosen) && !self.has(*slot);
-        if self.is_price() && !is_declared && self.slots.iter().any(is_free) {
+        let is_late = self.taken[..position].contains(&Some(Slot::Chosen));
+        if self.is_price() && !is_declared && (is_late || self.slots.iter().any(is_free)) {
             self.taken[position] = None;
         }
     }
@@ -206,7 +232,7 @@ impl<'d> Matched<'d> {
         if !self.is_price() || is_declared || self.has(Slot::Velocity) || self.names.is_known(pattern) {
             return None;
         }
-        let all = |slot: &&Slot| !matches!(slot, Slot::Time | Slot::Step) || self.has(**slot);
+        let all = |slot: &&Slot| !matches!(slot, Slot::Time | Slot::Step | Slot::Reference) || self.has(**slot);
         let name = |slot: &Slot| match slot {
             Slot::Velocity => pattern.spell(),
             slot => self.names.names(*slot).0,
@@ -227,6 +253,11 @@ impl<'d> Matched<'d> {
     /// The first slot that no argument takes.
     pub fn first_free(&self) -> Option<Slot> {
         self.slots.iter().copied().find(|slot| !self.has(*slot))
+    }
+
+    /// Whether it is of a step that is priced or bounded.
+    pub fn is_of_step(&self) -> bool {
+        is_of_step(self.slots)
     }
 
     pub fn argument(&self, slot: Slot) -> Option<&'d Argument> {
@@ -250,10 +281,15 @@ impl<'d> Matched<'d> {
                 help "write one, a tuple: `({name}, {other}): ({}, {other_ty})`", spell_type(ty));
             return;
         }
-        if let Some(ty) = argument.ty.as_ref().filter(|_| !matches!(slot, Some(Slot::Offered | Slot::Input))) {
+        let is_new = slot.is_none() && !self.names.is_known(&argument.pattern);
+        let is_introduced = is_new || matches!(slot, Some(Slot::Offered | Slot::Input)) || self.introduces(argument);
+        if let Some(ty) = argument.ty.as_ref().filter(|_| !is_introduced) {
+            let introduces = match slot {
+                Some(Slot::Reference) => "the type of a reference stands where it is first read",
+                _ => "types stand in the action, which introduces the spaces",
+            };
             report!(diagnostics, ty, "`{name}` has a type again";
-                help "write `{name}` without `: {}`", spell_type(ty);
-                note "types stand in the action, which introduces the spaces");
+                help "write `{name}` without `: {}`", spell_type(ty); note "{introduces}");
         }
         match slot {
             Some(slot) if self.is_taken_before(position, slot) => {
@@ -262,19 +298,29 @@ impl<'d> Matched<'d> {
             Some(Slot::Velocity) => self.check_new(argument, "the velocity"),
             Some(Slot::Offered) => self.check_new(argument, "the symmetry"),
             Some(Slot::Input) => self.check_new(argument, "the input"),
+            Some(Slot::Reference) if self.introduces(argument) => self.check_new(argument, "a reference"),
             Some(_) => {}
             None => diagnostics.push(self.unknown(position)),
         }
     }
 
+    /// Whether an argument introduces a reference.
+    fn introduces(&self, argument: &Argument) -> bool {
+        let references = self.names.references(self.slots);
+        self.slots.contains(&Slot::Reference) && references.iter().any(|known| std::ptr::eq(*known, argument))
+    }
+
     /// Whether an argument before this one has the same slot. Parts of a tuple are given one by one.
     fn is_taken_before(&self, position: usize, slot: Slot) -> bool {
         let pattern = &self.closure.arguments[position].pattern;
-        let before = self.arguments().take(position).filter(|(_, taken)| *taken == Some(slot));
+        let mut before = self.arguments().take(position).filter(|(_, taken)| *taken == Some(slot));
+        if slot == Slot::Reference {
+            return before.any(|(other, _)| other.pattern.holds(pattern) || pattern.holds(&other.pattern));
+        }
         let is_part = |other: &Pattern| self.names.pattern(slot).is_some_and(|whole| !whole.matches(other));
         let is_other =
             |other: &Pattern| is_part(other) && is_part(pattern) && !other.holds(pattern) && !pattern.holds(other);
-        before.into_iter().any(|(argument, _)| !is_other(&argument.pattern))
+        before.any(|(argument, _)| !is_other(&argument.pattern))
     }
 
     /// A name that a closure introduces is no name of the action.
@@ -306,7 +352,7 @@ impl<'d> Matched<'d> {
     fn unknown(&self, position: usize) -> Diagnostic {
         let Argument { pattern, .. } = &self.closure.arguments[position];
         let (name, key) = (pattern.spell(), &self.closure.key);
-        if let Some(error) = self.without_type(position) {
+        if let Some(error) = self.without_type(position).or_else(|| self.reference_without_type(position)) {
             return error;
         }
         if let Some((_, help)) = self.of_velocity().filter(|(velocity, _)| velocity.matches(pattern)) {
@@ -332,6 +378,7 @@ impl<'d> Matched<'d> {
             (Slot::Velocity, _) => "a new name (velocity)".to_string(),
             (Slot::Input, _) => "a new name with its type (input)".to_string(),
             (Slot::Offered, _) => "a new name with its group (symmetry)".to_string(),
+            (Slot::Reference, _) => "new names with their types (references)".to_string(),
             (_, (name, meaning)) => format!("`{name}` ({})", meaning.trim_start_matches("the ")),
         };
         let error = match self.of_velocity_of_price(position) {
@@ -359,12 +406,35 @@ impl<'d> Matched<'d> {
             note "an input is the last argument, with its type; the velocity before it has none"))
     }
 
+    /// The error for a new name behind all others, in a closure that may read references.
+    fn reference_without_type(&self, position: usize) -> Option<Diagnostic> {
+        let arguments = &self.closure.arguments;
+        let pattern = &arguments[position].pattern;
+        let last = if is_of_step(self.slots) { Slot::Chosen } else { Slot::Configuration };
+        let is_late = self.taken[..position].contains(&Some(last));
+        if !self.slots.contains(&Slot::Reference) || self.names.is_known(pattern) || !is_late {
+            return None;
+        }
+        let spelled = |(k, argument): (usize, &Argument)| {
+            if k == position { format!("{}: Vector3", pattern.spell()) } else { argument.spell() }
+        };
+        let head = joined(arguments.iter().enumerate().map(spelled));
+        let note = match is_of_step(self.slots) {
+            true => "a new name behind the input is a reference, which `Control::refer` gives to each step",
+            false => "a new name with a type is a reference, which `Control::with_end_reference` gives",
+        };
+        let (key, name) = (&self.closure.key, pattern.spell());
+        Some(error!(pattern.place(), "`{name}` is new in the {key} and has no type";
+            help "write `|{head}|`, with the type of the reference"; note "{note}"))
+    }
+
     /// The slot that an unknown argument most likely stands for: the last one that is free before those behind it.
     fn meant(&self, position: usize) -> Option<Slot> {
         let behind = &self.taken[position + 1..];
         let unknown_behind = behind.iter().filter(|slot| slot.is_none()).count();
         let limit = behind.iter().flatten().filter_map(|slot| self.index(*slot)).min().unwrap_or(self.slots.len());
-        let free = |slot: &Slot| !matches!(slot, Slot::Time | Slot::Step | Slot::Input) && !self.has(*slot);
+        let free =
+            |slot: &Slot| !matches!(slot, Slot::Time | Slot::Step | Slot::Input | Slot::Reference) && !self.has(*slot);
         self.slots[..limit].iter().rev().copied().filter(free).nth(unknown_behind)
     }
 
@@ -417,7 +487,15 @@ impl<'d> Matched<'d> {
             let help = format!("take it as an argument: write `{}`", self.head(Some(Slot::Velocity)));
             velocity.names().into_iter().map(move |ident| (ident.unraw().to_string(), help.clone()))
         });
-        missing.chain(of_velocity).chain(of_price).into_list()
+        let references = self.names.references.of_steps.iter().filter(|_| self.slots.contains(&Slot::Reference));
+        let is_read =
+            |argument: &&&Argument| self.closure.arguments.iter().any(|own| argument.pattern.holds(&own.pattern));
+        let of_references = references.filter(|argument| !is_read(argument)).flat_map(|argument| {
+            let all = self.closure.arguments.iter().map(Argument::spell).chain([argument.pattern.spell()]);
+            let help = format!("take it as an argument: write `|{}|`", joined(all));
+            argument.pattern.names().into_iter().map(move |ident| (ident.unraw().to_string(), help.clone()))
+        });
+        missing.chain(of_velocity).chain(of_price).chain(of_references).into_list()
     }
 
     /// The arguments on which the closure may depend.

@@ -23,7 +23,7 @@ impl<'g> Space<'g> {
         graph: &'g Graph,
         pattern: &Pattern,
         product: Product<SpaceType>,
-        role: fn(usize) -> Role,
+        role: impl Fn(usize) -> Role,
         diagnostics: &Diagnostics,
     ) -> Option<Space<'g>> {
         let layout = product.layout;

@@ -7,6 +7,7 @@ use syn::Type;
 use super::arguments::TypedArguments;
 use super::elaborate::Context;
 use super::groups::GroupNames;
+use super::references::References;
 use super::scope::Scope;
 use super::slots::{Matched, Slot};
 use super::space::{Space, leaf_names};
@@ -54,7 +55,12 @@ impl<'g> Typed<'g> {
         Typed { element: groups.layout, factors, space }
     }
 
-    pub fn arguments<'d>(&self, graph: &'g Graph, names: TypedArguments<'d>) -> Arguments<'d, 'g> {
+    pub fn arguments<'d>(
+        &self,
+        graph: &'g Graph,
+        names: TypedArguments<'d>,
+        references: [Option<References<'d, 'g>>; 2],
+    ) -> Arguments<'d, 'g> {
         let element = |all: &Vec<Factor<'g>>| {
             let leaf = |factor: &Factor<'g>| Value::leaf(factor.symbol, factor.group == Group::UnitQuaternions);
             Value::nested(&self.element, &all.each(leaf))
@@ -72,6 +78,7 @@ impl<'g> Typed<'g> {
             members,
             step_size: graph.symbol("h", Shape::scalar(), Role::StepSize, Property::General),
             time: graph.symbol("t", Shape::scalar(), Role::Time, Property::General),
+            references,
         }
     }
 }
@@ -85,6 +92,8 @@ pub(super) struct Arguments<'d, 'g> {
     pub members: Vec<(Expr<'g>, Group)>,
     pub step_size: Expr<'g>,
     pub time: Expr<'g>,
+    /// Those of a step and of the end. `None` where one has an error, which was reported.
+    pub references: [Option<References<'d, 'g>>; 2],
 }
 
 impl<'d, 'g> Arguments<'d, 'g> {
@@ -120,6 +129,11 @@ impl<'d, 'g> Arguments<'d, 'g> {
                     part(self.names.configuration, self.configuration_value.as_ref()?, &argument.pattern)
                 }
                 Slot::Element => part(self.names.element, self.element_value.as_ref()?, &argument.pattern),
+                Slot::Reference => {
+                    let [of_step, of_end] = &self.references;
+                    let references = if matched.is_of_step() { of_step } else { of_end };
+                    references.as_ref().and_then(|references| references.value(&argument.pattern))
+                }
                 new => introduced.iter().find(|(slot, _)| *slot == new).and_then(|(_, value)| value.clone()),
             });
             scope.add_argument(&argument.pattern, value, self.names.diagnostics);

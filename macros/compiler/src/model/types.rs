@@ -50,6 +50,10 @@ pub struct System<'g> {
     pub inputs: Vec<Configuration<'g>>,
     /// How the leaves of the input nest.
     pub input: Layout,
+    /// The leaves of the reference of a step, and how they nest.
+    pub reference: (Layout, Vec<Configuration<'g>>),
+    /// Those of the reference of the end.
+    pub end_reference: (Layout, Vec<Configuration<'g>>),
     /// The choice of the inputs; `None` if there is no choice.
     pub control: Option<InputChoice<'g>>,
     /// The price of the end; `None` if there is none.

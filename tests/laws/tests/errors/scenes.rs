@@ -8,6 +8,7 @@ use clebsch_tests::fixtures::chaplygin_sleigh::ChaplyginSleigh;
 use clebsch_tests::fixtures::collocated_top::CollocatedTop;
 use clebsch_tests::fixtures::damped_body::DampedBody;
 use clebsch_tests::fixtures::exact_body::ExactBody;
+use clebsch_tests::fixtures::follower::Follower;
 use clebsch_tests::fixtures::free_rigid_body::FreeRigidBody;
 use clebsch_tests::fixtures::generic_body::GenericBody;
 use clebsch_tests::fixtures::heavy_top::HeavyTop;
@@ -455,6 +456,9 @@ fn plans() -> Vec<Scene> {
     // each newton more is paid for
     let paid = Regulator { mass: 1.3, stiffness: 2.0, price: -0.5 }.control(0.1).expect("a regulator");
     let mut many = [paid.stage(&start); 20];
+    let follower = Follower { price: 1.0, clearance: 0.1, miss_price: 1.0 }.control(0.1).expect("a follower");
+    let mut followed = [follower.stage(&Matrix3::identity()); 5];
+    follower.refer(&mut followed, |k, _| (Vector2::zeros(), Vector2::new(if k == 3 { f64::NAN } else { 1.0 }, 0.0)));
     let steered = |top: f64| {
         let body = SteeredBody { inertia: Matrix3::identity(), damping: 0.1, top };
         let control = body.control(0.1).expect("a body");
@@ -481,5 +485,9 @@ fn plans() -> Vec<Scene> {
         ),
         scene(steered(-0.1), &["`torque.x <= self.top` is violated by", "relax it, or guess inputs that keep it"]),
         scene(steered(0.1), &["were left after", "give more steps or wider bounds"]),
+        scene(
+            refused(follower.solve(&Matrix3::identity(), Target::Free, &mut followed)),
+            &["reference 3 is missing", "steps 0 to 5 − 1", "`Control::refer`", "`Control::with_end_reference`"],
+        ),
     ]
 }

@@ -2,7 +2,10 @@
 
 use crate::arbitrary::{attitude, cases, matrix, vector};
 use crate::runner::proptest;
-use clebsch::{__private as private, Control, Controlled, Ended, Error, Limits, Optimum, Space, Target};
+use clebsch::{
+    __private as private, Control, Controlled, Ended, Error, Limits, Optimum, Referenced, Referring, Space, Target,
+};
+use clebsch_tests::fixtures::follower::Follower;
 use clebsch_tests::fixtures::regulator::Regulator;
 use clebsch_tests::fixtures::steered_body::SteeredBody;
 use clebsch_tests::fixtures::unicycle::Unicycle;
@@ -249,6 +252,46 @@ proptest! {
         for (stage, expected) in left.stages().iter().zip(&expected[1..]) {
             assert_near(stage.input(), expected, 1e-6, "the tail of an optimum");
         }
+    }
+
+    /// Each step has the price and the bounds of its own reference, and the end that of the last one.
+    #[test]
+    fn references_are_those_of_their_steps(
+        (price, clearance, miss_price) in (0.1_f64..2.0, 0.1_f64..1.0, 0.0_f64..2.0), t in -1.0_f64..1.0,
+        (inputs, tracks, obstacles) in (matrix::<2, STEPS>(1.0), matrix::<2, STEPS>(2.0), matrix::<2, STEPS>(2.0)), goal in vector::<2>(2.0),
+    ) {
+        let start = Matrix3::identity();
+        let track = |k: usize| tracks.column(k).into_owned();
+        let control = Follower { price, clearance, miss_price }.control(H)?.starting_at(t)?.with_end_reference(goal)?;
+        let mut plan = [control.stage(&start); STEPS];
+        let (mut referred, mut times) = (0, Vec::new());
+        control.refer(&mut plan, |k, t| {
+            (referred, times) = (referred + 1, [times.as_slice(), &[t]].concat());
+            (track(k), Vector2::zeros())
+        });
+        prop_assert_eq!(referred, STEPS);
+        let prepared: Referring<f64, (Vector2<f64>, Vector2<f64>), Vector2<f64>> = Referring::new(H);
+        prop_assert!(prepared.end_reference().x.is_nan());
+        let constants = prepared.with_end_reference(goal);
+        prop_assert_eq!(constants.end_reference(), goal);
+        let (mut place, mut expected, mut violation) = (start, 0.0, 0.0_f64);
+        for (k, stage) in plan.iter_mut().enumerate() {
+            prop_assert!((times[k] - t - H * k as f64).abs() < NEAR);
+            prop_assert_eq!(stage.reference(), &(track(k), Vector2::zeros()));
+            let (u, obstacle) = (inputs.column(k).into_owned(), obstacles.column(k).into_owned());
+            *stage = stage.with_input(u).with_reference((track(k), obstacle));
+            let [x, y] = [place[(0, 2)], place[(1, 2)]];
+            let far = |point: Vector2<f64>| (x - point.x).powi(2) + (y - point.y).powi(2);
+            expected += H * (far(track(k)) + price * u.norm_squared()) / 2.0;
+            violation = violation.max(clearance * clearance - far(obstacle));
+            let bound = constants.at(stage.reference(), |constants| control.system().bounds(constants, t, &place, &u))?;
+            prop_assert!((bound.x - clearance * clearance + far(obstacle)).abs() < NEAR);
+            place = control.follow(&place, &u)?;
+        }
+        expected += miss_price * ((place[(0, 2)] - goal.x).powi(2) + (place[(1, 2)] - goal.y).powi(2)) / 2.0;
+        let reached = control.solve_within(&start, Target::Free, Limits { sweeps: 0 }, &mut plan)?;
+        prop_assert!((reached.price() - expected).abs() < 1e-12 * (1.0 + expected));
+        prop_assert!((reached.violation() - violation).abs() < 1e-9 || violation < 1e-9);
     }
 
     /// A later start costs its time, and changes nothing else.

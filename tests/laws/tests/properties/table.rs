@@ -202,6 +202,10 @@ pub const PROPERTIES: &[(&str, &[Property])] = &[
         ]),
         ("unicycles_park",            &["Stage::with_input", "Stage::multipliers", "Stage::active"]),
         ("bounded_work_adds_up",      &["Control::solve_within", "Control::shift", "Optimum::ended", "Optimum::violation"]),
+        ("references_are_those_of_their_steps", &[
+            "Control::refer", "Control::with_end_reference", "Stage::with_reference", "Stage::reference",
+            "Referenced::at", "Referenced::with_end_reference", "Referenced::end_reference", "Referring::new",
+        ]),
         ("plans_start_at_their_time", &["Control::starting_at"]),
         ("free_times_are_critical",   &["Control::solve_free_time"]),
         ("maps_are_followed",         &["Controlled::follow", "Controlled::expand"]),

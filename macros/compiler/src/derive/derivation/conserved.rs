@@ -1,6 +1,6 @@
 //! The forces, the conserved quantities, and the parts that a problem does not need.
 
-use super::{bounds, inputs};
+use super::{bounds, inputs, references};
 use clebsch_symbolic::{Elements, IntoList};
 
 use crate::derive::{ConstraintFormulas, MOST_LISTED, MechanicsFormulas, OnEdge, Substep};
@@ -42,6 +42,7 @@ pub(super) fn forces(formulas: &MechanicsFormulas<'_>) -> String {
         if is_moving {
             text += "The price of the end takes the velocity Σ⁻¹(N − A) of the momentum there.\n";
         }
+        text += &references(model);
     }
     text
 }

@@ -57,6 +57,7 @@ fn with_value<R>(expression: &str, look: impl FnOnce(&Value) -> R) -> Result<R, 
         members: Vec::new(),
         step_size: graph.symbol("h", Shape::scalar(), Role::StepSize, Property::General),
         time: graph.symbol("t", Shape::scalar(), Role::Time, Property::General),
+        references: [None, None],
     };
     let closure = declaration.kinetic.closure();
     let scope = arguments.scope_of(closure, COST);

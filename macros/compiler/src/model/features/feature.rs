@@ -54,6 +54,7 @@ features! {
     Bounds "`bounds`",
     Endpoint "`endpoint`",
     VelocityOfEnd "a velocity in `endpoint`",
+    ReferenceOfEnd "a reference in `endpoint`",
     Isotropy "`isotropy`",
     Signature "`signature`",
     Order "`order`",

@@ -15,7 +15,7 @@ const WITHOUT_MATRICES: &[Feature] =
 
 /// The refused features, the others, the message, the reason, and the replacement.
 #[rustfmt::skip]
-pub(super) const ROWS: [Row; 85] = [
+pub(super) const ROWS: [Row; 86] = [
     // inputs move the configuration
     row(&[Dynamics], &[Controls],
         "there are `controls` and `dynamics`, but one thing moves a configuration", "",
@@ -72,6 +72,10 @@ pub(super) const ROWS: [Row; 85] = [
         "the end of a path of least action has no price of the velocity `{name}`",
         "where an end is free, least action itself says which momentum it has: J(q, ∂φ/∂q)",
         "leave `{name}` out, or choose inputs with `effort`"),
+    row(&[ReferenceOfEnd], &[Boundary],
+        "the end of a path of least action has no reference `{name}`",
+        "references are data of a plan of inputs",
+        "read a field of the struct in `endpoint`, as in `self.goal`"),
     row(&[VelocityOfEnd], &[GeneralLagrangian],
         "a price of the velocity `{name}` at the end needs a Lagrangian that is quadratic in it",
         "the velocity there is Σ⁻¹(N − A), a formula of the momentum only for such a Lagrangian",

@@ -1,0 +1,110 @@
+//! References: data of a plan that price and bounds read step by step, and that the price of the end reads once.
+
+use clebsch_symbolic::{Elements, Graph, IntoList, Role};
+
+use super::arguments::TypedArguments;
+use super::groups::GroupNames;
+use super::shapes::spelled;
+use super::space::Space;
+use super::spaces::{SpaceType, read_spaces};
+use super::typed::part;
+use super::value::Value;
+use super::{Configuration, Layout, LeafSpace};
+use crate::diagnostic::{Location, refuse};
+use crate::parse::{Argument, Declaration, Pattern, spell_type};
+
+/// The typed arguments that introduce references, in order of their first use.
+#[derive(Clone, Default)]
+pub(super) struct Introduced<'d> {
+    /// Those of price and bounds.
+    pub of_steps: Vec<&'d Argument>,
+    /// Those of the price of the end. A name that a step refers to is of the same type there.
+    pub of_end: Vec<&'d Argument>,
+}
+
+impl<'d> Introduced<'d> {
+    /// The arguments of prices and bounds that are of no other meaning.
+    pub fn new(declaration: &'d Declaration, names: &TypedArguments<'d>) -> Introduced<'d> {
+        let is_new = |argument: &&Argument| !names.is_other(&argument.pattern);
+        let mut introduced = Introduced::default();
+        let choice = declaration.control.iter().flat_map(|choice| [Some(&choice.price), choice.bounds.as_ref()]);
+        for argument in choice.flatten().flat_map(|closure| &closure.arguments).filter(is_new) {
+            if argument.ty.is_some() && find(&introduced.of_steps, &argument.pattern).is_none() {
+                introduced.of_steps.push(argument);
+            }
+        }
+        for argument in declaration.endpoint.iter().flat_map(|closure| &closure.arguments).filter(is_new) {
+            let known = || find(&introduced.of_steps, &argument.pattern).copied();
+            let typed = if argument.ty.is_some() { Some(argument) } else { known() };
+            introduced.of_end.extend(typed.filter(|typed| find(&introduced.of_end, &typed.pattern).is_none()));
+        }
+        introduced
+    }
+}
+
+/// The argument with a pattern or with one that holds it.
+pub(super) fn find<'a, 'd>(arguments: &'a [&'d Argument], pattern: &Pattern) -> Option<&'a &'d Argument> {
+    arguments.iter().find(|argument| argument.pattern.holds(pattern))
+}
+
+/// References with their values.
+pub(super) struct References<'d, 'g> {
+    /// Each argument with its space.
+    arguments: Vec<(&'d Pattern, Space<'g>)>,
+}
+
+impl<'d, 'g> References<'d, 'g> {
+    /// Reads their types; `None` where one has an error, which was reported.
+    pub fn read(
+        graph: &'g Graph,
+        arguments: &[&'d Argument],
+        role: fn(usize) -> Role,
+        names: GroupNames,
+    ) -> Option<References<'d, 'g>> {
+        let mut read: Vec<(&'d Pattern, Space<'g>)> = Vec::new();
+        for argument in arguments {
+            let ty = argument.ty.as_ref()?;
+            let product = read_spaces(ty, names)?;
+            let is_other = |(leaf, _): &&(SpaceType, _)| leaf.space != LeafSpace::Vectors;
+            if let Some((_, ty)) = product.leaves.iter().find(is_other) {
+                let (leaf, _) = product.leaves[0];
+                let meant = if leaf.is_quaternion { "Quaternion".to_string() } else { spelled(leaf.shape) };
+                let meant = if product.leaves.len() == 1 { meant } else { "(Matrix3, Vector3)".to_string() };
+                let name = argument.pattern.spell();
+                refuse!(names.diagnostics, Location::from(*ty), "`{}` is no type of a reference, which is made of vectors, matrices and quaternions", spell_type(ty);
+                    help "write `{name}: {meant}`";
+                    note "references are data that nothing moves, so that no space is asked of them");
+            }
+            let first: usize = read.iter().map(|(_, space)| space.leaves.len()).sum();
+            let role = |leaf| role(first + leaf);
+            read.push((&argument.pattern, Space::new(graph, &argument.pattern, product, role, names.diagnostics)?));
+        }
+        Some(References { arguments: read })
+    }
+
+    /// The value of an argument.
+    pub fn value(&self, pattern: &Pattern) -> Option<Value<'g>> {
+        self.arguments.iter().find_map(|(known, space)| part(known, &space.value(), pattern))
+    }
+
+    /// All of them as one: the one reference, or a tuple.
+    pub fn joined(self) -> (Layout, Vec<Configuration<'g>>) {
+        let mut leaves: Vec<Configuration<'g>> = Vec::new();
+        let mut layouts = Vec::new();
+        for (_, space) in self.arguments {
+            layouts.push(space.layout.shifted(leaves.len()));
+            leaves.extend(space.leaves);
+        }
+        let layout = if layouts.len() == 1 { layouts.remove(0) } else { Layout::Tuple(layouts) };
+        let accessors = layout.accessors();
+        let leaves = leaves.into_iter().zip(accessors);
+        (layout, leaves.map(|(leaf, accessor)| Configuration { accessor, ..leaf }).into_list())
+    }
+}
+
+/// The types of the references of a declaration with errors, as far as they can be read.
+pub(super) fn outlined(arguments: &[&Argument], names: GroupNames) -> Option<super::outline::Nested> {
+    let graph = Graph::new();
+    let (layout, leaves) = References::read(&graph, arguments, Role::Reference, names)?.joined();
+    Some((layout, leaves.each(|leaf| (leaf.shape, leaf.is_quaternion))))
+}
