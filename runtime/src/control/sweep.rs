@@ -17,7 +17,7 @@ use super::end::PlanEnd;
 use super::lift::Gap;
 use super::quadratic::{Bounded, Fall, Policy, Value};
 use super::{Referenced, Stage, Target};
-use crate::newton::{Curvature, Equilibrated};
+use crate::newton::{Curvature, Equilibrated, Spectrum};
 use crate::space::larger;
 use crate::{BoundsExpansion, Controlled, Error, Expansion, Real, Scalar, Space};
 use nalgebra::{SMatrix, SVector};
@@ -79,8 +79,27 @@ pub(super) struct Settings<T, const D: usize> {
     pub is_last: bool,
 }
 
+/// A symmetric matrix without its negative eigenvalues.
+#[cold]
+fn positive<T: Real, const M: usize>(matrix: &SMatrix<T, M, M>) -> SMatrix<T, M, M> {
+    Spectrum::of(matrix).map(|value| larger(value, T::zero()))
+}
+
+/// A step without the curvature of its price along directions of places in which the price curves down, and with that of inputs turned over.
+/// Far from a solution a price of places curves down on a group: a sum of squares Σ r² has the part r r″.
+#[cold]
+fn convex<X: Copy, T: Real, const D: usize, const U: usize>(step: &Expansion<X, T, D, U>) -> Expansion<X, T, D, U> {
+    Expansion {
+        place_curvature: positive(&step.place_curvature),
+        // an input without any curvature would have no limit
+        input_curvature: Spectrum::of(&step.input_curvature).map(|value| value.abs()),
+        mixed_curvature: SMatrix::zeros(),
+        ..*step
+    }
+}
+
 impl<T: Real, const D: usize> Settings<T, D> {
-    /// Whether steps, and then bounds, go without their curvature where that leaves no minimum.
+    /// Whether steps, then bounds, and then prices go without their curvature where that leaves no minimum.
     fn is_guarded(&self) -> bool {
         self.curvature.is_mirrored && !self.is_last
     }
@@ -222,7 +241,11 @@ impl<'a, T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: u
         let endpoint = system.endpoint_expanded(constants, self.problem.time_after(steps), &self.last);
         let mut value = Value::of_end(&endpoint, end, settings);
         let zero = T::zero();
-        let mut is_convex = settings.is_guarded() && value.is_convex();
+        // the price of the end, where it curves down
+        let is_bent = settings.is_guarded() && !value.is_convex();
+        if is_bent {
+            value.hessian = positive(&value.hessian);
+        }
         let mut summary = PlanSummary {
             price: endpoint.price,
             magnitude: endpoint.price.abs(),
@@ -232,7 +255,7 @@ impl<'a, T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: u
             lack: -end.lack,
             gramian: SMatrix::zeros(),
             negative: 0,
-            straightened: 0,
+            straightened: usize::from(is_bent),
             is_mostly_straight: false,
             fall: None,
             reach: SVector::zeros(),
@@ -277,10 +300,8 @@ impl<'a, T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: u
             let (mut policy, mut before, violated) = model(&value, &step, false)?;
             summary.violation += violated;
             if settings.is_guarded() {
-                // where the price of later steps has no minimum, this step is not the cause
-                let is_wrong = |policy: &Policy<T, D, U>, before: &Value<T, D>| {
-                    policy.negative > 0 || is_convex && !before.is_convex()
-                };
+                let is_wrong =
+                    |policy: &Policy<T, D, U>, before: &Value<T, D>| policy.negative > 0 || !before.is_convex();
                 if !settings.is_straight && is_wrong(&policy, &before) {
                     step = expand(&value, true)?;
                     (policy, before, _) = model(&value, &step, false)?;
@@ -289,7 +310,11 @@ impl<'a, T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: u
                 if self.bounds > zero && is_wrong(&policy, &before) {
                     (policy, before, _) = model(&value, &step, true)?;
                 }
-                is_convex = is_convex && before.is_convex();
+                if is_wrong(&policy, &before) {
+                    step = convex(&step);
+                    (policy, before, _) = model(&value, &step, true)?;
+                    summary.straightened += usize::from(settings.is_straight);
+                }
             }
             summary.count(index, step.price, &policy);
             if settings.is_last {

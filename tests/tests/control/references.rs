@@ -105,6 +105,32 @@ fn apart<const U: usize>(a: &[SVector<f64, U>], b: &[SVector<f64, U>]) -> f64 {
 }
 
 #[test]
+fn references_that_are_functions_of_the_time_give_the_plans_of_these_functions() -> Result<(), Error> {
+    let random = &mut Random::new(877);
+    for _ in 0..20 {
+        let (price, clearance, miss_price) =
+            (random.between(0.01, 0.05), random.between(0.2, 0.3), random.between(0.0, 2.0));
+        let begin = random.between(0.0, 2.0);
+        let start = at(&(track(begin) - vector![0.5, 0.0] + random.vector::<2>() / 5.0));
+        let guess = [(); N].map(|()| random.vector::<2>() / 5.0);
+        let timed = Timed { price, clearance, miss_price }.control(H)?.starting_at(begin)?;
+        let mut plan = guess.map(|u| timed.stage(&start).with_input(u));
+        let optimum = timed.solve(&start, Target::Free, &mut plan)?;
+        let (expected, sweeps) = (optimum.price(), optimum.iterations());
+        let referring = Follower { price, clearance, miss_price }.control(H)?.starting_at(begin)?;
+        let referring = referring.with_end_reference(track(begin + H * N as f64))?;
+        let mut referred = guess.map(|u| referring.stage(&start).with_input(u));
+        referring.refer(&mut referred, |_, t| (track(t), track(t) + vector![0.5, 0.0]));
+        let found = referring.solve(&start, Target::Free, &mut referred)?.price();
+        // a price of places curves down far from its track, and still each correction goes down
+        assert!(sweeps <= 80, "{sweeps}");
+        assert!((expected - found).abs() < 1e-10 * (1.0 + expected));
+        assert!(apart(&inputs(&plan), &inputs(&referred)) < 1e-6);
+    }
+    Ok(())
+}
+
+#[test]
 fn later_attempts_read_the_same_references() -> Result<(), Error> {
     let random = &mut Random::new(877);
     let (price, clearance, miss_price) = (1.0, 0.05, 0.0);
