@@ -55,6 +55,8 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: usize
             now.largest = larger(now.largest, summary.magnitude + decrement.abs());
             // the size of prices, for a price that vanishes at the solution a small part of the largest
             let magnitude = summary.magnitude + T::EPSILON.sqrt() * now.largest;
+            // That of barriers, whose last one is a part of the price. A guess may have made the largest one dear by many orders.
+            let priced = summary.magnitude + T::EPSILON * now.largest;
             if verdict == Verdict::Escape {
                 now.leave_saddle(self.escape(&descent, magnitude));
                 has_corrected = true;
@@ -71,7 +73,7 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: usize
             if now.leaps(size) {
                 continue;
             }
-            match now.verdict(&end, size, unit, barrier::last(bounds, magnitude)) {
+            match now.verdict(&end, size, unit, barrier::last(bounds, priced)) {
                 Verdict::Done | Verdict::Tighten
                     if now.may_be_at_saddle(summary.negative + summary.straightened, size) =>
                 {
@@ -94,7 +96,7 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: usize
                     return found;
                 }
                 Verdict::Tighten => {
-                    now.tighten(bounds, magnitude);
+                    now.tighten(bounds, priced);
                     continue;
                 }
                 Verdict::Price if self.is_relaxed() => {}
@@ -136,9 +138,11 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: usize
             if now.stalls == STALLS || now.damping > T::from_f64(DAMPING_LIMIT) {
                 return Err(self.failure(&end, size));
             }
-            let is_central = decrement <= T::from_f64(10.0) * now.settings.barrier * bounds;
+            // A bound of places curves with the motion: away from its central path, slacks allow next to nothing of a correction.
+            let part = if summary.bounds_places { T::from_ratio(1, 10) } else { T::from_f64(10.0) };
+            let is_central = decrement <= part * now.settings.barrier * bounds;
             if bounds > zero && is_whole && is_central && !now.is_priced() {
-                now.tighten(bounds, magnitude);
+                now.tighten(bounds, priced);
             }
         }
         let end = self.end();

@@ -126,6 +126,8 @@ pub(super) struct PlanSummary<T, const D: usize, const U: usize> {
     /// The number of steps whose curvature was left out, and whether that is most of them.
     pub straightened: usize,
     pub is_mostly_straight: bool,
+    /// Whether a bound depends on places.
+    pub bounds_places: bool,
     /// The direction of the most negative one.
     pub fall: Option<Fall<T, U>>,
     /// By how far each input moves the end where it is 1 throughout, at most.
@@ -257,13 +259,14 @@ impl<'a, T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: u
             negative: 0,
             straightened: usize::from(is_bent),
             is_mostly_straight: false,
+            bounds_places: false,
             fall: None,
             reach: SVector::zeros(),
             costate: value.costate,
             violation: zero,
             yielding: zero,
         };
-        let mut following = self.last;
+        let (mut following, mut bounds_places) = (self.last, false);
         for (index, stage) in self.stages.iter_mut().enumerate().rev() {
             let t = self.problem.time_after(index);
             // the step, with its curvature or without
@@ -272,7 +275,7 @@ impl<'a, T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: u
                 problem.expand(stage, t, &costate)
             };
             // its model, with the curvature of its bounds or without
-            let model = |value: &Value<T, D>, step: &Expansion<S::Place, T, D, U>, is_straight: bool| {
+            let mut model = |value: &Value<T, D>, step: &Expansion<S::Place, T, D, U>, is_straight: bool| {
                 let mut step = *step;
                 let mut bounded = None;
                 if self.bounds > zero {
@@ -281,6 +284,7 @@ impl<'a, T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: u
                     let mut bounds = problem.bounds_expanded(stage, t, &multipliers)?;
                     let (violated, slopes) = stage.add_bounds(&mut step, &mut bounds, settings);
                     bounded = Some(Bounded { natural, slopes, violated });
+                    bounds_places |= bounds.by_place.iter().any(|slope| *slope != zero);
                 }
                 let violated = bounded.as_ref().map_or(zero, |bounded| bounded.violated);
                 let (policy, before) = Policy::of(&step, bounded, value, settings.curvature);
@@ -329,6 +333,7 @@ impl<'a, T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: u
             }
             value = before;
         }
+        summary.bounds_places = bounds_places;
         summary.is_mostly_straight = 2 * summary.straightened > steps;
         if let Some(fall) = &mut summary.fall {
             fall.depth /= T::from_f64(steps as f64);

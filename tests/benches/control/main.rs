@@ -1,12 +1,13 @@
 //! Plans of least price: `cargo bench -p clebsch-tests --bench control -- [PROBLEMS] [SEED]`.
 //!
-//! Random goals of a unicycle, of a body with bounded torques and of a quadrotor, all from a guess at rest. Then a
-//! quadrotor that is planned anew a hundred times a second while gusts push it. Printed are the share that is solved,
+//! Random goals of a unicycle, of a body with bounded torques and of a quadrotor, all from a guess at rest. A car on random tracks, past
+//! an obstacle that moves. Then a quadrotor that is planned anew a hundred times a second while gusts push it. Printed are the share that is solved,
 //! and the median, the ninth decile and the largest number of linearisations of a solution.
 
 mod systems;
 
 use clebsch::{Controlled, Limits, Target};
+use clebsch_tests::fixtures::follower::Follower;
 use clebsch_tests::fixtures::unicycle::Unicycle;
 use clebsch_tests::oracle::random::Random;
 use nalgebra::{Matrix3, Matrix4, Rotation3, Vector2, Vector3, Vector4, Vector6};
@@ -21,6 +22,8 @@ fn main() {
     print("unicycle", (0..count).map(|_| car(random)));
     print("body", (0..count).map(|_| body(random)));
     print("quadrotor", (0..count / 2).map(|_| flight(random)));
+    let seeds = &mut Random::new(seed + 2);
+    print("car on a track", (0..count).map(|_| track(seeds)));
     print("quadrotor in gusts", (0..count / 40).flat_map(|_| gusts(random, None)).map(|tick| tick.sweeps));
     println!(
         "\n{:<18} {:>9} {:>8} {:>14} {:>14}",
@@ -66,6 +69,22 @@ fn car(random: &mut Random) -> Option<u32> {
     let start = Matrix3::identity();
     let mut plan = [control.stage(&start); STEPS];
     control.solve(&start, Target::Place(goal), &mut plan).ok().map(|found| found.iterations())
+}
+
+/// Along a swing, past an obstacle that is near the middle of it.
+fn track(random: &mut Random) -> Option<u32> {
+    const STEPS: usize = 40;
+    const H: f64 = 0.1;
+    let control = Follower { price: 0.02, clearance: 0.4, miss_price: 1.0 }.control(H).expect("regular");
+    let (width, phase, swing) = (1.0 + random.number(), 3.0 * random.number(), 1.0 + 0.5 * random.number());
+    let track = |t: f64| Vector2::new(width * (phase + swing * t).sin(), t);
+    let (middle, drift) = (track(2.0) + random.vector::<2>() * 0.4, random.vector::<2>() * 0.2);
+    let control = control.with_end_reference(track(H * STEPS as f64)).expect("finite");
+    let (point, angle) = (track(0.0) + random.vector::<2>() * 0.3, 3.0 * random.number());
+    let start = Matrix3::new(angle.cos(), -angle.sin(), point.x, angle.sin(), angle.cos(), point.y, 0.0, 0.0, 1.0);
+    let mut plan = [control.stage(&start); STEPS];
+    control.refer(&mut plan, |_, t| (track(t), middle + drift * (t - 2.0)));
+    control.solve(&start, Target::Free, &mut plan).ok().map(|found| found.iterations())
 }
 
 /// From one tumbling to another.

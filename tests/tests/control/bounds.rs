@@ -148,12 +148,9 @@ fn bounds_of_random_sizes_are_kept() {
 }
 
 /// A guess that is dear by many orders hides no slope of the price. The price is that of the plan from no guess, to 10⁻⁶.
-///
-/// One of the hundred plans, from 2·10⁶ N, is dearer by 3·10⁻⁶, and its residual is round-off. The cause is not known.
 #[test]
 fn wild_guesses_are_forgotten() -> Result<(), Error> {
     let mut random = Random::new(707);
-    let mut others = 0;
     for k in 0..100 {
         let goal = Target::Place(Vector2::new(random.between(0.3, 1.0), random.between(-0.3, 0.3)));
         let (start, wild) = (Vector2::zeros(), 10_f64.powi(k % 9) * random.number());
@@ -163,10 +160,8 @@ fn wild_guesses_are_forgotten() -> Result<(), Error> {
         let price = control.solve(&start, goal, &mut plan)?.price();
         let found = control.solve(&start, goal, &mut other)?;
         let differs = (found.price() - price).abs() / price;
-        assert!(differs < 1e-5, "{k}, {wild}: {found:?} after {price}");
-        others += usize::from(differs > 1e-6);
+        assert!(differs < 1e-6, "{k}, {wild}: {found:?} after {price}");
     }
-    assert!(others <= 1, "{others} of 100");
     Ok(())
 }
 
