@@ -9,7 +9,7 @@ use clebsch::Clebsch;
 use clebsch_examples::claims::Claims;
 use clebsch_examples::scene::Failure;
 use clebsch_examples::table::Table;
-use nalgebra::{Rotation3, Vector3};
+use nalgebra::Vector3;
 
 /// The deviation from the plan.
 #[derive(Clone, Copy, Debug)]
@@ -87,7 +87,9 @@ fn fly(problem: &Problem, plan: &Plan, surprise: &Surprise, feedback: bool) -> R
     }
     let place: Place = (*state.configuration(), state.momentum());
     flight.off.push((position(&place) - position(&plan.end)).norm());
-    flight.angle = Rotation3::from_matrix_unchecked(attitude(&plan.end).tr_mul(&attitude(&place))).angle();
+    // from the chord, |A − B|² = 8 sin²(θ/2): the trace loses small angles to rounding
+    let chord = (attitude(&plan.end) - attitude(&place)).norm();
+    flight.angle = 2.0 * (chord / 8.0_f64.sqrt()).min(1.0).asin();
     flight.velocity = velocity(&place, mass).norm();
     Ok(flight)
 }
