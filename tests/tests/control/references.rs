@@ -4,7 +4,7 @@ use super::derivatives;
 use clebsch::{Clebsch, Control, Controlled, Error, Limits, Referring, Stage, Target};
 use clebsch_tests::fixtures::follower::Follower;
 use clebsch_tests::oracle::random::Random;
-use nalgebra::{DMatrix, DVector, Matrix2, Matrix3, SVector, Vector2, Vector3, vector};
+use nalgebra::{DMatrix, DVector, Matrix2, Matrix3, Quaternion, SVector, Vector2, Vector3, Vector4, vector};
 
 /// The car of the fixture, with its track and the place of the obstacle as functions of the time.
 #[derive(Clebsch, Clone, Debug)]
@@ -74,6 +74,37 @@ struct TurningInTime {
 )]
 struct Mass {
     price: f64,
+}
+
+/// A body by quaternions in single precision, that turns after one, with limits in an array.
+#[derive(Clebsch, Clone, Debug)]
+#[clebsch(
+    action     = |F: SU<2>, q: SU<2>| q * F,
+    lagrangian = |omega| self.moment * omega.norm_squared() / 2,
+    force      = |torque: Vector3| torque,
+    effort     = |h, q, torque, wanted: Quaternion| h * (torque.norm_squared() + 10 * (q - wanted).norm_squared()) / 2,
+    bounds     = |torque, tops: [Vector1; 2]| [torque.x <= tops[0].x, torque.z <= tops[1].x],
+    endpoint   = |q, omega, wanted| 10 * ((q - wanted).norm_squared() + omega.norm_squared()),
+    scalar     = f32,
+)]
+struct Spinning {
+    moment: f32,
+}
+
+/// The same with fields.
+#[derive(Clebsch, Clone, Debug)]
+#[clebsch(
+    action     = |F: SU<2>, q: SU<2>| q * F,
+    lagrangian = |omega| self.moment * omega.norm_squared() / 2,
+    force      = |torque: Vector3| torque,
+    effort     = |h, q, torque| h * (torque.norm_squared() + 10 * (q - Quaternion::new(self.wanted.w, self.wanted.x, self.wanted.y, self.wanted.z)).norm_squared()) / 2,
+    bounds     = |torque| [torque.x <= self.tops.x, torque.z <= self.tops.y],
+    endpoint   = |q, omega| 10 * ((q - Quaternion::new(self.wanted.w, self.wanted.x, self.wanted.y, self.wanted.z)).norm_squared() + omega.norm_squared()),
+)]
+struct SpinningByFields {
+    moment: f32,
+    wanted: Vector4<f32>,
+    tops: Vector2<f32>,
 }
 
 const H: f64 = 0.1;
@@ -170,6 +201,23 @@ fn velocities_have_references_too() -> Result<(), Error> {
         assert!((expected - found).abs() < 1e-11 * expected, "{expected} {found}");
         assert!(apart(&inputs(&plan), &inputs(&referred)) < 1e-7);
     }
+    Ok(())
+}
+
+#[test]
+fn quaternions_and_arrays_are_references() -> Result<(), Error> {
+    let wanted = Quaternion::new(0.6, 0.0, 0.0, 0.8);
+    let start = (Quaternion::new(1.0, 0.0, 0.0, 0.0), Vector3::new(0.3, 0.0, 0.0));
+    let by_fields =
+        SpinningByFields { moment: 1.2, wanted: vector![0.0, 0.0, 0.8, 0.6], tops: vector![0.5, 0.7] }.control(0.1)?;
+    let mut plan = [by_fields.stage(&start); 20];
+    let expected = by_fields.solve(&start, Target::Free, &mut plan)?.price();
+    assert!(plan[0].active()[1], "a limit of the array matters");
+    let control = Spinning { moment: 1.2 }.control(0.1)?.with_end_reference(wanted)?;
+    let mut plan = [control.stage(&start); 20];
+    control.refer(&mut plan, |_, _| (wanted, [vector![0.5], vector![0.7]]));
+    let found = control.solve(&start, Target::Free, &mut plan)?.price();
+    assert!((expected - found).abs() < 1e-5 * expected, "{expected} {found}");
     Ok(())
 }
 
