@@ -458,8 +458,8 @@ errors! {
             /// The number of steps.
             steps: usize,
         } =>
-            "reference {step} is missing or not finite: steps 0 to {steps} − 1 get theirs from `Control::refer`, and the \
-             end, number {steps}, gets its own from `Control::with_end_reference`";
+            "reference {step} is missing or not finite: `Control::refer` gives those of the {steps} steps, counted from 0, \
+             and `Control::with_end_reference` that of the end, number {steps}";
         /// No inputs were found that keep the bounds.
         Infeasible {
             /// The bound that is violated most, as it was written.

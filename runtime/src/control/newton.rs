@@ -56,7 +56,7 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: usize
             // the size of prices, for a price that vanishes at the solution a small part of the largest
             let magnitude = summary.magnitude + T::EPSILON.sqrt() * now.largest;
             // That of barriers, whose last one is a part of the price. A guess may have made the largest one dear by many orders.
-            let priced = summary.magnitude + T::EPSILON * now.largest;
+            let size_of_price = summary.magnitude + T::EPSILON * now.largest;
             if verdict == Verdict::Escape {
                 now.leave_saddle(self.escape(&descent, magnitude));
                 has_corrected = true;
@@ -73,7 +73,7 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: usize
             if now.leaps(size) {
                 continue;
             }
-            match now.verdict(&end, size, unit, barrier::last(bounds, priced)) {
+            match now.verdict(&end, size, unit, barrier::last(bounds, size_of_price)) {
                 Verdict::Done | Verdict::Tighten
                     if now.may_be_at_saddle(summary.negative + summary.straightened, size) =>
                 {
@@ -96,7 +96,7 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: usize
                     return found;
                 }
                 Verdict::Tighten => {
-                    now.tighten(bounds, priced);
+                    now.tighten(bounds, size_of_price);
                     continue;
                 }
                 Verdict::Price if self.is_relaxed() => {}
@@ -142,7 +142,7 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: usize
             let part = if summary.bounds_places { T::from_ratio(1, 10) } else { T::from_f64(10.0) };
             let is_central = decrement <= part * now.settings.barrier * bounds;
             if bounds > zero && is_whole && is_central && !now.is_priced() {
-                now.tighten(bounds, priced);
+                now.tighten(bounds, size_of_price);
             }
         }
         let end = self.end();

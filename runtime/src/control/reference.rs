@@ -23,7 +23,7 @@ pub trait Referenced<T: Scalar>: Clone + Debug {
     /// The reference of the end.
     type EndReference: Space<T>;
 
-    /// Calls `read` with these constants and the reference of a step.
+    /// Calls `read` with these constants and the reference of a step. [`Referring`] is cloned for it.
     fn at<V>(&self, reference: &Self::Reference, read: impl FnOnce(&Self) -> V) -> V;
 
     /// These constants with the reference of the end.
@@ -69,9 +69,9 @@ unreferenced!(T: [], (): [], (C, T): [C: Clone + Debug]);
 pub struct Referring<K, R, E> {
     /// The constants that no step changes.
     pub constants: K,
-    /// r_k
+    /// The reference r_k of a step.
     pub reference: R,
-    /// r_N
+    /// The reference r_N of the end.
     pub end_reference: E,
 }
 

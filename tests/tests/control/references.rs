@@ -1,6 +1,7 @@
 //! References: prices and bounds that read data of each step, against the same prices as functions of the time, and against linear algebra.
 
 use super::derivatives;
+use super::plans::place;
 use clebsch::{Clebsch, Control, Controlled, Error, Limits, Referring, Stage, Target};
 use clebsch_tests::fixtures::follower::Follower;
 use clebsch_tests::oracle::random::Random;
@@ -114,8 +115,9 @@ fn track(t: f64) -> Vector2<f64> {
     vector![2.0 * t.sin(), t]
 }
 
+/// A turn about the vertical, in space and in the plane.
 fn rotation(t: f64) -> Matrix3<f64> {
-    Matrix3::new(t.cos(), -t.sin(), 0.0, t.sin(), t.cos(), 0.0, 0.0, 0.0, 1.0)
+    place(t, 0.0, 0.0)
 }
 
 fn inputs<S, const D: usize, const U: usize, const C: usize>(plan: &[Stage<S, D, U, C>]) -> Vec<SVector<f64, U>>
@@ -127,7 +129,7 @@ where
 
 /// Unturned, at a point.
 fn at(point: &Vector2<f64>) -> Matrix3<f64> {
-    Matrix3::new(1.0, 0.0, point.x, 0.0, 1.0, point.y, 0.0, 0.0, 1.0)
+    place(0.0, point.x, point.y)
 }
 
 /// The largest difference of two lists of inputs.

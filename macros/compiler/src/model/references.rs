@@ -1,6 +1,7 @@
 //! References: data of a plan that price and bounds read step by step, and that the price of the end reads once.
 
 use clebsch_symbolic::{Elements, Graph, IntoList, Role};
+use syn::Type;
 
 use super::arguments::TypedArguments;
 use super::groups::GroupNames;
@@ -11,7 +12,7 @@ use super::typed::part;
 use super::value::Value;
 use super::{Configuration, Layout, LeafSpace};
 use crate::diagnostic::{Location, refuse};
-use crate::parse::{Argument, Declaration, Pattern, spell_type};
+use crate::parse::{Argument, Declaration, Pattern, joined, spell_type};
 
 /// The typed arguments that introduce references, in order of their first use.
 #[derive(Clone, Default)]
@@ -47,6 +48,19 @@ pub(super) fn find<'a, 'd>(arguments: &'a [&'d Argument], pattern: &Pattern) -> 
     arguments.iter().find(|argument| argument.pattern.holds(pattern))
 }
 
+/// The type of the vectors, matrices and quaternions of a product, as it is written.
+fn plain(layout: &Layout, leaves: &[(SpaceType, &Type)]) -> String {
+    match layout {
+        Layout::Leaf(k) if leaves[*k].0.is_quaternion => "Quaternion".to_string(),
+        Layout::Leaf(k) => spelled(leaves[*k].0.shape),
+        Layout::Tuple(parts) => format!("({})", joined(parts.iter().map(|part| plain(part, leaves)))),
+        Layout::Array(parts) => {
+            let part = parts.first().map(|part| plain(part, leaves)).unwrap_or_default();
+            format!("[{part}; {}]", parts.len())
+        }
+    }
+}
+
 /// References with their values.
 pub(super) struct References<'d, 'g> {
     /// Each argument with its space.
@@ -67,10 +81,7 @@ impl<'d, 'g> References<'d, 'g> {
             let product = read_spaces(ty, names)?;
             let is_other = |(leaf, _): &&(SpaceType, _)| leaf.space != LeafSpace::Vectors;
             if let Some((_, ty)) = product.leaves.iter().find(is_other) {
-                let (leaf, _) = product.leaves[0];
-                let meant = if leaf.is_quaternion { "Quaternion".to_string() } else { spelled(leaf.shape) };
-                let meant = if product.leaves.len() == 1 { meant } else { "(Matrix3, Vector3)".to_string() };
-                let name = argument.pattern.spell();
+                let (name, meant) = (argument.pattern.spell(), plain(&product.layout, &product.leaves));
                 refuse!(names.diagnostics, Location::from(*ty), "`{}` is no type of a reference, which is made of vectors, matrices and quaternions", spell_type(ty);
                     help "write `{name}: {meant}`";
                     note "references are data that nothing moves, so that no space is asked of them");

@@ -487,7 +487,13 @@ fn plans() -> Vec<Scene> {
         scene(steered(0.1), &["were left after", "give more steps or wider bounds"]),
         scene(
             refused(follower.solve(&Matrix3::identity(), Target::Free, &mut followed)),
-            &["reference 3 is missing", "steps 0 to 5 − 1", "`Control::refer`", "`Control::with_end_reference`"],
+            &[
+                "reference 3 is missing",
+                "those of the 5 steps, counted from 0",
+                "the end, number 5",
+                "`Control::refer`",
+                "`Control::with_end_reference`",
+            ],
         ),
     ]
 }
