@@ -80,11 +80,10 @@ fn weighted(group: &str, n: usize, keys: &str) -> String {
     )
 }
 
-/// Where `CLEBSCH_FUZZ` is set there are more of those that are made at random.
-fn declarations() -> Vec<String> {
-    let is_long = std::env::var_os("CLEBSCH_FUZZ").is_some();
+/// Metrics and costs of groups.
+fn groups() -> Vec<String> {
     let moving = "(1 + q[(0, 0)] * q[(0, 1)])";
-    let mut all = vec![
+    vec![
         metric("SL<3>", 8, moving, ""),
         metric("Sim<2>", 4, moving, "discretization = projection"),
         metric("SO<5>", 10, moving, "emit = [tangent]"),
@@ -101,8 +100,14 @@ fn declarations() -> Vec<String> {
             .to_string(),
         weighted("U<2>", 4, "chart = exponential"),
         weighted("SO<5>", 5, "emit = [tangent]"),
-        particle(&format!("force = |v| ({}) * v", product(30, &mut Numbers(3)).replace("x.", "v."))),
-    ];
+    ]
+}
+
+/// Forces and potentials on a particle. Where `CLEBSCH_FUZZ` is set there are more of those that are made at random.
+fn particles() -> Vec<String> {
+    let is_long = std::env::var_os("CLEBSCH_FUZZ").is_some();
+    let force = product(30, &mut Numbers(3)).replace("x.", "v.");
+    let mut all = vec![particle(&format!("force = |v| ({force}) * v"))];
     for seed in 3..if is_long { 7 } else { 5 } {
         let product = product(14, &mut Numbers(seed));
         all.push(particle(&format!("potential = |x| {product}, emit = [tangent]")));
@@ -146,11 +151,20 @@ fn helped(declaration: &str, help: &str) -> Option<String> {
 }
 
 #[test]
-fn refusals_take_bounded_work() {
+fn refusals_of_groups_take_bounded_work() {
+    check(&groups());
+}
+
+#[test]
+fn refusals_of_forces_and_potentials_take_bounded_work() {
+    check(&particles());
+}
+
+fn check(declarations: &[String]) {
     let (mut refused, mut accepted, mut offered) = (0, 0, 0);
     let mut failures = Vec::new();
-    for declaration in declarations() {
-        let (result, spent) = counted(&declaration);
+    for declaration in declarations {
+        let (result, spent) = counted(declaration);
         let shown: String = declaration.chars().take(300).collect();
         let Err(errors) = result else {
             accepted += 1;
@@ -164,7 +178,7 @@ fn refusals_take_bounded_work() {
         if spent > MOST {
             failures.push(format!("{spent} units of work, {MOST} is the most\n{shown}"));
         }
-        for other in said.lines().filter_map(|help| helped(&declaration, help)) {
+        for other in said.lines().filter_map(|help| helped(declaration, help)) {
             offered += 1;
             if let (Err(errors), _) = counted(&other) {
                 failures.push(format!("{errors}\nafter the help of\n{said}\n{shown}"));
@@ -173,5 +187,5 @@ fn refusals_take_bounded_work() {
     }
     println!("{refused} refused, {accepted} accepted, {offered} offered");
     assert!(failures.is_empty(), "{} failures\n\n{}", failures.len(), failures.join("\n\n"));
-    assert!(refused > 5 && accepted > 5 && offered > 2, "{refused} refused, {accepted} accepted, {offered} offered");
+    assert!(refused > 5 && accepted > 2 && offered > 2, "{refused} refused, {accepted} accepted, {offered} offered");
 }

@@ -255,6 +255,11 @@ fn no_step_leaves_its_group_in_silence() {
     };
     let [_, refused] = stay_on_their_group::<_, 4, 6>(frame, |f| off_form(&minkowski, f));
     assert!(refused > 0, "no frame was far off");
+}
+
+/// The same for groups of other forms, and of a determinant.
+#[test]
+fn no_step_leaves_another_group_in_silence() {
     let symplectic = Matrix4::from_fn(|i, j| {
         if j == i + 2 {
             1.0

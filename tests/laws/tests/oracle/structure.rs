@@ -143,16 +143,30 @@ fn measured_order(run: impl Fn(DoubleDouble, usize) -> State<DoubleDouble>) -> f
     order(&[10, 20, 40].map(|steps| (&end(steps).q[0] - &exact.q[0]).size()))
 }
 
+fn sl2_start() -> State<DoubleDouble> {
+    State { q: vec![Matrix::identity(2)], n: [0.4, 0.7, -0.5].map(DoubleDouble::of).to_vec() }
+}
+
+fn last(states: Vec<State<DoubleDouble>>) -> State<DoubleDouble> {
+    states.last().unwrap().clone()
+}
+
 #[test]
-fn orders_one_and_two() {
-    let start = State { q: vec![Matrix::identity(2)], n: [0.4, 0.7, -0.5].map(DoubleDouble::of).to_vec() };
-    let last = |states: Vec<State<_>>| states.last().unwrap().clone();
-    let plain = measured_order(|h, steps| last(trajectory(&WeightedSl2(17), h, &start, steps).unwrap()));
-    let composed = measured_order(|h, steps| last(composed_trajectory(&WeightedSl2(17), h, &start, steps).unwrap()));
-    let symmetric = measured_order(|h, steps| last(trajectory(&MidpointTop, h, &top(), steps).unwrap()));
-    assert!((plain - 1.0).abs() < 0.1, "{plain}");
-    assert!((composed - 2.0).abs() < 0.05, "{composed}");
-    assert!((symmetric - 2.0).abs() < 0.05, "{symmetric}");
+fn a_plain_step_is_of_order_one() {
+    let order = measured_order(|h, steps| last(trajectory(&WeightedSl2(17), h, &sl2_start(), steps).unwrap()));
+    assert!((order - 1.0).abs() < 0.1, "{order}");
+}
+
+#[test]
+fn a_composed_step_is_of_order_two() {
+    let order = measured_order(|h, steps| last(composed_trajectory(&WeightedSl2(17), h, &sl2_start(), steps).unwrap()));
+    assert!((order - 2.0).abs() < 0.05, "{order}");
+}
+
+#[test]
+fn a_symmetric_step_is_of_order_two() {
+    let order = measured_order(|h, steps| last(trajectory(&MidpointTop, h, &top(), steps).unwrap()));
+    assert!((order - 2.0).abs() < 0.05, "{order}");
 }
 
 /// J of the symmetric representation is the momentum of the Euler–Poincaré representation, for left and right actions.
