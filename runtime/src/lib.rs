@@ -190,6 +190,8 @@ pub mod record;
 mod root;
 mod rotation;
 mod rotation_4d;
+#[cfg(test)]
+mod runner;
 #[cfg(feature = "serde")]
 mod saved;
 mod scalar;

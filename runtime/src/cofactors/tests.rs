@@ -2,6 +2,7 @@
 
 use crate::linear::solve_dense;
 use crate::orientation::Orientation;
+use crate::runner::proptest;
 use nalgebra::{Matrix3, Matrix6, SMatrix, SVector, Vector3, Vector6};
 use proptest::prelude::*;
 

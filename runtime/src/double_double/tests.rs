@@ -2,6 +2,7 @@
 
 use super::DoubleDouble;
 use crate::Scalar;
+use crate::runner::proptest;
 use num_traits::Zero;
 use proptest::prelude::*;
 

@@ -1,6 +1,7 @@
 //! Against values of 60 digits (mpmath), and the laws of the exponential.
 
 use super::{exponential, phi, phi_times};
+use crate::runner::proptest;
 use crate::stumpff::stumpff;
 use nalgebra::{Matrix2, Matrix3, SMatrix, Vector3};
 use proptest::prelude::*;

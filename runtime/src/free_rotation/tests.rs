@@ -2,6 +2,7 @@
 
 use super::FreeRotation;
 use crate::Error;
+use crate::runner::proptest;
 use nalgebra::{Matrix3, Quaternion, SVector, UnitQuaternion, Vector3};
 use proptest::prelude::*;
 use std::vec::Vec;

@@ -1,6 +1,7 @@
 //! The exact motion against a Runge–Kutta method in small steps, and against its own laws.
 
 use super::{FreeRotation4, KeptRotation4, PLANES, SERIES, flow, free_momentum_4d};
+use crate::runner::proptest;
 use crate::{Error, Real};
 use nalgebra::{Matrix4, SMatrix, SVector, Vector6};
 use proptest::prelude::*;

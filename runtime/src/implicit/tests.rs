@@ -2,6 +2,7 @@
 
 use super::path::LINEARIZATIONS;
 use super::{Equation, Orientation, solve, solve_fixed_point};
+use crate::runner::proptest;
 use crate::{Error, Scalar};
 use core::cell::Cell;
 use nalgebra::{Matrix3, SMatrix, SVector, Vector1, Vector3};

@@ -3,6 +3,7 @@
 use super::{F32x8, F64x4, F64x8};
 use crate::linear::{eliminate, solve_symmetric};
 use crate::orientation::Orientation;
+use crate::runner::proptest;
 use crate::{Mask, Scalar};
 use nalgebra::{Matrix3, Vector3};
 use proptest::prelude::*;

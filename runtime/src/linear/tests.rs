@@ -1,6 +1,7 @@
 //! Small systems with exact solutions, and the size of their errors.
 
 use super::{Orientation, eliminate, norm, product, solve_dense, solve_linear, solve_symmetric};
+use crate::runner::proptest;
 use nalgebra::{Matrix2, Matrix3, Matrix4, Vector2, Vector3, Vector4};
 use proptest::prelude::*;
 

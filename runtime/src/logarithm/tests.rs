@@ -2,6 +2,7 @@
 
 use super::{logarithm, motion_logarithm};
 use crate::exponential::exponential;
+use crate::runner::proptest;
 use nalgebra::{Matrix2, Matrix3, Matrix4, Rotation3, Vector3};
 use proptest::prelude::*;
 

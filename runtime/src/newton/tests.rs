@@ -2,6 +2,7 @@
 
 use super::gap::{arc_per_chord, regular, singular};
 use super::{Bracket, Ldl, Spectrum, adapted};
+use crate::runner::proptest;
 use nalgebra::{Matrix3, Matrix4, SMatrix, Vector3};
 use proptest::prelude::*;
 

@@ -5,6 +5,7 @@ use super::{
     turn_of_body, turn_of_motion,
 };
 use crate::implicit::{Equation, solve};
+use crate::runner::proptest;
 use crate::{Error, Scalar};
 use nalgebra::{Matrix3, Rotation3, Vector3};
 use proptest::prelude::*;

@@ -2,6 +2,7 @@
 
 use super::{Iterated, RotatingBody4, RotationEquation4, solve_rotation_4d};
 use crate::implicit::solve;
+use crate::runner::proptest;
 use crate::{Error, Scalar};
 use nalgebra::{Matrix4, SMatrix, SVector};
 use proptest::prelude::*;

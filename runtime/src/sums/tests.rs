@@ -1,4 +1,5 @@
 use super::accumulate;
+use crate::runner::proptest;
 use nalgebra::{Matrix2, Quaternion, Vector3};
 use proptest::prelude::*;
 

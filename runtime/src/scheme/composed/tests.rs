@@ -1,4 +1,5 @@
 use super::{OfOrderEight, OfOrderFour, OfOrderSix, Sizes, Stages};
+use crate::runner::proptest;
 use nalgebra::SMatrix;
 use proptest::prelude::*;
 use std::vec::Vec;

@@ -1,5 +1,6 @@
 use super::{TRIALS, WIDTH, longest};
 use crate::Error;
+use crate::runner::proptest;
 use core::cell::Cell;
 use proptest::prelude::*;
 

@@ -22,6 +22,7 @@ mod powers;
 mod public;
 mod recording;
 mod rotations;
+#[path = "../../../../runtime/src/runner.rs"]
 mod runner;
 mod runs;
 mod scalars;

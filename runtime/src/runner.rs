@@ -1,7 +1,10 @@
-//! `proptest!` as in the library, but all properties have one runner: the library compiles another for each, a sixth of this test.
+//! `proptest!` as in the library, but all properties have one runner. The library compiles another for each.
+//!
+//! The unit tests of this crate include it, and the test `properties` of `clebsch-laws`.
 
 use proptest::prelude::*;
 use proptest::test_runner::{TestCaseResult, TestRunner};
+use std::boxed::Box;
 use std::fmt::Debug;
 
 /// A property of drawn values, whatever their types.
@@ -30,14 +33,20 @@ impl<T: Debug> Case for Drawn<T> {
 }
 
 /// Draws cases until one fails, and panics with the smallest of those that do.
-pub fn check<S>(config: ProptestConfig, names: &'static str, strategy: S, property: fn(S::Value) -> TestCaseResult)
-where
+#[track_caller]
+pub(crate) fn check<S>(
+    config: ProptestConfig,
+    names: &'static str,
+    strategy: S,
+    property: fn(S::Value) -> TestCaseResult,
+) where
     S: Strategy<Value: 'static> + 'static,
 {
     let cases = strategy.prop_map(move |values| Box::new(Drawn { names, values, property }) as Box<dyn Case>);
     run(config, &cases.boxed());
 }
 
+#[track_caller]
 fn run(config: ProptestConfig, cases: &BoxedStrategy<Box<dyn Case>>) {
     let mut runner = TestRunner::new(config);
     if let Err(error) = runner.run(cases, |case| case.holds()) {
@@ -53,13 +62,21 @@ macro_rules! proptest {
     )*) => { $(
         $(#[$meta])*
         fn $name() {
+            let config = ProptestConfig {
+                source_file: Some(file!()),
+                test_name: Some(concat!(module_path!(), "::", stringify!($name))),
+                ..$config
+            };
             let names = stringify!($($value),+);
-            $crate::runner::check($config, names, ($($strategy,)+), |($($value,)+)| {
+            $crate::runner::check(config, names, ($($strategy,)+), |($($value,)+)| {
                 let (): () = $body;
                 Ok(())
             });
         }
     )* };
+    ($($properties:tt)*) => {
+        $crate::runner::proptest! { #![proptest_config(ProptestConfig::default())] $($properties)* }
+    };
 }
 
 pub(crate) use proptest;
