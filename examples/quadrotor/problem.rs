@@ -1,8 +1,8 @@
 //! Two hovering places and a time: the task of every flight.
 
-use super::declaration::{Place, Steering};
+use super::declaration::{Place, Quadrotor, Steering};
 use super::place::hovering;
-use super::vehicle::Vehicle;
+use super::vehicle::{DRAG, GRAVITY, Vehicle};
 use crate::Flags;
 use clebsch::{Controlled, Error};
 use clebsch_examples::scene::Failure;
@@ -37,7 +37,7 @@ impl Problem {
         }
         let (start, goal) = (hovering(&Vector3::zeros(), 0.0), hovering(&to, yaw));
         let (duration, steps) = (flags.run.duration(), flags.run.steps);
-        Ok(Self { vehicle: Vehicle::new(flags)?, start, goal, distance: to.norm(), duration, steps })
+        Ok(Self { vehicle: Vehicle::new(flags.mass, flags.thrust)?, start, goal, distance: to.norm(), duration, steps })
     }
 
     /// With steps that are `finer` times shorter.
@@ -46,5 +46,20 @@ impl Problem {
     /// A vehicle or a step size that the macro refuses.
     pub fn steering(&self, finer: u64) -> Result<Steering, Error> {
         self.vehicle.system().control(self.duration / (self.steps * finer) as f64)
+    }
+}
+
+impl Vehicle {
+    /// The declaration.
+    pub fn system(&self) -> Quadrotor {
+        Quadrotor {
+            mass_matrix: self.mass_matrix(),
+            mass: self.mass,
+            gravity: GRAVITY,
+            arm: Self::arm(),
+            drag: DRAG,
+            hover: self.hover(),
+            top: self.top,
+        }
     }
 }

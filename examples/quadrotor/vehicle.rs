@@ -2,8 +2,7 @@
 //! Zürich (2015). The data are mass, inertia tensor, thrust of a rotor at full command (its quadratic in the command,
 //! at 65535), and torque per thrust.
 
-use super::declaration::{Quadrotor, Thrusts};
-use crate::Flags;
+use super::declaration::Thrusts;
 use clebsch_examples::scene::Failure;
 use nalgebra::{Matrix3, Matrix4, Vector3};
 
@@ -18,7 +17,7 @@ const INERTIA: [f64; 6] = [16.571710e-6, 16.655602e-6, 29.261652e-6, 0.830806e-6
 /// From the centre to a rotor, m; rotors stand at 45° to the axes.
 const RADIUS: f64 = 0.046;
 /// Torque about the axis of a rotor per thrust, m.
-const DRAG: f64 = 0.005_964_552;
+pub const DRAG: f64 = 0.005_964_552;
 
 /// A quadrotor.
 #[derive(Clone, Copy, Debug)]
@@ -32,14 +31,14 @@ pub struct Vehicle {
 }
 
 impl Vehicle {
-    /// From the flags.
+    /// Of this mass, kg, with rotors that push up to `top`, N.
     ///
     /// # Errors
     /// [`Failure::Flags`] where the rotors cannot carry it.
-    pub fn new(flags: &Flags) -> Result<Self, Failure> {
+    pub fn new(mass: f64, top: f64) -> Result<Self, Failure> {
         let [xx, yy, zz, xy, xz, yz] = INERTIA;
         let inertia = Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz);
-        let vehicle = Self { mass: flags.mass, inertia, top: flags.thrust };
+        let vehicle = Self { mass, inertia, top };
         if vehicle.hover() >= vehicle.top {
             let (hover, top) = (vehicle.hover(), vehicle.top);
             return Err(Failure::Flags(format!(
@@ -64,21 +63,13 @@ impl Vehicle {
         RADIUS / 2.0_f64.sqrt()
     }
 
-    /// The declaration.
-    pub fn system(&self) -> Quadrotor {
+    /// ½ tr(J) I − J and the mass, about the centre of mass, kg·m², kg.
+    pub fn mass_matrix(&self) -> Matrix4<f64> {
         let mut mass_matrix = Matrix4::zeros();
         let second = Matrix3::identity() * (self.inertia.trace() / 2.0) - self.inertia;
         mass_matrix.fixed_view_mut::<3, 3>(0, 0).copy_from(&second);
         mass_matrix[(3, 3)] = self.mass;
-        Quadrotor {
-            mass_matrix,
-            mass: self.mass,
-            gravity: GRAVITY,
-            arm: Self::arm(),
-            drag: DRAG,
-            hover: self.hover(),
-            top: self.top,
-        }
+        mass_matrix
     }
 
     /// The torque that thrusts make, by r × f and the drag of each rotor, N·m: not from the declaration.

@@ -49,7 +49,7 @@ const SCENES: [(&str, &str); 19] = [
 ];
 
 /// Scenes whose runs by default take a second or more without optimisation: `other_flags_hold_all_their_claims` makes shorter ones.
-const LONG: [&str; 27] = [
+const LONG: [&str; 28] = [
     "spacecraft",
     "spin_chain",
     "rigid_body_4d",
@@ -70,6 +70,7 @@ const LONG: [&str; 27] = [
     "chain",
     "double_pendulum",
     "quadrotor",
+    "mpc",
     "wave_map",
     "kink",
     "magnons",
@@ -156,7 +157,7 @@ fn motions_are_written_as_pages() {
 
 /// Scenes of plans, which short runs do not suit, and those of constraints and fields, which have no steps of order 1.
 /// They are a name, flags, and the columns of the CSV file.
-const PLANS: [(&str, &[&str], &str); 15] = [
+const PLANS: [(&str, &[&str], &str); 16] = [
     (
         "slew",
         &["--least", "effort"],
@@ -176,6 +177,7 @@ const PLANS: [(&str, &[&str], &str); 15] = [
     ("skyrmion", &[], "step,time,q1,q2,q3,e1,e2,e3"),
     ("double_pendulum", &[], "step,time,x1,y1,z1,x2,y2,z2,a1,a2,a3,b1,b2,b3"),
     ("quadrotor", &[], "step,time,R11,R12,R13,R21,R22,R23,R31,R32,R33,x1,x2,x3,v1,v2,v3,pi1,pi2,pi3,u1,u2,u3,u4"),
+    ("mpc", &[], "step,time,x1,x2,x3,r1,r2,r3,o1,o2,o3,lean,u1,u2,u3,u4"),
 ];
 
 #[test]
@@ -334,6 +336,8 @@ fn long_runs_hold_all_their_claims() {
         ("plate_ball", &["--turn", "0,0,1,90"]),
         ("plate_ball", &["--radius", "1", "--goal", "2,1", "--steps", "50", "--step-size", "0.1"]),
         ("quadrotor", &["--step-size", "0.01", "--steps", "120"]),
+        ("mpc", &["--gust", "0.02", "--seed", "2"]),
+        ("mpc", &["--steps", "20", "--horizon", "20"]),
     ]);
 }
 
@@ -446,6 +450,10 @@ fn mistakes_are_explained() {
         ("quadrotor", &["--thrust", "0.05"], "hovering takes 0.0687 N of each rotor"),
         ("quadrotor", &["--to", "0,0,0", "--yaw", "0"], "another place to hover at is needed"),
         ("quadrotor", &["--mass", "-1"], "`-1` is not above zero"),
+        ("mpc", &["--order", "1"], "plans are made with steps of order 2"),
+        ("mpc", &["--horizon", "0"], "at least 1 is needed"),
+        ("mpc", &["--gust", "-1"], "`-1` is not above zero"),
+        ("mpc", &["--steps", "1000000"], "no more than 100000 fit"),
         ("slew", &["--least", "effort", "--to", "1,2,3,720"], "two different attitudes are needed"),
         ("slew", &["--time", "1800", "--step-size", "10"], "cannot be used with"),
         ("unicycle", &["--goal", "1,2"], "3 numbers separated by commas are needed, 2 were given"),

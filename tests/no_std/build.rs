@@ -36,12 +36,13 @@ const DIRECTIONS: [(&str, &str); 6] = [
 const LANES: [&str; 2] = ["F64x4", "F64x8"];
 
 /// Dimensions of problems of optimal control: of places, of inputs, and the number of bounds.
-const DIMENSIONS: [(&str, &str); 10] = [
+const DIMENSIONS: [(&str, &str); 11] = [
     ("follower", "3, 2, 1"),
     ("regulator", "2, 1, 0"),
     ("rate_limited_body", "6, 3, 2"),
     ("steered_body", "6, 3, 2"),
     ("unicycle", "3, 2, 3"),
+    ("mpc.Follower", "12, 4, 9"),
     ("plate_ball.Ball", "5, 2, 0"),
     ("quadrotor.Quadrotor", "12, 4, 8"),
     ("slew_least_effort.SteeredBody", "6, 3, 6"),
