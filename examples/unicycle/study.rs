@@ -65,7 +65,9 @@ impl Study {
     pub fn price(&self) -> Option<f64> {
         let (geodesic, Problem { car, duration, target }) = (self.geodesic?, self.problem);
         let miss = match target {
-            Target::Free => (geodesic.at(duration).place.fixed_view::<2, 1>(0, 2) - car.goal).norm_squared(),
+            Target::Conditions | Target::Free => {
+                (geodesic.at(duration).place.fixed_view::<2, 1>(0, 2) - car.goal).norm_squared()
+            }
             _ => 0.0,
         };
         Some(geodesic.speed_squared() * duration / 2.0 + car.miss_price * miss / 2.0)
@@ -182,7 +184,7 @@ impl Problem {
         let moment = geodesic.at(self.duration);
         match self.target {
             Target::Place(goal) | Target::Configuration(goal) => Some(apart(&goal, &moment.place)),
-            Target::Free => {
+            Target::Conditions | Target::Free => {
                 let rotation = moment.place.fixed_view::<2, 2>(0, 0);
                 let miss = moment.place.fixed_view::<2, 1>(0, 2) - self.car.goal;
                 let slope = rotation.transpose() * miss * self.car.miss_price;

@@ -84,6 +84,8 @@ pub enum Target<X> {
     Place(X),
     /// At the configuration of this place, with any momentum.
     Configuration(X),
+    /// Where the conditions hold that the key `target` declares, as `target = |x| [x.x == self.place]`. They may leave a part of the place free.
+    Conditions,
     /// Anywhere: the price of the end decides.
     Free,
 }
@@ -119,7 +121,7 @@ impl<X> Target<X> {
     fn place(&self) -> Option<&X> {
         match self {
             Self::Place(x) | Self::Configuration(x) => Some(x),
-            Self::Free => None,
+            Self::Conditions | Self::Free => None,
         }
     }
 }
@@ -238,7 +240,7 @@ impl<S: Controlled<D, U, C, Scalar: Real>, const D: usize, const U: usize, const
     ///
     /// # Errors
     /// * [`Error::PathLength`], [`Error::NotFinite`], [`Error::OffOrbit`], [`Error::OutsideMomentumSpace`],
-    ///   [`Error::NoReference`] for the arguments;
+    ///   [`Error::NoReference`], [`Error::NoTarget`] for the arguments;
     /// * [`Error::Uncontrollable`] where inputs do not move the end towards the target;
     /// * [`Error::Infeasible`] and [`Error::TargetMissed`] where bounds cannot be satisfied, or leave no way to the target;
     /// * [`Error::NoExtremal`] where the work was not enough;
@@ -253,7 +255,7 @@ impl<S: Controlled<D, U, C, Scalar: Real>, const D: usize, const U: usize, const
         plan: &'p mut [Stage<S, D, U, C>],
     ) -> Result<Optimum<'p, S, D, U, C>, Error> {
         self.check(start, &target, plan)?;
-        let solved = Plan::new(self.problem(start, &target), plan).attempt()?;
+        let solved = Plan::new(self.problem(start, &target, plan.len()), plan).attempt()?;
         Ok(Optimum { stages: plan, ..solved })
     }
 
@@ -302,7 +304,7 @@ impl<S: Controlled<D, U, C, Scalar: Real>, const D: usize, const U: usize, const
         plan: &'p mut [Stage<S, D, U, C>],
     ) -> Result<Optimum<'p, S, D, U, C>, Error> {
         self.check(start, &target, plan)?;
-        let problem = self.problem(start, &target);
+        let problem = self.problem(start, &target, plan.len());
         let reached = Plan { most: limits.sweeps, ..Plan::new(problem, plan) }.attempt_once()?;
         Ok(Optimum { stages: plan, ..reached })
     }
@@ -360,10 +362,11 @@ impl<S: Controlled<D, U, C, Scalar: Real>, const D: usize, const U: usize, const
         let accuracy = S::Scalar::from_f64(64.0) * S::Scalar::EPSILON;
         let system = &self.system;
         let lengths = Problem::lengths(system, &target);
+        let steps = plan.len();
         let trial = |h| {
             let constants = system.prepare(h)?.with_end_reference(self.constants.end_reference());
             let problem =
-                Problem { system, constants: &constants, h, time: self.time, start, target: &target, lengths };
+                Problem { system, constants: &constants, h, time: self.time, steps, start, target: &target, lengths };
             let mut plan = Plan::new(problem, plan);
             let answer = plan.attempt()?;
             let (slope, size) = plan.slope()?;
@@ -373,10 +376,15 @@ impl<S: Controlled<D, U, C, Scalar: Real>, const D: usize, const U: usize, const
         Ok(Optimum { stages: plan, iterations, ..solved })
     }
 
-    fn problem<'a>(&'a self, start: &'a S::Place, target: &'a Target<S::Place>) -> Problem<'a, S, D, U, C> {
+    fn problem<'a>(
+        &'a self,
+        start: &'a S::Place,
+        target: &'a Target<S::Place>,
+        steps: usize,
+    ) -> Problem<'a, S, D, U, C> {
         let Self { system, step_size: h, constants, time } = self;
         let lengths = Problem::lengths(system, target);
-        Problem { system, constants, h: *h, time: *time, start, target, lengths }
+        Problem { system, constants, h: *h, time: *time, steps, start, target, lengths }
     }
 
     /// Start, target and guess are finite and where places are.
@@ -386,6 +394,9 @@ impl<S: Controlled<D, U, C, Scalar: Real>, const D: usize, const U: usize, const
         }
         self.system.check_place(start)?;
         target.place().map_or(Ok(()), |goal| self.system.check_place(goal))?;
+        if matches!(target, Target::Conditions) && S::TARGET.is_empty() {
+            return Err(Error::NoTarget);
+        }
         plan.iter().try_for_each(|stage| check_finite("the guessed inputs", &stage.input))?;
         let steps = plan.len();
         let missing = plan.iter().position(|stage| !stage.reference.all_finite());
@@ -407,12 +418,19 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: usize
         // dV/dh needs few digits.
         let third = T::EPSILON.powf(T::from_ratio(1, 3));
         let apart = third * h.abs();
-        let pushed = C > 0 && self.stages.iter().any(|stage| stage.multipliers.iter().any(|z| *z > T::zero()));
+        if let Some(conditions) = problem.conditions(&self.last, &SVector::zeros()) {
+            let costate = self.stages.last().map_or(SVector::zeros(), |stage| stage.next_costate);
+            for part in self.multipliers(&self.end(), &costate).component_mul(&conditions.by_time).iter() {
+                slope += *part * T::from_f64(steps as f64);
+                size += part.abs() * T::from_f64(steps as f64);
+            }
+        }
+        let pushed = C > 0 && self.stages.iter().any(|stage| stage.limits.multipliers.iter().any(|z| *z > T::zero()));
         let prepared = if pushed { Some((system.prepare(h + apart)?, system.prepare(h - apart)?)) } else { None };
         for (index, stage) in self.stages.iter().enumerate() {
             let t = self.problem.time_after(index);
             let k = T::from_f64(index as f64);
-            let (x, u, z) = (&stage.place, &stage.input, &stage.multipliers);
+            let (x, u, z) = (&stage.place, &stage.input, &stage.limits.multipliers);
             let by_time = |constants: &_| system.price_of_time(constants, t, k, x, u, &stage.next_costate);
             let mut part = constants.at(&stage.reference, by_time)?;
             if let Some((longer, shorter)) = &prepared {

@@ -55,6 +55,10 @@ pub trait Controlled<const D: usize, const U: usize, const C: usize>: Sized {
     const BOUNDS: [&'static str; C];
     /// The number of components, the first ones, that move the configuration; the others, if any, change the momentum.
     const MOTIONS: usize;
+    /// The conditions that `target` declares for the end, as they were written: equations, and inequalities after them. There are at most D.
+    const TARGET: &'static [&'static str] = &[];
+    /// The number of equations among them.
+    const EQUATIONS: usize = 0;
 
     /// Checks the parameters and computes the constants.
     ///
@@ -176,6 +180,17 @@ pub trait Controlled<const D: usize, const U: usize, const C: usize>: Sized {
         x: &Self::Place,
     ) -> EndpointExpansion<Self::Scalar, D>;
 
+    /// The conditions that `target` declares for the end, with their derivatives, and the second derivatives of ν·g.
+    fn target_expanded(
+        &self,
+        _constants: &Self::Constants,
+        _t: Self::Scalar,
+        _x: &Self::Place,
+        _multipliers: &SVector<Self::Scalar, D>,
+    ) -> TargetExpansion<Self::Scalar, D> {
+        TargetExpansion::none()
+    }
+
     /// The difference between x and a target. With the motions G: η ↦ η_Q(q) it has the residual Gᵀ(q* − q) and the
     /// slope GᵀG; for momenta these are N* − N and I. A small change δ with slope·δ = residual goes there.
     fn arrival(&self, x: &Self::Place, target: &Self::Place) -> Arrival<Self::Scalar, D>;
@@ -296,6 +311,47 @@ pub struct EndpointExpansion<T, const D: usize> {
     pub slope: SVector<T, D>,
     /// ∂²φ/∂x²
     pub curvature: SMatrix<T, D, D>,
+}
+
+/// The conditions g = a − b of the end with their derivatives: equations g = 0, and inequalities g ≤ 0 after them. Entries beyond them are 0.
+///
+/// ```
+/// # use clebsch::{Clebsch, Controlled};
+/// # use nalgebra::Vector2;
+/// #[derive(Clebsch, Clone, Debug)]
+/// #[clebsch(
+///     dynamics = |h, x: Vector2, u: Vector1| x + h * vector![x.y, u.x],
+///     cost     = |h, u| h * u.norm_squared() / 2,
+///     target   = |x| [x.x == self.place, x.y <= self.fastest],
+/// )]
+/// struct Cart { place: f64, fastest: f64 }
+///
+/// let cart = Cart { place: 1.0, fastest: 0.5 };
+/// assert_eq!(Cart::TARGET, ["x.x == self.place", "x.y <= self.fastest"]);
+/// let end = cart.target_expanded(&cart.prepare(0.1)?, 0.0, &Vector2::new(3.0, 2.0), &Vector2::zeros());
+/// assert_eq!(end.values, Vector2::new(2.0, 1.5));
+/// # Ok::<(), clebsch::Error>(())
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TargetExpansion<T, const D: usize> {
+    /// g
+    pub values: SVector<T, D>,
+    /// |a| + |b|
+    pub sizes: SVector<T, D>,
+    /// ∂g/∂t
+    pub by_time: SVector<T, D>,
+    /// ∂g/∂x, a row for each condition.
+    pub slope: SMatrix<T, D, D>,
+    /// ∂²(ν·g)/∂x²
+    pub curvature: SMatrix<T, D, D>,
+}
+
+impl<T: Scalar, const D: usize> TargetExpansion<T, D> {
+    /// No conditions.
+    pub fn none() -> Self {
+        let (zero, zeros) = (SVector::zeros(), SMatrix::zeros());
+        Self { values: zero, sizes: zero, by_time: zero, slope: zeros, curvature: zeros }
+    }
 }
 
 /// The difference between a place and a target.

@@ -451,6 +451,10 @@ errors! {
             "no small change of the inputs brings the end nearer to the target, {distance:.3e} away: check that the \
              inputs control all that the target fixes, and that there are enough steps; else guess inputs that lead \
              near it";
+        /// A plan is to end where the declared conditions hold, and none are declared.
+        NoTarget =>
+            "the declaration has no `target`: write `target = |q| [a == b]`, or pass `Target::Place`, \
+             `Target::Configuration` or `Target::Free`";
         /// Price or bounds read a reference that was not given.
         NoReference {
             /// The step whose reference is missing, counted from 0. It is `steps` for the reference of the end.

@@ -217,7 +217,7 @@ pub use columns::{Column, Columns, Form, Names};
 pub use conserved::{Conserved, Conserves};
 pub use constraint::{Constrained, Reacting};
 pub use control::{Control, Ended, Limits, Optimum, Referenced, Referring, Stage, Target};
-pub use controlled::{Arrival, BoundsExpansion, Controlled, EndpointExpansion, Expansion};
+pub use controlled::{Arrival, BoundsExpansion, Controlled, EndpointExpansion, Expansion, TargetExpansion};
 #[cfg(feature = "double-double")]
 pub use double_double::DoubleDouble;
 #[cfg(feature = "alloc")]

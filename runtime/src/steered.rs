@@ -5,7 +5,10 @@ use crate::matrices::{Blocks, embedded};
 use crate::newton::shortest;
 use crate::scheme::{At, Constants, Scheme};
 use crate::tangent::{of_edge, times};
-use crate::{Arrival, BoundsExpansion, Carried, Clebsch, EndpointExpansion, Error, Expansion, Scalar, Space, Tangent};
+use crate::{
+    Arrival, BoundsExpansion, Carried, Clebsch, EndpointExpansion, Error, Expansion, Scalar, Space, Tangent,
+    TargetExpansion,
+};
 use core::array::from_fn;
 use nalgebra::{SMatrix, SVector};
 
@@ -80,6 +83,30 @@ pub fn endpoint<T: Scalar, const M: usize, const D: usize>(
 /// No price of the end.
 pub fn no_endpoint<T: Scalar, const D: usize>() -> EndpointExpansion<T, D> {
     EndpointExpansion { price: T::zero(), by_time: T::zero(), slope: SVector::zeros(), curvature: SMatrix::zeros() }
+}
+
+/// The multipliers of so many conditions of the end.
+#[inline]
+pub fn weights<T: Scalar, const N: usize, const D: usize>(multipliers: &SVector<T, D>) -> SVector<T, N> {
+    SVector::from_fn(|i, _| multipliers.get(i).copied().unwrap_or(T::zero()))
+}
+
+/// The conditions of the end as functions of a place, along its first M components.
+#[inline]
+pub fn conditions<T: Scalar, const N: usize, const M: usize, const D: usize>(
+    [left, right, by_time]: [&SVector<T, N>; 3],
+    slope: &SMatrix<T, N, M>,
+    curvature: &SMatrix<T, M, M>,
+) -> TargetExpansion<T, D> {
+    let sizes = left.zip_map(right, |a, b| a.abs() + b.abs());
+    let all = |values: &SVector<T, N>| embedded(values, 0, 0);
+    TargetExpansion {
+        values: all(&(left - right)),
+        sizes: all(&sizes),
+        by_time: all(by_time),
+        slope: embedded(slope, 0, 0),
+        curvature: embedded(curvature, 0, 0),
+    }
 }
 
 /// Bounds as functions of a place; q is the first part of the place.

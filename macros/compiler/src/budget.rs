@@ -103,8 +103,9 @@ impl Others<'_> {
         let potential = declaration.potential.as_ref().and_then(Potential::closure);
         const METHODS: &str = "write a shorter potential, or methods for its value and gradient: `potential = opaque(Self::value, Self::gradient)`";
         const CONSTRAINT: &str = "write a shorter constraint, with parts of it as fields";
-        let rows: [(Option<&Closure>, Change, &str, &str); 5] = [
+        let rows: [(Option<&Closure>, Change, &str, &str); 6] = [
             (declaration.endpoint.as_ref(), |rest| rest.endpoint = None, "price", "write a shorter price of the end"),
+            (declaration.target.as_ref(), |rest| rest.target = None, "target", "write shorter conditions of the end"),
             (potential, |rest| rest.potential = None, "potential", METHODS),
             (declaration.force.as_ref(), |rest| rest.force = None, "force", SHORTER_FORCE),
             (declaration.force_on.as_ref(), |rest| rest.force_on = None, "force", SHORTER_FORCE),

@@ -78,6 +78,11 @@ pub mod bounds {}
 /// Example: `endpoint = |q| …`
 pub mod endpoint {}
 
+/// Conditions that hold at the end of plans to `Target::Conditions`: equations of scalars or vectors, and inequalities of scalars. A block with `let` may end in the list.
+///
+/// Example: `target = |q| [q.x == 1, q.y <= 2]`
+pub mod target {}
+
 /// The order of accuracy: the error at a fixed time shrinks like this power of h.
 ///
 /// Example: `order = 2`

@@ -100,7 +100,7 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: usize
     pub fn vary(&mut self, variation: u32, amplitudes: &Amplitudes) -> Result<(), Error> {
         if variation > 0 {
             self.follow()?;
-            let end = self.problem.end(&self.last);
+            let end = self.end();
             // multipliers and slacks are forgotten: the reach of inputs is that without bounds
             self.bounds = T::zero();
             let summary = self.eliminate(&end, &Iterate::new(SVector::zeros(), None, end.distance).settings)?;
@@ -148,7 +148,7 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: usize
             let input = stage.input + pattern(amplitudes, turns, index, self.stages.len());
             x = problem.system.follow(problem.constants, problem.time_after(index), &x, &input).ok()?;
         }
-        let distance = problem.end(&x).distance;
+        let distance = problem.end(&x, T::zero(), &self.pushing).distance;
         distance.is_finite().then_some(distance)
     }
 }
@@ -175,6 +175,7 @@ fn may_be_found(error: &Error) -> bool {
             | Error::NoExtremal { .. }
             | Error::NotStationary { .. }
             | Error::Uncontrollable { .. }
+            | Error::SingularTangent { .. }
     )
 }
 

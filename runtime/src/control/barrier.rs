@@ -50,22 +50,199 @@ pub(super) fn next<T: Real>(barrier: T, bounds: T, price: T) -> T {
     larger((if power < fifth { power } else { fifth }) * price / bounds, last(bounds, price))
 }
 
-impl<T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: usize, const C: usize> Stage<S, D, U, C> {
-    /// ζ = μ/s + Σ(a + s) and Σ = z/s: the force and the stiffness of the bounds.
+/// The bounds a ≤ 0 of a step, with slacks and multipliers.
+#[derive(Clone, Copy)]
+pub(super) struct Barriers<T, const C: usize> {
+    /// z
+    pub multipliers: SVector<T, C>,
+    /// s > 0 with a + s = excess.
+    pub slack: SVector<T, C>,
+    /// By how much the bounds are still relaxed, 0 once a full step was made.
+    pub excess: SVector<T, C>,
+    /// The slacks that a correction proposes.
+    pub next_slack: SVector<T, C>,
+}
+
+/// The slacks of all bounds after a correction, against those before.
+pub(super) struct Proposed<T> {
+    /// The fraction of the correction that slacks allow, where it is smaller than the one that was made.
+    pub allowed: Option<T>,
+    /// Σ ln(s⁺/s)
+    pub logarithms: T,
+    /// z·(a + s) before, with the multipliers of the full correction.
+    pub excess_price: T,
+    /// The largest part to which bounds stay relaxed.
+    pub relaxed: T,
+}
+
+impl<T: Real> Proposed<T> {
+    /// Of no bounds.
+    pub fn none() -> Self {
+        let zero = T::zero();
+        Self { allowed: None, logarithms: zero, excess_price: zero, relaxed: zero }
+    }
+}
+
+/// The force of bounds on a step and their stiffness.
+pub(super) struct Condensed<T, const C: usize> {
+    /// ζ = μ/s + Σ(a + s)
+    pub force: SVector<T, C>,
+    /// Σ = z/s
+    pub stiffness: SVector<T, C>,
+}
+
+impl<T: Real, const C: usize> Barriers<T, C> {
+    pub fn none() -> Self {
+        let zero = SVector::from_element(T::zero());
+        Self { multipliers: zero, slack: zero, excess: zero, next_slack: zero }
+    }
+
     #[inline]
-    pub(super) fn condensed(&self, barrier: T) -> (SVector<T, C>, SVector<T, C>) {
+    pub fn condensed(&self, barrier: T) -> Condensed<T, C> {
         let stiffness = SVector::<T, C>::from_fn(|i, _| self.multipliers[i] / self.slack[i]);
-        (SVector::from_fn(|i, _| barrier / self.slack[i] + stiffness[i] * self.excess[i]), stiffness)
+        let force = SVector::from_fn(|i, _| barrier / self.slack[i] + stiffness[i] * self.excess[i]);
+        Condensed { force, stiffness }
     }
 
     /// Σ z |∂a/∂u|: how hard bounds push each input, without signs.
     #[cold]
-    pub(super) fn pushes(&self, by_input: &SMatrix<T, C, U>) -> SVector<T, U> {
+    pub fn pushes<const U: usize>(&self, by_input: &SMatrix<T, C, U>) -> SVector<T, U> {
         let present = |i: &usize| !is_none(self.slack[*i]);
         let push = |j: usize| (0..C).filter(present).map(move |i| self.multipliers[i] * by_input[(i, j)].abs());
         SVector::from_fn(|j, _| push(j).fold(T::zero(), |sum, push| sum + push))
     }
 
+    /// The slopes of bounds that are present. Those of others may be infinite.
+    #[inline]
+    pub fn clear_absent<const K: usize>(&self, slopes: &mut SMatrix<T, C, K>) {
+        (0..C).filter(|i| is_none(self.slack[*i])).for_each(|i| slopes.row_mut(i).fill(T::zero()));
+    }
+
+    /// Σ a/s of violated bounds, and 1/s for each of them.
+    #[inline]
+    pub fn violated(&self) -> (T, SVector<T, C>) {
+        let violation = self.excess - self.slack;
+        let is_violated = |i: usize| violation[i] > T::zero();
+        let sum = (0..C).filter(|i| is_violated(*i)).fold(T::zero(), |sum, i| sum + violation[i] / self.slack[i]);
+        (sum, SVector::from_fn(|i, _| if is_violated(i) { self.slack[i].recip() } else { T::zero() }))
+    }
+
+    /// Takes these values of the bounds, without excess, and returns how many bounds are present.
+    fn take_values(&mut self, values: SVector<T, C>, name: impl Fn(usize) -> &'static str) -> Result<usize, Error> {
+        self.slack = -values;
+        self.excess = SVector::from_element(T::zero());
+        let mut present = 0;
+        for i in 0..C {
+            match self.slack[i] {
+                slack if slack.is_finite() => present += 1,
+                slack if is_none(slack) => self.multipliers[i] = T::zero(),
+                _ => return Err(Error::NotFinite { name: name(i) }),
+            }
+        }
+        Ok(present)
+    }
+
+    /// The values that excess and slack stand for.
+    fn values(&self) -> SVector<T, C> {
+        self.excess - self.slack
+    }
+
+    /// Relaxes bounds that have a least slack to it.
+    fn relax(&mut self, least: impl Fn(usize) -> Option<T>) {
+        for i in 0..C {
+            if let Some(least) = least(i).filter(|_| !is_none(self.slack[i])) {
+                let value = self.excess[i] - self.slack[i];
+                self.slack[i] = larger(-value, least);
+                self.excess[i] = self.slack[i] + value;
+            }
+        }
+    }
+
+    /// Multipliers μ/s for the slacks.
+    fn begin(&mut self, barrier: T) {
+        self.multipliers = self.slack.map(|slack| barrier / slack);
+    }
+
+    /// Stores the slacks after a fraction of a correction that leads to these values of the bounds, and adds them to `proposed`.
+    #[inline]
+    pub fn propose(
+        &mut self,
+        values: &SVector<T, C>,
+        (fraction, barrier): (T, T),
+        name: impl Fn(usize) -> &'static str,
+        proposed: &mut Proposed<T>,
+    ) -> Result<(), Error> {
+        let (zero, one) = (T::zero(), T::one());
+        let least = one - T::from_f64(TO_BOUNDARY);
+        for i in 0..C {
+            let (z, s) = (self.multipliers[i], self.slack[i]);
+            if is_none(s) {
+                self.next_slack[i] = s;
+                // Written so that NaN is refused.
+                if values[i] <= zero {
+                    continue;
+                }
+                return Err(Error::NotFinite { name: name(i) });
+            }
+            let excess = (one - fraction) * self.excess[i];
+            let next = excess - values[i];
+            self.next_slack[i] = next;
+            if excess > zero {
+                proposed.relaxed = larger(proposed.relaxed, excess / s);
+            }
+            let ratio = next / s;
+            if ratio < least {
+                let limit = fraction * T::from_f64(TO_BOUNDARY) / (one - ratio);
+                if limit < proposed.allowed.unwrap_or(fraction) {
+                    proposed.allowed = Some(limit);
+                }
+            } else {
+                proposed.logarithms += ratio.ln();
+                let full = (barrier - z * (next - s) / fraction) / s;
+                proposed.excess_price += full * self.excess[i];
+            }
+        }
+        Ok(())
+    }
+
+    /// Σ ln s of the slacks that are proposed.
+    pub fn logarithms(&self) -> T {
+        let present = self.next_slack.iter().filter(|slack| !is_none(**slack));
+        present.fold(T::zero(), |sum, slack| sum + slack.ln())
+    }
+
+    /// Takes the slacks that a fraction of a correction proposes. Multipliers stay positive, near μ/s.
+    #[inline]
+    fn accept(&mut self, fraction: T, barrier: T) {
+        let wide = T::EPSILON.sqrt().recip();
+        for i in 0..C {
+            if is_none(self.slack[i]) {
+                continue;
+            }
+            let (z, slack, moved) = (self.multipliers[i], self.slack[i], self.next_slack[i]);
+            let next = z + fraction * (barrier / slack - z) - z / slack * (moved - slack);
+            let central = barrier / moved;
+            let least = larger(T::from_f64(1.0 - TO_BOUNDARY) * z, central / wide);
+            let most = central * wide;
+            let smaller = if next > most { most } else { next };
+            self.multipliers[i] = if next < least { least } else { smaller };
+            self.excess[i] *= T::one() - fraction;
+            self.slack[i] = moved;
+        }
+    }
+
+    /// Multipliers from a correction that moves bounds so far, to first order. The slacks of active bounds have few digits, so μ/s has few too.
+    fn settle(&mut self, moved: &SVector<T, C>, barrier: T) {
+        let Condensed { force, stiffness } = self.condensed(barrier);
+        self.multipliers = SVector::from_fn(|i, _| larger(T::zero(), force[i] + stiffness[i] * moved[i]));
+    }
+
+    fn is_relaxed(&self) -> bool {
+        self.excess.iter().any(|excess| *excess > T::zero())
+    }
+}
+
+impl<T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: usize, const C: usize> Stage<S, D, U, C> {
     /// Adds ζ·a + ½ Σ (aδ)² with the curvature of z·a to the model of the step; in the last sweep z·a. Returns Σ a/s of violated bounds, and its slopes.
     #[inline]
     pub(super) fn add_bounds(
@@ -74,13 +251,11 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: usize
         bounds: &mut BoundsExpansion<T, D, U, C>,
         settings: &Settings<T, D>,
     ) -> (T, Slopes<T, D, U>) {
-        for i in (0..C).filter(|i| is_none(self.slack[*i])) {
-            // its slopes may be infinite too
-            bounds.by_place.row_mut(i).fill(T::zero());
-            bounds.by_input.row_mut(i).fill(T::zero());
-        }
-        let (force, stiffness) = self.condensed(settings.barrier);
-        let force = if settings.is_last { self.multipliers } else { force };
+        let limits = &self.limits;
+        limits.clear_absent(&mut bounds.by_place);
+        limits.clear_absent(&mut bounds.by_input);
+        let Condensed { force, stiffness } = limits.condensed(settings.barrier);
+        let force = if settings.is_last { limits.multipliers } else { force };
         let by_place = SMatrix::<T, C, D>::from_fn(|i, j| stiffness[i] * bounds.by_place[(i, j)]);
         let by_input = SMatrix::<T, C, U>::from_fn(|i, j| stiffness[i] * bounds.by_input[(i, j)]);
         step.price_by_place += bounds.by_place.tr_mul(&force);
@@ -88,10 +263,7 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: usize
         step.place_curvature += bounds.place_curvature + bounds.by_place.tr_mul(&by_place);
         step.mixed_curvature += bounds.mixed_curvature + bounds.by_input.tr_mul(&by_place);
         step.input_curvature += bounds.input_curvature + bounds.by_input.tr_mul(&by_input);
-        let violation = self.excess - self.slack;
-        let is_violated = |i: usize| violation[i] > T::zero();
-        let sum = (0..C).filter(|i| is_violated(*i)).fold(T::zero(), |sum, i| sum + violation[i] / self.slack[i]);
-        let weights = SVector::<T, C>::from_fn(|i, _| if is_violated(i) { self.slack[i].recip() } else { T::zero() });
+        let (sum, weights) = limits.violated();
         (sum, (bounds.by_place.tr_mul(&weights), bounds.by_input.tr_mul(&weights)))
     }
 }
@@ -107,21 +279,14 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: usize
         let mut bounds: usize = 0;
         for (index, stage) in self.stages.iter_mut().enumerate() {
             let t = self.problem.time_after(index);
-            stage.slack = -self.problem.bounds(stage, t, &stage.place, &stage.input)?;
-            stage.excess = SVector::from_element(zero);
-            for i in 0..C {
-                match stage.slack[i] {
-                    slack if slack.is_finite() => bounds += 1,
-                    slack if is_none(slack) => stage.multipliers[i] = zero,
-                    _ => return Err(Error::NotFinite { name: S::BOUNDS[i] }),
-                }
-            }
+            let values = self.problem.bounds(stage, t, &stage.place, &stage.input)?;
+            bounds += stage.limits.take_values(values, |i| S::BOUNDS[i])?;
         }
         self.bounds = T::from_f64(bounds as f64);
         if bounds == 0 {
             return Ok(Some(zero));
         }
-        let pairs = self.stages.iter().flat_map(|stage| stage.multipliers.iter().zip(stage.slack.iter()));
+        let pairs = self.stages.iter().flat_map(|stage| stage.limits.multipliers.iter().zip(stage.limits.slack.iter()));
         let pairs = pairs.filter(|(_, s)| !is_none(**s));
         if pairs.clone().all(|(z, s)| *z > zero && *s > zero && z.is_finite()) {
             return Ok(Some(pairs.fold(zero, |sum, (z, s)| sum + *z * *s) / self.bounds));
@@ -135,24 +300,13 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: usize
     /// The largest |a| of each bound, in all stages.
     fn sizes(&self) -> SVector<T, C> {
         let size = |size: T, value: T| if value.is_finite() { larger(size, value.abs()) } else { size };
-        let of_stage = |sizes: SVector<T, C>, stage: &Stage<S, D, U, C>| {
-            let values = stage.excess - stage.slack;
-            sizes.zip_map(&values, size)
-        };
+        let of_stage = |sizes: SVector<T, C>, stage: &Stage<S, D, U, C>| sizes.zip_map(&stage.limits.values(), size);
         self.stages.iter().fold(SVector::from_element(T::zero()), of_stage)
     }
 
     /// Relaxes bounds that have a least slack to it, each in all stages.
     fn relax(&mut self, least: impl Fn(usize) -> Option<T>) {
-        for stage in self.stages.iter_mut() {
-            for i in 0..C {
-                if let Some(least) = least(i).filter(|_| !is_none(stage.slack[i])) {
-                    let value = stage.excess[i] - stage.slack[i];
-                    stage.slack[i] = larger(-value, least);
-                    stage.excess[i] = stage.slack[i] + value;
-                }
-            }
-        }
+        self.stages.iter_mut().for_each(|stage| stage.limits.relax(&least));
     }
 
     /// Relaxes the bounds that are 0 in all stages, each by its own size. That is its first change, by a correction
@@ -168,7 +322,7 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: usize
         let mut moved = SVector::<T, C>::from_element(zero);
         self.follow_correction(change, |stage, by| {
             moved = SVector::from_fn(|i, _| match by[i].abs() {
-                by if by.is_finite() && !is_none(stage.slack[i]) => larger(moved[i], by),
+                by if by.is_finite() && !is_none(stage.limits.slack[i]) => larger(moved[i], by),
                 _ => moved[i],
             });
         })?;
@@ -196,39 +350,21 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: usize
 
     /// Multipliers μ/s for the slacks.
     pub fn begin(&mut self, barrier: T) {
-        self.stages.iter_mut().for_each(|stage| stage.multipliers = stage.slack.map(|slack| barrier / slack));
+        self.stages.iter_mut().for_each(|stage| stage.limits.begin(barrier));
     }
 
     /// Takes the plan that a roll-out with this fraction of the correction proposes, which leads to `last`. Multipliers stay positive, near μ/s.
     pub fn accept(&mut self, fraction: T, barrier: T, last: S::Place) {
-        let wide = T::EPSILON.sqrt().recip();
         for stage in self.stages.iter_mut() {
-            for i in 0..C {
-                if is_none(stage.slack[i]) {
-                    continue;
-                }
-                let (z, slack, moved) = (stage.multipliers[i], stage.slack[i], stage.next_slack[i]);
-                let next = z + fraction * (barrier / slack - z) - z / slack * (moved - slack);
-                let central = barrier / moved;
-                let least = larger(T::from_f64(1.0 - TO_BOUNDARY) * z, central / wide);
-                let most = central * wide;
-                let smaller = if next > most { most } else { next };
-                stage.multipliers[i] = if next < least { least } else { smaller };
-                stage.excess[i] *= T::one() - fraction;
-                stage.slack[i] = moved;
-            }
+            stage.limits.accept(fraction, barrier);
             (stage.place, stage.input) = (stage.next_place, stage.next_input);
         }
         self.last = last;
     }
 
-    /// Multipliers of the bounds from the next correction. The slacks of active bounds have few digits, so μ/s has few
-    /// too.
+    /// Multipliers of the bounds from the next correction.
     pub fn settle(&mut self, change: &SVector<T, D>, barrier: T) -> Result<(), Error> {
-        self.follow_correction(change, |stage, moved| {
-            let (force, stiffness) = stage.condensed(barrier);
-            stage.multipliers = SVector::from_fn(|i, _| larger(T::zero(), force[i] + stiffness[i] * moved[i]));
-        })
+        self.follow_correction(change, |stage, moved| stage.limits.settle(&moved, barrier))
     }
 
     /// Visits each stage with how far a full correction moves its bounds, to first order.
@@ -242,7 +378,7 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: usize
         for (index, stage) in self.stages.iter_mut().enumerate().filter(|_| C > 0) {
             let t = self.problem.time_after(index);
             let step = problem.expand(stage, t, &stage.next_costate)?;
-            let bounds = problem.bounds_expanded(stage, t, &stage.multipliers)?;
+            let bounds = problem.bounds_expanded(stage, t, &stage.limits.multipliers)?;
             let input = stage.shift + stage.by_multiplier * change + stage.gain * displacement;
             let moved = bounds.by_place * displacement + bounds.by_input * input;
             visit(stage, moved);
@@ -253,7 +389,7 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: usize
 
     /// Whether bounds are relaxed.
     pub fn is_relaxed(&self) -> bool {
-        self.stages.iter().any(|stage| stage.excess.iter().any(|excess| *excess > T::zero()))
+        self.stages.iter().any(|stage| stage.limits.is_relaxed())
     }
 
     /// Whether a relaxed bound is violated by more than round-off of its own terms. These are |∂a/∂x| |x| and
@@ -262,12 +398,12 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: usize
         let zero = T::zero();
         let round_off = T::from_f64(16.0) * T::EPSILON;
         self.stages.iter().enumerate().any(|(index, stage)| {
-            if stage.excess.iter().all(|excess| *excess <= zero) {
+            if !stage.limits.is_relaxed() {
                 return false;
             }
             let (t, x, u) = (self.problem.time_after(index), &stage.place, &stage.input);
             // bounds of a step that cannot be made are not satisfied
-            let Ok(bounds) = self.problem.bounds_expanded(stage, t, &stage.multipliers) else { return true };
+            let Ok(bounds) = self.problem.bounds_expanded(stage, t, &stage.limits.multipliers) else { return true };
             let place = x.max_abs();
             // Written so that NaN is a violation.
             !(0..C).all(|i| {
@@ -297,8 +433,8 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: usize
             let t = self.problem.time_after(index);
             let Ok(values) = self.problem.bounds(stage, t, &stage.place, &stage.input) else { continue };
             for i in 0..C {
-                let part = values[i] / stage.excess[i];
-                if part > most && stage.excess[i] > T::zero() {
+                let part = values[i] / stage.limits.excess[i];
+                if part > most && stage.limits.excess[i] > T::zero() {
                     (most, worst) = (part, Some((index, S::BOUNDS[i], values[i])));
                 }
             }

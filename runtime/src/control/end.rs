@@ -2,10 +2,10 @@
 //! on it.
 
 use super::Target;
-use super::sweep::Problem;
+use super::sweep::{Plan, PlanSummary, Problem, Settings};
 use crate::newton::{Equilibrated, Spectrum, arc_per_chord, is_reached};
 use crate::space::larger;
-use crate::{Arrival, Controlled, Real, Scalar, Space};
+use crate::{Arrival, Controlled, Real, Scalar, Space, TargetExpansion};
 use nalgebra::{SMatrix, SVector};
 use num_traits::{One, Zero};
 
@@ -13,6 +13,8 @@ use num_traits::{One, Zero};
 const STIFFNESS: f64 = 4.0;
 /// Eigenvalues below so many units in the last place of the largest are those of directions that no input reaches.
 const UNITS: f64 = 256.0;
+/// Inequalities that are violated or not satisfied by more than this part of their size are next to equations.
+const NEXT: (i64, i64) = (1, 100);
 
 /// The data at the end of a plan. A change δ arrives where E δ = e.
 #[derive(Clone, Copy)]
@@ -21,6 +23,8 @@ pub(super) struct PlanEnd<T, const D: usize> {
     pub lack: SVector<T, D>,
     /// E: the lengths of δ, projected to those that the target fixes.
     pub slope: SMatrix<T, D, D>,
+    /// The smallest change that closes the gap, to first order.
+    pub motion: SVector<T, D>,
     /// Half the gradient of the squared distance, reversed, and half its Hessian but for the bend of the space.
     pub pull: SVector<T, D>,
     pub metric: SMatrix<T, D, D>,
@@ -28,7 +32,8 @@ pub(super) struct PlanEnd<T, const D: usize> {
     pub squares: [T; 2],
     /// The distance from the end to the target.
     pub distance: T,
-    /// The numbers that the distance is compared with: the largest entry of end and target.
+    /// The numbers that the distance is compared with: the largest entry of end, target and places before. Of several equations, it is the one
+    /// that is the most distant for its size that counts.
     pub scale: T,
 }
 
@@ -40,9 +45,55 @@ impl<S: Controlled<D, U, C, Scalar: Real>, const D: usize, const U: usize, const
         slope.diagonal().map(|x| if x.abs().sqrt() > S::Scalar::zero() { x.abs().sqrt() } else { S::Scalar::one() })
     }
 
-    /// The end of a plan at `x`. A small motion closes the tangential part of a chord, lengthened to its arc. This is
+    /// The conditions of the end at `x` that `target` declares, where they are the target, with the curvature of ν·g.
+    pub fn conditions(
+        &self,
+        x: &S::Place,
+        multipliers: &SVector<S::Scalar, D>,
+    ) -> Option<TargetExpansion<S::Scalar, D>> {
+        let is_declared = matches!(self.target, Target::Conditions);
+        is_declared.then(|| self.system.target_expanded(self.constants, self.end_time(), x, multipliers))
+    }
+
+    /// The end of a plan where conditions are the target. An inequality counts as an equation where it pushes or is violated, and else as none.
+    fn end_of(
+        &self,
+        conditions: &TargetExpansion<S::Scalar, D>,
+        largest: S::Scalar,
+        pushing: &[bool; D],
+    ) -> PlanEnd<S::Scalar, D> {
+        let (zero, one) = (S::Scalar::zero(), S::Scalar::one());
+        let sizes = conditions.sizes_for(largest);
+        // Written so that NaN counts.
+        let is_satisfied = |i: usize| conditions.values[i] <= round_off::<S::Scalar>() * sizes[i];
+        let counts = |i: usize| i < S::EQUATIONS || pushing[i] || !is_satisfied(i);
+        let lack = SVector::<S::Scalar, D>::from_fn(|i, _| if counts(i) { -conditions.values[i] } else { zero });
+        let slope = SMatrix::<S::Scalar, D, D>::from_fn(|i, j| if counts(i) { conditions.slope[(i, j)] } else { zero });
+        let gap = |i: usize| if lack[i] == zero { zero } else { lack[i].abs() / sizes[i] };
+        let relative = (0..D).fold(zero, |most, i| larger(most, gap(i)));
+        let square = lack.dot(&lack);
+        let distance = square.sqrt();
+        let inverse = Equilibrated::of(&(slope * slope.transpose())).inverse();
+        let motion = slope.tr_mul(&(inverse * lack));
+        PlanEnd {
+            pull: slope.tr_mul(&lack),
+            // without the part that no change closes: equations may follow from others, as those of unit vectors do
+            lack: slope * motion,
+            motion,
+            metric: slope.tr_mul(&slope),
+            squares: [square, zero],
+            distance,
+            scale: if relative > zero { distance / relative } else { one },
+            slope,
+        }
+    }
+
+    /// The end of a plan at `x`, with places as large as `largest`. A small motion closes the tangential part of a chord, lengthened to its arc. This is
     /// exact in flat spaces and for rotations about one axis.
-    pub fn end(&self, x: &S::Place) -> PlanEnd<S::Scalar, D> {
+    pub fn end(&self, x: &S::Place, largest: S::Scalar, pushing: &[bool; D]) -> PlanEnd<S::Scalar, D> {
+        if let Some(conditions) = self.conditions(x, &SVector::zeros()) {
+            return self.end_of(&conditions, larger(largest, x.max_abs()), pushing);
+        }
         let Self { target, lengths, .. } = self;
         let (zero, one) = (S::Scalar::zero(), S::Scalar::one());
         let none = Arrival { residual: SVector::zeros(), slope: SMatrix::zeros() };
@@ -69,20 +120,103 @@ impl<S: Controlled<D, U, C, Scalar: Real>, const D: usize, const U: usize, const
         }
         PlanEnd {
             lack,
+            motion: lack.component_div(lengths),
             slope: SMatrix::from_fn(|i, j| projector[(i, j)] * lengths[j]),
             pull: SVector::from_fn(|i, _| residual[i] * is_asked(i)),
             metric: SMatrix::from_fn(|i, j| slope[(i, j)] * is_asked(i) * is_asked(j)),
             squares: [chord, momentum],
             distance: (chord + momentum).sqrt(),
-            scale: larger(goal.max_abs(), x.max_abs()),
+            scale: larger(larger(goal.max_abs(), x.max_abs()), largest),
         }
+    }
+}
+
+/// The part of the size of a gap that is round-off.
+fn round_off<T: Real>() -> T {
+    T::from_f64(256.0) * T::EPSILON
+}
+
+impl<T: Real, const D: usize> TargetExpansion<T, D> {
+    /// The sizes of terms, for places as large as this.
+    fn sizes_for(&self, largest: T) -> SVector<T, D> {
+        SVector::from_fn(|i, _| self.slope.row(i).iter().fold(self.sizes[i], |sum, slope| sum + slope.abs() * largest))
+    }
+}
+
+/// Inequalities of the end, by the strategy of active sets. They push where their multipliers are positive.
+///
+/// Source: Hintermüller, Ito and Kunisch, *The primal-dual active set strategy as a semismooth Newton method* (2003).
+impl<T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: usize, const C: usize> Plan<'_, S, D, U, C> {
+    /// Whether a condition of the end is an inequality.
+    fn is_inequality(&self, i: usize) -> bool {
+        matches!(self.problem.target, Target::Conditions) && i >= S::EQUATIONS && i < S::TARGET.len()
+    }
+
+    /// From now on those inequalities push that have a multiplier. None is negative. Returns whether others push.
+    pub fn push(&mut self, multipliers: &mut SVector<T, D>) -> bool {
+        let before = self.pushing;
+        for i in 0..D {
+            if self.is_inequality(i) {
+                // Written so that NaN does not push.
+                self.pushing[i] = multipliers[i] > T::zero();
+                multipliers[i] = if self.pushing[i] { multipliers[i] } else { T::zero() };
+            }
+        }
+        before != self.pushing
+    }
+
+    /// Those inequalities push that are next to equations.
+    pub fn push_near(&mut self) {
+        let Some(conditions) = self.problem.conditions(&self.last, &SVector::zeros()) else { return };
+        let sizes = conditions.sizes_for(self.last.max_abs());
+        for i in 0..D {
+            if self.is_inequality(i) {
+                self.pushing[i] = conditions.values[i] >= -sizes[i] * T::from_ratio(NEXT.0, NEXT.1);
+            }
+        }
+    }
+
+    /// Leaves inequalities out of a correction that would make their multipliers negative, the most negative first. `true` where one has a
+    /// multiplier, which is now 0: the sweep has to be made again.
+    pub fn release(
+        &mut self,
+        summary: &mut PlanSummary<T, D, U>,
+        end: &mut PlanEnd<T, D>,
+        settings: &mut Settings<T, D>,
+    ) -> bool {
+        let zero = T::zero();
+        if settings.gap_price.is_some() {
+            return false;
+        }
+        for _ in 0..D {
+            let change = Equilibrated::of(&summary.gramian).inverse() * summary.lack;
+            let (mut least, mut pulls) = (zero, D);
+            for i in 0..D {
+                let next = settings.multipliers[i] + change[i];
+                if self.is_inequality(i) && next < least {
+                    (least, pulls) = (next, i);
+                }
+            }
+            if pulls >= D {
+                break;
+            }
+            if settings.multipliers[pulls] > zero {
+                settings.multipliers[pulls] = zero;
+                self.push(&mut settings.multipliers);
+                return true;
+            }
+            summary.gramian.row_mut(pulls).fill(zero);
+            summary.gramian.column_mut(pulls).fill(zero);
+            (summary.lack[pulls], end.lack[pulls]) = (zero, zero);
+        }
+        false
     }
 }
 
 impl<T: Real, const D: usize> PlanEnd<T, D> {
     /// Whether the gap is round-off.
     pub fn is_closed(&self) -> bool {
-        self.distance <= T::from_f64(256.0) * T::EPSILON * self.scale
+        self.distance <= round_off::<T>() * self.scale
     }
 
     /// Whether the gap is none to a person: below √ε.

@@ -16,7 +16,7 @@
 
 use super::Stage;
 use super::attempt::Amplitudes;
-use super::barrier::{FIRST, TO_BOUNDARY, is_none};
+use super::barrier::{FIRST, Proposed};
 use super::iterate::Iterate;
 use super::search::Descent;
 use super::sweep::{Plan, Problem};
@@ -113,10 +113,8 @@ impl<T: Real> Filter<T> {
 
     /// The oldest one is forgotten where there are too many.
     fn add(&mut self, plan: (T, T)) {
-        self.entries.rotate_right(1);
-        if let Some(first) = self.entries.first_mut() {
-            *first = plan;
-        }
+        let mut moved = plan;
+        self.entries.iter_mut().for_each(|entry| core::mem::swap(entry, &mut moved));
         self.count = (self.count + 1).min(self.entries.len());
     }
 }
@@ -142,12 +140,12 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: usize
 
     /// Bends the places of a plan so that its end reaches the target, by and by.
     fn reach(&mut self) {
-        let Problem { system, lengths, .. } = &self.problem;
-        let lack = self.problem.end(&self.last).lack.component_div(lengths);
+        let Problem { system, .. } = &self.problem;
+        let motion = self.end().motion;
         let steps = T::from_f64((PARTS * self.stages.len()) as f64);
         // small motions, one after the other: a large retraction need not go as far as the exponential
         let bent = |place: &S::Place, index: usize| {
-            let part = lack * (T::from_f64(index as f64) / steps);
+            let part = motion * (T::from_f64(index as f64) / steps);
             (0..PARTS).fold(*place, |place, _| system.moved(&place, &part))
         };
         for (index, stage) in self.stages.iter_mut().enumerate() {
@@ -178,8 +176,12 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: usize
         let (mut filter, mut at, mut units, mut stuck) = (Filter::new(zero), None, SVector::zeros(), 0);
         for _ in 0..SWEEPS {
             self.sweeps += 1;
-            let end = self.end();
-            let summary = self.eliminate(&end, &now.settings)?;
+            let mut end = self.end();
+            let mut summary = self.eliminate(&end, &now.settings)?;
+            if self.release(&mut summary, &mut end, &mut now.settings) {
+                now.rank = 0;
+                continue;
+            }
             let gramian = Equilibrated::of(&summary.gramian);
             let descent = Descent { summary: &summary, end: &end, settings: now.settings, inverse: gramian.inverse() };
             let (change, decrement) = descent.correction(one);
@@ -211,6 +213,9 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: usize
             filter.add(measures);
             self.accept(fraction, now.settings.barrier, proposal.last);
             now.settings.multipliers += change * fraction;
+            if self.push(&mut now.settings.multipliers) {
+                now.rank = 0;
+            }
             at = Some(proposal);
             stuck = if fraction < T::from_ratio(SHORT.0, SHORT.1) { stuck + 1 } else { 0 };
             if stuck > PATIENCE {
@@ -329,9 +334,9 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: usize
     ) -> Result<Proposal<S::Place, T>, Error> {
         let problem = &self.problem;
         let Problem { system, constants, .. } = *problem;
-        let (zero, one) = (T::zero(), T::one());
+        let zero = T::zero();
         let size = |change: SVector<T, D>| change.component_mul(units).iter().fold(zero, |sum, part| sum + part.abs());
-        let (mut price, mut logarithms, mut gaps, mut relaxed, mut allowed) = (zero, zero, zero, zero, None);
+        let (mut price, mut logarithms, mut gaps, mut slacks) = (zero, zero, zero, Proposed::none());
         let mut reached: Option<S::Place> = None;
         for (index, stage) in self.stages.iter_mut().enumerate() {
             let t = self.problem.time_after(index);
@@ -342,19 +347,8 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: usize
             }
             if C > 0 {
                 let bounds = problem.bounds(stage, t, &x, &input)?;
-                for i in (0..C).filter(|i| !is_none(stage.slack[*i])) {
-                    let (s, excess) = (stage.slack[i], (one - fraction) * stage.excess[i]);
-                    let next = excess - bounds[i];
-                    stage.next_slack[i] = next;
-                    relaxed = larger(relaxed, excess / s);
-                    let ratio = next / s;
-                    if ratio < one - T::from_f64(TO_BOUNDARY) {
-                        let limit = fraction * T::from_f64(TO_BOUNDARY) / (one - ratio);
-                        allowed = Some(allowed.map_or(limit, |least| if limit < least { limit } else { least }));
-                    } else {
-                        logarithms += next.ln();
-                    }
-                }
+                stage.limits.propose(&bounds, (fraction, zero), |i| S::BOUNDS[i], &mut slacks)?;
+                logarithms += stage.limits.logarithms();
             }
             price += problem.price(stage, t, &x, &input)?;
             reached = Some(system.follow(constants, t, &x, &input)?);
@@ -364,8 +358,8 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: usize
         if let Some(reached) = &reached {
             gaps += size(system.displacement(&last, reached));
         }
-        gaps += size(self.problem.end(&last).lack.component_div(&self.problem.lengths));
-        price += system.endpoint(constants, self.problem.time_after(self.stages.len()), &last);
-        Ok(Proposal { last, gaps: gaps + relaxed, price, logarithms, allowed })
+        gaps += size(self.problem.end(&last, zero, &self.pushing).motion);
+        price += system.endpoint(constants, problem.end_time(), &last);
+        Ok(Proposal { last, gaps: gaps + slacks.relaxed, price, logarithms, allowed: slacks.allowed })
     }
 }

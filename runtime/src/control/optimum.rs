@@ -1,6 +1,7 @@
 //! The answer to a problem of optimal control, and the storage that the caller provides.
 
 use super::Referenced;
+use super::barrier::Barriers;
 use super::reference::ungiven;
 use crate::fields::{copied, debug, getters};
 use crate::{Controlled, Error, Real, Space};
@@ -36,11 +37,7 @@ pub struct Stage<S: Controlled<D, U, C, Scalar: Real>, const D: usize, const U: 
     pub(super) next_costate: SVector<S::Scalar, D>,
     pub(super) gain: SMatrix<S::Scalar, U, D>,
     pub(super) reference: Reference<S, D, U, C>,
-    pub(super) multipliers: SVector<S::Scalar, C>,
-    /// s > 0 with a + s = excess.
-    pub(super) slack: SVector<S::Scalar, C>,
-    /// By how much the bounds are still relaxed, 0 once a full step was made.
-    pub(super) excess: SVector<S::Scalar, C>,
+    pub(super) limits: Barriers<S::Scalar, C>,
     /// k and G: the change of the input is k + G δν + K δ.
     pub(super) shift: SVector<S::Scalar, U>,
     pub(super) by_multiplier: SMatrix<S::Scalar, U, D>,
@@ -49,7 +46,6 @@ pub struct Stage<S: Controlled<D, U, C, Scalar: Real>, const D: usize, const U: 
     /// The proposal of a roll-out.
     pub(super) next_place: S::Place,
     pub(super) next_input: SVector<S::Scalar, U>,
-    pub(super) next_slack: SVector<S::Scalar, C>,
     /// The input before the solution began, given back after an error.
     pub(super) guess: SVector<S::Scalar, U>,
 }
@@ -64,15 +60,12 @@ impl<S: Controlled<D, U, C, Scalar: Real>, const D: usize, const U: usize, const
             next_costate: Space::origin(),
             gain: Space::origin(),
             reference: ungiven(),
-            multipliers: Space::origin(),
-            slack: Space::origin(),
-            excess: Space::origin(),
+            limits: Barriers::none(),
             shift: Space::origin(),
             by_multiplier: Space::origin(),
             motion: Space::origin(),
             next_place: *x,
             next_input: Space::origin(),
-            next_slack: Space::origin(),
             guess: Space::origin(),
         }
     }
@@ -98,7 +91,7 @@ impl<S: Controlled<D, U, C, Scalar: Real>, const D: usize, const U: usize, const
 
     /// Begins the next search without multipliers.
     pub(super) fn forget_multipliers(&mut self) {
-        (self.next_costate, self.multipliers) = (Space::origin(), Space::origin());
+        (self.next_costate, self.limits.multipliers) = (Space::origin(), Space::origin());
     }
 
     getters! {
@@ -114,14 +107,18 @@ impl<S: Controlled<D, U, C, Scalar: Real>, const D: usize, const U: usize, const
         /// same target begins with u_k + Kδ + O(δ²). Near the end, inputs may no longer reach all of the target. The
         /// plan then reaches the part that it can.
         ref gain: SMatrix<S::Scalar, U, D>;
-        /// The multipliers z ≥ 0 of the bounds a ≤ 0: by how much the least price falls where a bound is relaxed by one unit.
-        ref multipliers: SVector<S::Scalar, C>;
+    }
+
+    /// The multipliers z ≥ 0 of the bounds a ≤ 0: by how much the least price falls where a bound is relaxed by one unit.
+    #[inline]
+    pub fn multipliers(&self) -> &SVector<S::Scalar, C> {
+        &self.limits.multipliers
     }
 
     /// The bounds that limit the inputs: their multiplier is larger than the distance to them.
     #[inline]
     pub fn active(&self) -> [bool; C] {
-        core::array::from_fn(|i| self.multipliers[i] > self.slack[i])
+        core::array::from_fn(|i| self.limits.multipliers[i] > self.limits.slack[i])
     }
 }
 
@@ -207,7 +204,7 @@ impl<'p, S: Controlled<D, U, C, Scalar: Real>, const D: usize, const U: usize, c
         /// The largest entry of ∂ℓ/∂u + Bᵀp + ∂a/∂uᵀz that round-off has left.
         copy residual: S::Scalar;
         /// The distance from the end to the target, as the root of the sum of squares of all entries; 0 for
-        /// [`Target::Free`](crate::Target).
+        /// [`Target::Free`](crate::Target). For [`Target::Conditions`](crate::Target) entries are a − b of equations, and of inequalities that push or are violated.
         copy gap: S::Scalar;
         /// How the search ended.
         copy ended: Ended;

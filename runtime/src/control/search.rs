@@ -10,7 +10,7 @@
 //!
 //! Source: Moré and Sorensen, *On the use of directions of negative curvature in a modified Newton method* (1979), for saddles.
 
-use super::barrier::{TO_BOUNDARY, is_none};
+use super::barrier::Proposed;
 use super::end::PlanEnd;
 use super::iterate::Iterate;
 use super::sweep::{Plan, PlanSummary, Problem, Settings};
@@ -150,6 +150,9 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: usize
     ) -> T {
         self.accept(fraction, descent.settings.barrier, last);
         now.settings.multipliers += change * fraction;
+        if self.push(&mut now.settings.multipliers) {
+            now.rank = 0;
+        }
         now.closes = fraction * part;
         fraction
     }
@@ -202,11 +205,9 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: usize
         let problem = &self.problem;
         let Problem { system, constants, start, .. } = *problem;
         let barrier = descent.settings.barrier;
-        let (zero, one) = (T::zero(), T::one());
-        let least = one - T::from_f64(TO_BOUNDARY);
-        // Σℓ + φ, Σ ln(s⁺/s), and z·(a + s) before the step with the multipliers of the full one
-        let (mut price, mut logarithms, mut excess_price) = (zero, zero, zero);
-        let (mut x, mut allowed) = (*start, None);
+        // Σℓ + φ
+        let (mut price, mut slacks) = (T::zero(), Proposed::none());
+        let mut x = *start;
         for (index, stage) in self.stages.iter_mut().enumerate() {
             let t = self.problem.time_after(index);
             let mut input = stage.input + (stage.shift + stage.by_multiplier * change) * fraction;
@@ -215,40 +216,17 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: usize
             }
             if C > 0 {
                 let bounds = problem.bounds(stage, t, &x, &input)?;
-                for i in 0..C {
-                    let (z, s) = (stage.multipliers[i], stage.slack[i]);
-                    if is_none(s) {
-                        stage.next_slack[i] = s;
-                        // Written so that NaN is refused.
-                        if bounds[i] <= zero {
-                            continue;
-                        }
-                        return Err(Error::NotFinite { name: S::BOUNDS[i] });
-                    }
-                    let next = (one - fraction) * stage.excess[i] - bounds[i];
-                    stage.next_slack[i] = next;
-                    let ratio = next / s;
-                    if ratio < least {
-                        let limit = fraction * T::from_f64(TO_BOUNDARY) / (one - ratio);
-                        if limit < allowed.unwrap_or(fraction) {
-                            allowed = Some(limit);
-                        }
-                    } else {
-                        logarithms += ratio.ln();
-                        let full = (barrier - z * (next - s) / fraction) / s;
-                        excess_price += full * stage.excess[i];
-                    }
-                }
+                stage.limits.propose(&bounds, (fraction, barrier), |i| S::BOUNDS[i], &mut slacks)?;
             }
             price += problem.price(stage, t, &x, &input)?;
             (stage.next_place, stage.next_input) = (x, input);
             x = system.follow(constants, t, &x, &input)?;
         }
-        price += system.endpoint(constants, self.problem.time_after(self.stages.len()), &x);
-        let end = self.problem.end(&x);
+        price += system.endpoint(constants, problem.end_time(), &x);
+        let end = problem.end(&x, T::zero(), &self.pushing);
         let penalties = descent.penalty(change, &end) - descent.penalty(change, descent.end);
-        let barriers = barrier * logarithms + fraction * excess_price;
+        let barriers = barrier * slacks.logarithms + fraction * slacks.excess_price;
         let difference = price - descent.summary.price - barriers + penalties;
-        Ok(Rolled { last: x, distance: end.distance, difference, allowed })
+        Ok(Rolled { last: x, distance: end.distance, difference, allowed: slacks.allowed })
     }
 }

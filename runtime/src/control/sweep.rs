@@ -27,8 +27,9 @@ pub(super) struct Problem<'a, S: Controlled<D, U, C, Scalar: Real>, const D: usi
     pub system: &'a S,
     pub constants: &'a S::Constants,
     pub h: S::Scalar,
-    /// The time of the start.
+    /// The time of the start, and the number of steps.
     pub time: S::Scalar,
+    pub steps: usize,
     pub start: &'a S::Place,
     pub target: &'a Target<S::Place>,
     /// The units of changes of the end.
@@ -54,6 +55,8 @@ pub(super) struct Plan<'a, S: Controlled<D, U, C, Scalar: Real>, const D: usize,
     pub last: S::Place,
     /// The number of bounds of all stages, without those that are none.
     pub bounds: S::Scalar,
+    /// The inequalities of the end that have a multiplier.
+    pub pushing: [bool; D],
     /// The backward sweeps that were made, and the most that may be.
     pub sweeps: u32,
     pub most: u32,
@@ -177,6 +180,11 @@ impl<S: Controlled<D, U, C, Scalar: Real>, const D: usize, const U: usize, const
         self.time + S::Scalar::from_f64(steps as f64) * self.h
     }
 
+    /// The time t₀ + Nh of the end.
+    pub fn end_time(&self) -> S::Scalar {
+        self.time_after(self.steps)
+    }
+
     /// ℓ with the reference of a stage, at the time t.
     #[inline]
     pub fn price(
@@ -232,7 +240,30 @@ impl<'a, T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: u
     /// The guess that the stages hold.
     pub fn new(problem: Problem<'a, S, D, U, C>, stages: &'a mut [Stage<S, D, U, C>]) -> Self {
         let last = *problem.start;
-        Self { problem, stages, last, bounds: T::zero(), sweeps: 0, most: u32::MAX, way: Way::Kept, is_lifted: false }
+        let (bounds, pushing) = (T::zero(), [false; D]);
+        Self { problem, stages, last, bounds, pushing, sweeps: 0, most: u32::MAX, way: Way::Kept, is_lifted: false }
+    }
+
+    /// Adds the curvature of ν·g of the conditions of the end to its value. Where the end then curves the price down, it goes without that
+    /// curvature, and then without its negative part. Returns whether it does.
+    fn arrive(&self, value: &mut Value<T, D>, end: &PlanEnd<T, D>, settings: &Settings<T, D>) -> bool {
+        let force = match settings.gap_price {
+            Some(_) => SVector::zeros(),
+            None => settings.multipliers - settings.weight * end.lack,
+        };
+        let is_wrong = |value: &Value<T, D>| settings.is_guarded() && !value.is_convex();
+        let mut is_bent = false;
+        if let Some(conditions) = self.problem.conditions(&self.last, &force).filter(|_| !settings.is_straight) {
+            let straight = value.hessian;
+            value.hessian += conditions.curvature;
+            if is_wrong(value) {
+                (value.hessian, is_bent) = (straight, true);
+            }
+        }
+        if is_wrong(value) {
+            (value.hessian, is_bent) = (positive(&value.hessian), true);
+        }
+        is_bent
     }
 
     /// Linearises and eliminates: fills costates, gains and shifts of the stages.
@@ -240,14 +271,10 @@ impl<'a, T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: u
         let problem = &self.problem;
         let Problem { system, constants, .. } = *problem;
         let steps = self.stages.len();
-        let endpoint = system.endpoint_expanded(constants, self.problem.time_after(steps), &self.last);
+        let endpoint = system.endpoint_expanded(constants, problem.end_time(), &self.last);
         let mut value = Value::of_end(&endpoint, end, settings);
         let zero = T::zero();
-        // the price of the end, where it curves down
-        let is_bent = settings.is_guarded() && !value.is_convex();
-        if is_bent {
-            value.hessian = positive(&value.hessian);
-        }
+        let is_bent = self.arrive(&mut value, end, settings);
         let mut summary = PlanSummary {
             price: endpoint.price,
             magnitude: endpoint.price.abs(),
@@ -280,7 +307,7 @@ impl<'a, T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: u
                 let mut bounded = None;
                 if self.bounds > zero {
                     let natural = step.input_curvature.diagonal();
-                    let multipliers = if is_straight { SVector::zeros() } else { stage.multipliers };
+                    let multipliers = if is_straight { SVector::zeros() } else { stage.limits.multipliers };
                     let mut bounds = problem.bounds_expanded(stage, t, &multipliers)?;
                     let (violated, slopes) = stage.add_bounds(&mut step, &mut bounds, settings);
                     bounded = Some(Bounded { natural, slopes, violated });
@@ -297,8 +324,8 @@ impl<'a, T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: u
             }
             if settings.is_last {
                 let bounds = self.bounds > zero;
-                let expanded = || problem.bounds_expanded(stage, t, &stage.multipliers);
-                let pushes = bounds.then(expanded).transpose()?.map(|bounds| stage.pushes(&bounds.by_input));
+                let expanded = || problem.bounds_expanded(stage, t, &stage.limits.multipliers);
+                let pushes = bounds.then(expanded).transpose()?.map(|bounds| stage.limits.pushes(&bounds.by_input));
                 summary.terms = larger(summary.terms, stage.terms(&step, &value.costate, pushes).max_abs());
             }
             let (mut policy, mut before, violated) = model(&value, &step, false)?;

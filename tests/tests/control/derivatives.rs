@@ -122,6 +122,7 @@ pub(super) fn check_with<S, const D: usize, const U: usize, const C: usize>(
     of_time(system, prepare, x, &u, &costate, chart);
     of_end(system, &constants, x, chart);
     of_targets(system, x, chart);
+    of_conditions(system, &constants, chart, x, &random.vector::<D>());
 }
 
 fn unit<const N: usize>(k: usize, step: f64) -> SVector<f64, N> {
@@ -214,6 +215,37 @@ where
     let arrival = system.arrival(x, &target);
     assert!((arrival.slope * delta - arrival.residual).amax() < 1e-10, "{}", S::NAME);
     assert!((system.displacement(x, &target) - delta).amax() < 1e-10, "{}", S::NAME);
+}
+
+/// The conditions of the end, with these multipliers.
+fn of_conditions<S, const D: usize, const U: usize, const C: usize>(
+    system: &S,
+    constants: &S::Constants,
+    chart: &Chart<S::Place, D>,
+    x: &S::Place,
+    multipliers: &SVector<f64, D>,
+) where
+    S: Controlled<D, U, C, Scalar = f64>,
+{
+    let (name, count) = (S::NAME, S::TARGET.len());
+    let at = |t: f64, x: &S::Place| system.target_expanded(constants, t, x, multipliers);
+    let expanded = at(T, x);
+    assert!(expanded.slope.rows(count, D - count).iter().all(|slope| *slope == 0.0));
+    assert!(expanded.values.iter().zip(&expanded.sizes).all(|(value, size)| value.abs() <= *size));
+    let values = |t: f64, delta: &SVector<f64, D>| at(t, &(chart.moved)(x, delta)).values;
+    let zero = SVector::zeros();
+    let by_time = (values(T + 1e-5, &zero) - values(T - 1e-5, &zero)) / 2e-5;
+    assert!((by_time - expanded.by_time).amax() < 1e-8, "{name}");
+    let function = |delta: &SVector<f64, D>, _: &SVector<f64, 0>| values(T, delta);
+    for j in 0..D {
+        assert!((first::<D, 0, D>(&function, j) - expanded.slope.column(j)).amax() < 1e-8, "{name}: slope {j}");
+    }
+    let weighted =
+        |delta: &SVector<f64, D>, _: &SVector<f64, 0>| SVector::<f64, 1>::new(multipliers.dot(&values(T, delta)));
+    for (i, j) in (0..D).flat_map(|i| (0..D).map(move |j| (i, j))) {
+        let (found, expected) = (expanded.curvature[(i, j)], second::<D, 0, 1>(&weighted, i, j)[0]);
+        assert!((found - expected).abs() < 2e-5, "{name}: curvature {i}, {j}: {found} is not {expected}");
+    }
 }
 
 /// An element of the Lie algebra of SE(2).

@@ -7,4 +7,5 @@ mod extremes;
 mod plans;
 mod references;
 mod right_hand_sides;
+mod targets;
 mod velocities;

@@ -260,6 +260,10 @@ catalogue! {
     Bounds = listed("bounds", Hot);
     /// The price of the end.
     PriceOfEnd = listed("price of the end", Hot);
+    /// The equations of the end.
+    TargetEquations = listed("target", Hot);
+    /// The inequalities of the end.
+    TargetInequalities = listed("target, inequalities", Hot);
     /// A momentum that no step changes.
     Conserved(momentum: usize) = listed("conserved", Cold);
     /// All of these.
@@ -370,6 +374,8 @@ catalogue! {
     BoundsExpanded = unlisted("", Hot);
     /// φ, ∂φ/∂t, ∂φ/∂η, ∂²φ/∂η².
     PriceOfEndExpanded = unlisted("", Hot);
+    /// Both sides of the conditions of the end, ∂g/∂t, ∂g/∂η and ∂²(z·g)/∂η².
+    TargetExpanded = unlisted("", Hot);
     /// |a|² of a closed form, which has to be below one.
     SineSquared(substep: usize, equation: usize) = unlisted("", Hot);
     /// x(μ) by the rotation in a plane.

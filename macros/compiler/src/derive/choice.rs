@@ -43,6 +43,18 @@ pub struct Endpoint<'g> {
     pub by_time: Expr<'g>,
 }
 
+/// The conditions of the end, the equations first. Where they take the velocity, their derivatives are along motions and along momenta.
+pub struct EndTarget<'g> {
+    /// a and b of each.
+    pub sides: Vec<[Expr<'g>; 2]>,
+    /// a − b.
+    pub differences: Vec<Jet<'g>>,
+    /// ∂(a − b)/∂t.
+    pub by_time: Vec<Expr<'g>>,
+    /// The weights of the conditions.
+    pub weights: Expr<'g>,
+}
+
 /// A scalar with its derivatives along the directions of a list.
 pub struct Jet<'g> {
     /// f.
@@ -141,6 +153,31 @@ impl<'g> SystemFormulas<'g> {
     }
 }
 
+impl<'g> SystemFormulas<'g> {
+    /// Both sides of the conditions of the end, ∂g/∂t, ∂g/∂δ, ∂²(z·g)/∂δ².
+    pub fn target_expanded(&self, target: &EndTarget<'g>) -> Vec<MatrixForm<'g>> {
+        let (at, n) = (Inserted::of(self), target.differences.len());
+        let m = target.differences.first().map_or(0, |jet| jet.slope.len());
+        let weighted = weighted(&target.differences, target.weights);
+        vec![
+            at.entries(Shape::vector(n), |i, _| target.sides[i][0]),
+            at.entries(Shape::vector(n), |i, _| target.sides[i][1]),
+            at.entries(Shape::vector(n), |i, _| target.by_time[i]),
+            at.entries(Shape::new(n, m), |i, j| target.differences[i].slope[j]),
+            at.entries(Shape::square(m), weighted),
+        ]
+    }
+}
+
+/// The second derivatives of z·a.
+fn weighted<'j, 'g>(jets: &'j [Jet<'g>], weights: Expr<'g>) -> impl Fn(usize, usize) -> Expr<'g> + 'j {
+    move |i, j| {
+        let weighted = jets.iter().enumerate();
+        let weighted = weighted.map(|(k, jet)| weights.entry(k, 0) * symmetric(&jet.curvature, i, j));
+        weights.graph().total(Shape::scalar(), weighted)
+    }
+}
+
 impl<'a, 'g> Choice<'a, 'g> {
     fn of(formulas: &'a SystemFormulas<'g>, step: StepOfChoice<'a, 'g>) -> Option<Choice<'a, 'g>> {
         Some(Choice { at: Inserted::of(formulas), steering: formulas.steering.as_ref()?, formulas, step })
@@ -201,12 +238,8 @@ impl<'a, 'g> Choice<'a, 'g> {
                 vec![at.entries(Shape::vector(2), |i, _| self.steering.price_of_time[i] + of_step[i])]
             }
             (Id::BoundsExpanded, _) => {
-                let (bounds, weights) = (&self.steering.bounds, self.steering.weights);
-                let weighted = |i, j| {
-                    let bounds = bounds.iter().enumerate();
-                    let weighted = bounds.map(|(k, bound)| weights.entry(k, 0) * symmetric(&bound.curvature, i, j));
-                    self.formulas.model.graph.total(Shape::scalar(), weighted)
-                };
+                let bounds = &self.steering.bounds;
+                let weighted = weighted(bounds, self.steering.weights);
                 let c = bounds.len();
                 if self.steering.on_edge.bounds {
                     let w = 2 * m + u;

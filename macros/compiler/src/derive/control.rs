@@ -9,7 +9,7 @@
 use clebsch_symbolic::{Block, Chart, Elements, Expr, IntoList, Property, Role, Shape, both, indexed};
 
 use super::SystemFormulas;
-use super::choice::{Direction, Endpoint, Jet, OnEdge, Steering};
+use super::choice::{Direction, EndTarget, Endpoint, Jet, OnEdge, Steering};
 use super::exact::{by_inertia, inertia_inverse};
 use super::variation::Source;
 use super::{Energy, cayley, force};
@@ -50,22 +50,71 @@ impl<'g> SystemFormulas<'g> {
     pub(super) fn chosen_by(&self) -> Option<Steering<'g>> {
         let control = self.model.control.as_ref()?;
         let all = [self.symbols.along_basis(&self.leaves_by_generator()), self.inputs()].concat();
-        let count = Shape::vector(control.bounds.len().max(1));
         let apart = self.images_of_leaves().into_iter().map(|(q, image)| image - q);
         Some(Steering {
             price: Jet::of(control.price, &all),
             price_of_time: self.by_time(control.price),
             bounds: control.bounds.each(|bound| Jet::of(bound.value, &all)),
             on_edge: OnEdge::default(),
-            weights: self.model.graph.symbol("z", count, Role::Weight, Property::General),
+            weights: self.weights(control.bounds.len()),
             approach: self.momenta_of(apart),
         })
     }
 
     pub(super) fn price_of_end(&self) -> Option<Endpoint<'g>> {
         let price = self.model.endpoint.as_ref()?.value;
-        let by_time = price.differential(&[(self.model.time, self.model.graph.integer(1))]);
-        Some(Endpoint { price: Jet::of(price, &self.symbols.along_basis(&self.leaves_by_generator())), by_time })
+        Some(self.priced(price, &self.directions_of_end(false)))
+    }
+
+    fn priced(&self, price: Expr<'g>, directions: &[Direction<'g>]) -> Endpoint<'g> {
+        Endpoint { price: Jet::of(price, directions), by_time: self.by_time_alone(price) }
+    }
+
+    fn by_time_alone(&self, value: Expr<'g>) -> Expr<'g> {
+        value.differential(&[(self.model.time, self.model.graph.integer(1))])
+    }
+
+    /// Motions of the end, and the entries of its momentum where that is read.
+    fn directions_of_end(&self, reads_momentum: bool) -> Vec<Direction<'g>> {
+        let motions = self.symbols.along_basis(&self.leaves_by_generator());
+        let momenta = self.symbols.momenta.iter().filter(|_| reads_momentum).flat_map(|mu| {
+            let units = mu.shape().positions().map(|(i, j)| mu.graph().unit(mu.shape(), i, j));
+            units.map(|unit| vec![(*mu, unit)]).into_list()
+        });
+        [motions, momenta.into_list()].concat()
+    }
+
+    /// The conditions of the end. Where they take the velocity, the other symbols are replaced, as by Σ⁻¹(N − A).
+    fn conditions_of_end(&self, moving: &[(Expr<'g>, Expr<'g>)]) -> Option<EndTarget<'g>> {
+        let target = self.model.target.as_ref()?;
+        let directions = self.directions_of_end(!moving.is_empty());
+        let sides =
+            target.conditions.each(|condition| both([condition.left, condition.right], |side| side.substitute(moving)));
+        let differences: Vec<_> = sides.each(|[left, right]| *left - *right);
+        Some(EndTarget {
+            by_time: differences.each(|difference| self.by_time_alone(*difference)),
+            differences: differences.each(|difference| Jet::of(*difference, &directions)),
+            weights: self.weights(target.conditions.len()),
+            sides,
+        })
+    }
+
+    pub(super) fn target(&self) -> Option<EndTarget<'g>> {
+        self.conditions_of_end(&[])
+    }
+
+    /// The same conditions where they take the velocity Σ⁻¹(N − A), as functions of q and N.
+    pub(super) fn target_of_velocity(&self, energy: &Energy<'g>, inertia: Expr<'g>) -> Option<EndTarget<'g>> {
+        let velocities = &self.model.target.as_ref()?.velocities;
+        if velocities.is_empty() {
+            return None;
+        }
+        self.conditions_of_end(&self.velocities_of_momentum(velocities, energy, inertia))
+    }
+
+    /// The symbols of so many weights.
+    fn weights(&self, count: usize) -> Expr<'g> {
+        self.model.graph.symbol("z", Shape::vector(count.max(1)), Role::Weight, Property::General)
     }
 
     /// The same price where it takes the velocity Σ⁻¹(N − A), as a function of q and N.
@@ -75,14 +124,7 @@ impl<'g> SystemFormulas<'g> {
             return None;
         }
         let price = value.substitute(&self.velocities_of_momentum(velocities, energy, inertia));
-        let by_time = price.differential(&[(self.model.time, self.model.graph.integer(1))]);
-        let motions = self.symbols.along_basis(&self.leaves_by_generator());
-        let momenta = self.symbols.momenta.iter().flat_map(|mu| {
-            let units = mu.shape().positions().map(|(i, j)| mu.graph().unit(mu.shape(), i, j));
-            units.map(|unit| vec![(*mu, unit)]).into_list()
-        });
-        let all = [motions, momenta.into_list()].concat();
-        Some(Endpoint { price: Jet::of(price, &all), by_time })
+        Some(self.priced(price, &self.directions_of_end(true)))
     }
 
     /// The velocities as functions of the momentum.

@@ -61,7 +61,7 @@ use crate::model::{Discretization, Kinetic, Mechanics, Model, Order, Steered, Sy
 
 pub use appendix::appendix;
 pub use catalogue::{Entry, Heat, Id, Reference};
-pub use choice::{Choice, Endpoint, Jet, OnEdge, Steering, StepOfChoice};
+pub use choice::{Choice, EndTarget, Endpoint, Jet, OnEdge, Steering, StepOfChoice};
 pub use collocation::Collocation;
 pub use constraint::{ConstraintFormulas, PlaceFormulas};
 pub use control::{Bend, InputStep};
@@ -125,10 +125,11 @@ fn mechanics(mut model: Mechanics<'_>) -> Result<MechanicsFormulas<'_>, Diagnost
     let joints = joints::of(&model, &system, (&energy, inertia), pushes)?;
     let is_timed = is_timed(&model, &lagrangian);
     let quantities = if model.emit.tangent { variation::quantities(&model, is_timed) } else { Vec::new() };
-    check_price_of_end(&model, &energy)?;
+    check_velocities_of_end(&model, &energy)?;
     let chosen = variation::Source { model: &model, system: &system, quantities: &[] }.chosen_by_velocity();
     system.steering = chosen.or(system.steering);
     system.endpoint = system.price_of_end_velocity(&energy, inertia).or(system.endpoint);
+    system.target = system.target_of_velocity(&energy, inertia).or(system.target);
     let variations = variation::Source { model: &model, system: &system, quantities: &quantities };
     let sources = |divisor| Sources { model: &model, system: &system, inertia, divisor, keeps_exponentials: false };
     let mut edges = discrete_lagrangian::substeps(&model, &lagrangian, &declared);
@@ -210,14 +211,16 @@ fn mechanics(mut model: Mechanics<'_>) -> Result<MechanicsFormulas<'_>, Diagnost
 }
 
 /// The velocity at the end is a formula of the momentum there, and is priced where inputs are chosen.
-fn check_price_of_end<'g>(model: &Mechanics<'g>, energy: &Energy<'g>) -> Result<(), Diagnostics> {
-    let Some(price) = &model.endpoint else { return Ok(()) };
-    let Some(velocity) = price.velocities.first() else { return Ok(()) };
-    let place = Found::at(price.written.place).named(velocity);
-    features::check((Feature::VelocityOfEnd, place), |feature| match feature {
-        Feature::Boundary => Found::when(model.emit.boundary),
-        Feature::GeneralLagrangian => Found::when(energy.general.is_some()),
-        _ => None,
+fn check_velocities_of_end<'g>(model: &Mechanics<'g>, energy: &Energy<'g>) -> Result<(), Diagnostics> {
+    let price = model.endpoint.iter().map(|price| (Feature::VelocityOfEnd, &price.velocities, &price.written));
+    let target = model.target.iter().map(|target| (Feature::VelocityOfTarget, &target.velocities, &target.written));
+    price.chain(target).try_for_each(|(feature, velocities, written)| {
+        let Some(velocity) = velocities.first() else { return Ok(()) };
+        features::check((feature, Found::at(written.place).named(velocity)), |feature| match feature {
+            Feature::Boundary => Found::when(model.emit.boundary),
+            Feature::GeneralLagrangian => Found::when(energy.general.is_some()),
+            _ => None,
+        })
     })
 }
 
@@ -259,6 +262,7 @@ fn system<'g>(model: Rc<System<'g>>, discretization: Option<Discretization>) -> 
     let mut system = SystemFormulas::new(model, discretization);
     system.steering = system.chosen_by();
     system.endpoint = system.price_of_end();
+    system.target = system.target();
     system
 }
 

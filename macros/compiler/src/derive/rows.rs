@@ -114,6 +114,18 @@ impl<'g> SystemFormulas<'g> {
             let row = Formula::new(Id::PriceOfEnd, format!("φ({read})"), [price.value]);
             rows.push(row.computed_as(vec![endpoint.price.value]));
         }
+        if let (Some(declared), Some(target)) = (&self.model.target, &self.target) {
+            let values: Vec<_> = declared.conditions.each(|condition| condition.left - condition.right);
+            let computed: Vec<_> = target.differences.each(|jet| jet.value);
+            let ids = [(Id::TargetEquations, "0 = g"), (Id::TargetInequalities, "0 ≥ g")];
+            let (split, count) = (declared.equations, values.len());
+            for ((id, symbol), range) in ids.into_iter().zip([0..split, split..count]) {
+                if !range.is_empty() {
+                    let row = Formula::new(id, symbol, values[range.clone()].to_vec());
+                    rows.push(row.computed_as(computed[range].to_vec()));
+                }
+            }
+        }
         rows
     }
 }

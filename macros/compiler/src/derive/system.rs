@@ -6,7 +6,7 @@ use std::rc::Rc;
 
 use clebsch_symbolic::{Chart, Elements, Expr, IntoElements, IntoList, identity, indexed};
 
-use super::choice::{Endpoint, Steering};
+use super::choice::{EndTarget, Endpoint, Steering};
 use super::symbols::{identities, of_columns};
 use super::{ChartBlock, FormulaTable, Symbols, cayley};
 use crate::model::{Discretization, Factor, Side, System};
@@ -25,6 +25,8 @@ pub struct SystemFormulas<'g> {
     pub steering: Option<Steering<'g>>,
     /// The price of the end; `None` if there is none.
     pub endpoint: Option<Endpoint<'g>>,
+    /// The conditions of the end.
+    pub target: Option<EndTarget<'g>>,
     /// All formulas as a table, made when it is first asked for.
     pub(super) table: OnceCell<FormulaTable<'g>>,
 }
@@ -35,8 +37,8 @@ impl<'g> SystemFormulas<'g> {
         let symbols = Symbols::new(&model, discretization);
         let generator = generator(&model, &symbols);
         let momentum_map = momentum_map(&symbols, &generator);
-        let (steering, endpoint, table) = (None, None, OnceCell::new());
-        SystemFormulas { model, symbols, generator, momentum_map, steering, endpoint, table }
+        let (steering, endpoint, target, table) = (None, None, None, OnceCell::new());
+        SystemFormulas { model, symbols, generator, momentum_map, steering, endpoint, target, table }
     }
 
     pub(super) fn chart_element(&self, factor: usize) -> Expr<'g> {

@@ -21,6 +21,8 @@ pub(super) struct ControlTypes<'a> {
     pub inputs: usize,
     /// The declared bounds.
     pub bounds: Vec<&'a str>,
+    /// The conditions of the end, and the number of equations among them.
+    pub target: (Vec<&'a str>, usize),
     /// The types of the references of a step and of the end, where there are any.
     pub references: Option<[TokenStream; 2]>,
 }
@@ -32,7 +34,14 @@ impl ControlTypes<'_> {
         block: &Block<'_>,
         functions: impl FnOnce(&Words<'_>) -> TokenStream,
     ) -> TokenStream {
-        let ControlTypes { is_steered, inputs, bounds, references } = self;
+        let ControlTypes { is_steered, inputs, bounds, target: (target, equations), references } = self;
+        let target = (!target.is_empty()).then(|| {
+            let equations = size(*equations);
+            quote! {
+                const TARGET: &'static [&'static ::core::primitive::str] = &[#(#target),*];
+                const EQUATIONS: ::core::primitive::usize = #equations;
+            }
+        });
         let (motions, name) = (block.dimension, &block.target.name);
         let (dimension, point, constants) =
             if *is_steered { (motions, quote!(Q), quote!(T)) } else { (2 * motions, quote!((Q, Mu)), quote!((C, T))) };
@@ -48,6 +57,7 @@ impl ControlTypes<'_> {
                 "Arrival" => quote!(runtime::Arrival<T, #d>),
                 "BoundsExpansion" => quote!(runtime::BoundsExpansion<T, #d, #u, #c>),
                 "EndpointExpansion" => quote!(runtime::EndpointExpansion<T, #d>),
+                "TargetExpansion" => quote!(runtime::TargetExpansion<T, #d>),
                 "Costates" => matrix(dimension, 1),
                 "Input" => matrix(*inputs, 1),
                 "Bounds" => matrix(bounds.len(), 1),
@@ -62,6 +72,7 @@ impl ControlTypes<'_> {
                 const NAME: &'static ::core::primitive::str = #name;
                 const BOUNDS: [&'static ::core::primitive::str; #c] = [#(#bounds),*];
                 const MOTIONS: ::core::primitive::usize = #motions;
+                #target
 
                 type Place = #point;
                 type Constants = #constants;
@@ -82,6 +93,7 @@ impl SystemEmitter<'_, '_> {
             is_steered,
             inputs: self.model.inputs.iter().map(|leaf| leaf.shape.len()).sum(),
             bounds: control.bounds.each(|bound| bound.text.as_str()),
+            target: self.conditions_as_written(),
             references: self.reference_types(),
         };
         let scope = self.scope_of_system();
@@ -111,6 +123,12 @@ impl SystemEmitter<'_, '_> {
         Some(types.implementation(self, functions))
     }
 
+    /// The conditions of the end, and the number of equations among them.
+    fn conditions_as_written(&self) -> (Vec<&str>, usize) {
+        let Some(target) = &self.model.target else { return (Vec::new(), 0) };
+        (target.conditions.each(|condition| condition.text.as_str()), target.equations)
+    }
+
     /// The types of references, where price, bounds or the price of the end read any.
     fn reference_types(&self) -> Option<[TokenStream; 2]> {
         let all = [&self.model.reference, &self.model.end_reference];
@@ -125,7 +143,7 @@ impl SystemEmitter<'_, '_> {
         types.references.as_ref().filter(|_| function.arguments.contains("constants"))?;
         Some(match function.name {
             "follow" => quote!(let constants = &constants.constants;),
-            "endpoint" | "endpoint_expanded" => {
+            "endpoint" | "endpoint_expanded" | "target_expanded" => {
                 quote!(let runtime::Referring { constants, end_reference, .. } = constants;)
             }
             _ => quote!(let runtime::Referring { constants, reference, .. } = constants;),
@@ -163,18 +181,23 @@ impl SystemEmitter<'_, '_> {
             "Place" => quote!(&x.0),
             "End" => match self.kernels.find(Id::PriceOfEnd) {
                 Some(kernel) => {
-                    let (state, body) = (self.state_at_end(), self.scope_of_system().body_of_scalar(kernel));
+                    let (state, body) = (self.state_of_price(), self.scope_of_system().body_of_scalar(kernel));
                     quote!(#state #body)
                 }
                 None => quote!(<T as runtime::Zero>::zero()),
             },
             "EndExpanded" => match self.endpoint_expanded() {
                 Some(body) => {
-                    let state = self.state_at_end();
+                    let state = self.state_of_price();
                     quote!(#state #body)
                 }
                 None => quote!(runtime::no_endpoint()),
             },
+            "StateAtTarget" => {
+                let target = self.model.target.as_ref();
+                self.state_at_end(Id::TargetExpanded, target.is_some_and(|target| !target.velocities.is_empty()))
+            }
+            "Weights" => matrix(self.model.target.as_ref()?.conditions.len(), 1),
             "PriceSlope" => {
                 let (scope, kernel) = (self.scope_of_system(), self.kernels.kernel(Id::PriceExpanded));
                 let (locals, slope) = (scope.locals(kernel), scope.output(kernel, 1));
@@ -229,13 +252,17 @@ impl SystemEmitter<'_, '_> {
         self.model.endpoint.as_ref().is_some_and(|price| !price.velocities.is_empty())
     }
 
-    /// The momentum at the end, and Σ⁻¹, where the price of the end takes the velocity.
-    fn state_at_end(&self) -> TokenStream {
-        if !self.prices_velocity_at_end() {
+    fn state_of_price(&self) -> TokenStream {
+        self.state_at_end(Id::PriceOfEndExpanded, self.prices_velocity_at_end())
+    }
+
+    /// The momentum at the end, and Σ⁻¹, where a kernel takes the velocity.
+    fn state_at_end(&self, kernel: Id, takes_velocity: bool) -> TokenStream {
+        if !takes_velocity {
             return TokenStream::new();
         }
         let is_inverse = |(input, _): (&Input, Shape)| input.role == Role::InertiaInverse;
-        let kernel = self.kernels.kernel(Id::PriceOfEndExpanded);
+        let kernel = self.kernels.kernel(kernel);
         let constant = kernel.inputs().into_iter().any(is_inverse);
         let constant = constant.then(|| quote!(let inertia_inverse = &constants.0.inertia_inverse;));
         quote!(#constant let mu = &x.1;)

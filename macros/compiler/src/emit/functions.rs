@@ -634,6 +634,13 @@ functions! {
         fn endpoint(&self, constants: &Self::Constants, t: T, x: &Self::Place) -> T { Id::PriceOfEnd } = { let q = Place; End }
         /// The price of the end with its derivatives.
         fn endpoint_expanded(&self, constants: &Self::Constants, t: T, x: &Self::Place) -> EndpointExpansion { Id::PriceOfEndExpanded } = { let q = Place; EndExpanded }
+        /// The conditions of the end with their derivatives, and the second derivatives of z·g.
+        fn target_expanded(&self, constants: &Self::Constants, t: T, x: &Self::Place, multipliers: &Costates) -> TargetExpansion { Id::TargetExpanded => Id::TargetEquations, Id::TargetInequalities } = {
+            let q = Place; StateAtTarget
+            let z: &Weights = &runtime::weights(multipliers);
+            Locals
+            runtime::conditions([&Value0, &Value1, &Value2], &Value3, &Value4)
+        }
     }
 }
 

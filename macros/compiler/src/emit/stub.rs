@@ -92,6 +92,7 @@ fn controlled(block: &Block<'_>, declaration: &Declaration, outline: &Outline) -
         is_steered: declaration.kinetic.is_steered(),
         inputs: outline.input.1.iter().map(|(shape, _)| shape.len()).sum(),
         bounds: vec![""; bounds],
+        target: (Vec::new(), 0),
         references: are_any.then(|| outline.references.each_ref().map(nested)),
     };
     let step = if types.is_steered { [STEERED, &[]] } else { [FORCED, EXPANDED] };

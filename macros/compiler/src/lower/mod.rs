@@ -70,7 +70,7 @@ fn steered(formulas: SteeredFormulas<'_>) -> Result<SteeredProgram<'_>, Diagnost
     // rounding decides where plans go that start from a saddle: their sums are computed as they are written
     maker.scalars.keeps_sums = true;
     formulas.choice().iter().for_each(|choice| maker.choice(choice));
-    maker.price_of_end();
+    maker.end();
     maker.membership();
     maker
         .check_length()
@@ -125,7 +125,7 @@ fn kernels<'g>(formulas: &MechanicsFormulas<'g>, form: &Form) -> Result<Kernels<
     maker.rows([Id::Lift]);
     maker.variations(formulas)?;
     formulas.choice().iter().for_each(|choice| maker.choice(choice));
-    maker.price_of_end();
+    maker.end();
     let constant_names = names::constants(&maker.scalars, &maker.hoisted);
     let gathered = maker.system(formulas);
     maker.membership();

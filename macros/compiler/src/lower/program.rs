@@ -127,6 +127,7 @@ const OF_CHOICE: Names<Id> = &[
     ("bounds_expanded", Id::BoundsExpanded),
     ("endpoint", Id::PriceOfEnd),
     ("endpoint_expanded", Id::PriceOfEndExpanded),
+    ("target_expanded", Id::TargetExpanded),
 ];
 
 const OF_EQUATION: Names<fn(usize, usize) -> Id> = &[

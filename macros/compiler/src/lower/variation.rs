@@ -56,10 +56,14 @@ impl<'g> Maker<'_, 'g> {
         made(self, Id::BoundsExpanded);
     }
 
-    pub(super) fn price_of_end(&mut self) {
+    /// The kernels of the price and of the conditions of the end.
+    pub(super) fn end(&mut self) {
         if let Some(endpoint) = &self.system.endpoint {
             self.matrices(Id::PriceOfEndExpanded, &self.system.endpoint_expanded(endpoint));
             self.rows([Id::PriceOfEnd]);
+        }
+        if let Some(target) = &self.system.target {
+            self.matrices(Id::TargetExpanded, &self.system.target_expanded(target));
         }
     }
 }

@@ -135,7 +135,7 @@ impl<'g> ActedSystem<'_, '_, 'g> {
     }
 
     /// The scope of a price, and the symbols of the velocity, one for each factor; none if it takes no velocity.
-    fn with_velocity(
+    pub(super) fn with_velocity(
         &mut self,
         matched: &Matched<'_>,
         input: Option<&Space<'g>>,
@@ -191,7 +191,7 @@ impl<'g> ActedSystem<'_, '_, 'g> {
         };
         let bound = |inequality: &Syntax| {
             let (lower, upper) = sides(inequality, diagnostics)?;
-            if let Some(error) = without_absolute_value((lower, upper)) {
+            if let Some(error) = without_absolute_value((lower, upper), "bounds") {
                 return diagnostics.refuse(error);
             }
             Some(Bound { value: side(lower)? - side(upper)?, text: spell(inequality) })
@@ -212,15 +212,15 @@ fn conjuncts(body: &Syntax) -> Option<String> {
     }
 }
 
-/// The advice for `x.abs() <= a`.
-fn without_absolute_value((lower, upper): (&Syntax, &Syntax)) -> Option<Diagnostic> {
+/// The advice for `x.abs() <= a` among bounds or conditions.
+pub(super) fn without_absolute_value((lower, upper): (&Syntax, &Syntax), among: &str) -> Option<Diagnostic> {
     let Syntax::MethodCall(call) = lower else { return None };
     if call.method != "abs" {
         return None;
     }
     let (inside, limit) = (parenthesized(&call.receiver), parenthesized(upper));
-    Some(error!(&call.method, "`abs` has no derivative at 0, so no bounds can use it";
-        help "write two bounds, `-{limit} <= {inside}, {inside} <= {limit}`"))
+    Some(error!(&call.method, "`abs` has no derivative at 0, so no {among} can use it";
+        help "write two {among}, `-{limit} <= {inside}, {inside} <= {limit}`"))
 }
 
 /// The smaller and the larger side of an inequality.

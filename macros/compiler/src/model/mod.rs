@@ -30,6 +30,7 @@ mod space;
 mod space_names;
 mod spaces;
 mod symmetries;
+mod target;
 #[cfg(test)]
 mod tests;
 mod typed;
@@ -172,6 +173,7 @@ pub fn model<'g>(graph: &'g Graph, declaration: &Declaration, by_number: ByNumbe
         end_reference,
         control: formulas.control,
         endpoint: formulas.endpoint,
+        target: formulas.target,
         emit: dials.emit,
         dials: dials.of_steps(),
         spans: Spans {
@@ -251,6 +253,7 @@ struct ClosureValues<'g> {
     input: Space<'g>,
     control: Option<InputChoice<'g>>,
     endpoint: Option<EndPrice<'g>>,
+    target: Option<EndConditions<'g>>,
 }
 
 impl<'g> ClosureValues<'g> {
@@ -277,6 +280,7 @@ impl<'g> ClosureValues<'g> {
         forces::check_dials(declaration, diagnostics);
         let is_steered = declaration.kinetic.is_steered();
         let endpoint = optional(declaration.endpoint.as_ref(), |closure| system.endpoint(closure, is_steered));
+        let target = optional(declaration.target.as_ref(), |closure| system.target(closure, is_steered));
         let forces = system.forces(declaration);
         let is_power = system.context.power.is_some();
         let edges = if is_power { Some(Vec::new()) } else { system.edges(declaration) };
@@ -305,6 +309,7 @@ impl<'g> ClosureValues<'g> {
             input,
             control,
             endpoint: endpoint?,
+            target: target?,
         })
     }
 }

@@ -6,8 +6,8 @@ use clebsch_symbolic::Group;
 
 use super::scalar::spell_scalar;
 use super::{
-    FieldEnergies, Isotropy, Joint, Kinetic, LeafSpace, Mechanics, Model, Motion, OfferedSymmetry, Order, Parameter,
-    Side, Signature, Steered, System, VelocityRows,
+    Condition, FieldEnergies, Isotropy, Joint, Kinetic, LeafSpace, Mechanics, Model, Motion, OfferedSymmetry, Order,
+    Parameter, Side, Signature, Steered, System, VelocityRows,
 };
 use crate::parse::joined;
 
@@ -137,7 +137,11 @@ impl System<'_> {
             writeln!(f, "  price      {}", control.price)?;
             control.bounds.iter().try_for_each(|bound| writeln!(f, "  bound      {} <= 0", bound.value))?;
         }
-        self.endpoint.iter().try_for_each(|price| writeln!(f, "  endpoint   {}", price.value))
+        self.endpoint.iter().try_for_each(|price| writeln!(f, "  endpoint   {}", price.value))?;
+        let conditions = self.target.iter().flat_map(|target| &target.conditions);
+        conditions.into_iter().try_for_each(|Condition { left, right, is_equation, .. }| {
+            writeln!(f, "  target     {} {} 0", *left - *right, if *is_equation { "=" } else { "<=" })
+        })
     }
 
     fn print_dials(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {

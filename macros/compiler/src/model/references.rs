@@ -19,7 +19,7 @@ use crate::parse::{Argument, Declaration, Pattern, joined, spell_type};
 pub(super) struct Introduced<'d> {
     /// Those of price and bounds.
     pub of_steps: Vec<&'d Argument>,
-    /// Those of the price of the end. A name that a step refers to is of the same type there.
+    /// Those of the price of the end and of the target. A name that a step refers to is of the same type there.
     pub of_end: Vec<&'d Argument>,
 }
 
@@ -34,7 +34,7 @@ impl<'d> Introduced<'d> {
                 introduced.of_steps.push(argument);
             }
         }
-        for argument in declaration.endpoint.iter().flat_map(|closure| &closure.arguments).filter(is_new) {
+        for argument in declaration.of_end().flat_map(|closure| &closure.arguments).filter(is_new) {
             let known = || find(&introduced.of_steps, &argument.pattern).copied();
             let typed = if argument.ty.is_some() { Some(argument) } else { known() };
             introduced.of_end.extend(typed.filter(|typed| find(&introduced.of_end, &typed.pattern).is_none()));

@@ -46,7 +46,7 @@ pub(super) const END_OF_STATES: &[Slot] = &[Slot::Time, Slot::Configuration, Slo
 pub(super) const SYMMETRY: &[Slot] = &[Slot::Offered, Slot::Configuration, Slot::Element];
 
 /// The arguments of the closure of each key.
-const ARGUMENTS: [(&str, &[Slot]); 12] = [
+const ARGUMENTS: [(&str, &[Slot]); 13] = [
     ("cost", COST),
     ("lagrangian", LAGRANGIAN),
     ("potential", POTENTIAL),
@@ -59,6 +59,7 @@ const ARGUMENTS: [(&str, &[Slot]); 12] = [
     ("effort", EFFORT),
     ("bounds", BOUNDS_OF_FORCES),
     ("endpoint", END_OF_STATES),
+    ("target", END_OF_STATES),
 ];
 
 /// The arguments that the closure of a key may take, in their order, as the docs say it; `None` for a key without.
@@ -85,7 +86,7 @@ pub(crate) fn arguments_of(key: &str) -> Option<String> {
         "cost" => "; with `controls` and `dynamics` the input and references in place of the group element",
         "dynamics" => "; a right-hand side takes no step",
         "constraint" => "; without a velocity it is on the configuration",
-        "bounds" | "endpoint" => "; with `controls` and `dynamics` no velocity",
+        "bounds" | "endpoint" | "target" => "; with `controls` and `dynamics` no velocity",
         _ => "",
     };
     Some(format!("{}{also}", joined(slots.iter().map(name))))
@@ -209,7 +210,12 @@ impl<'d> Matched<'d> {
 
     /// Whether this is a price or a bound of inputs of forces, or the price of the end.
     fn is_price(&self) -> bool {
-        self.slots.contains(&Slot::Velocity) && (self.slots.contains(&Slot::Chosen) || self.closure.key == "endpoint")
+        self.slots.contains(&Slot::Velocity) && (self.slots.contains(&Slot::Chosen) || self.is_of_end())
+    }
+
+    /// Whether it is of the end of a plan.
+    fn is_of_end(&self) -> bool {
+        self.closure.key == "endpoint" || self.closure.key == "target"
     }
 
     /// In a price a new name may be a slip of the pen for another argument. It is the velocity where the Lagrangian or

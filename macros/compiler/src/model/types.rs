@@ -8,6 +8,7 @@ use proc_macro2::Span;
 
 use super::power::{Joints, Length, SiteIndex, Term};
 use super::{Access, Layout};
+use crate::diagnostic::Location;
 use crate::parse::{
     Dials, Discretization, Emit, Isotropy, Located, Opaque, Order, Pattern, Promise, RungeKutta, Signature, Summation,
 };
@@ -58,6 +59,8 @@ pub struct System<'g> {
     pub control: Option<InputChoice<'g>>,
     /// The price of the end; `None` if there is none.
     pub endpoint: Option<EndPrice<'g>>,
+    /// The conditions of the end; `None` where none are declared.
+    pub target: Option<EndConditions<'g>>,
     /// The dials that the user turns and that the model is not made of.
     pub dials: Dials,
     /// The items that are emitted with the integrator.
@@ -420,6 +423,32 @@ pub struct EndPrice<'g> {
     pub velocities: Vec<Expr<'g>>,
     /// The price as written.
     pub written: Written,
+}
+
+/// The conditions of the end that `target` declares.
+pub struct EndConditions<'g> {
+    /// The equations, and the inequalities after them.
+    pub conditions: Vec<Condition<'g>>,
+    /// The number of equations.
+    pub equations: usize,
+    /// ξ for each factor, the velocity at the end; none if no condition takes it.
+    pub velocities: Vec<Expr<'g>>,
+    /// The closure as written.
+    pub written: Written,
+}
+
+/// a = b or a ≤ b, with functions of (t, q, ξ).
+pub struct Condition<'g> {
+    /// a.
+    pub left: Expr<'g>,
+    /// b.
+    pub right: Expr<'g>,
+    /// Whether both are equal.
+    pub is_equation: bool,
+    /// Where it was written.
+    pub place: Location,
+    /// As it was written, `q.x == 1`; the same for all entries of vectors.
+    pub text: String,
 }
 
 /// a(t, q, ξ, u) ≤ 0.

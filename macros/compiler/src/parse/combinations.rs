@@ -27,7 +27,13 @@ pub(super) fn check(keys: &Keys) {
 fn is_declared_alone(feature: Feature) -> bool {
     matches!(
         feature,
-        Feature::Effort | Feature::Bounds | Feature::Endpoint | Feature::Tangent | Feature::Boundary | Feature::Inputs
+        Feature::Effort
+            | Feature::Bounds
+            | Feature::Endpoint
+            | Feature::Target
+            | Feature::Tangent
+            | Feature::Boundary
+            | Feature::Inputs
     )
 }
 

@@ -1,4 +1,4 @@
-//! The keys of control: `controls`, `dynamics` or `effort`, with `bounds` and `endpoint`.
+//! The keys of control: `controls`, `dynamics` or `effort`, with `bounds`, `endpoint` and `target`.
 
 use clebsch_symbolic::IntoList;
 use proc_macro2::{Ident, Literal};
@@ -51,9 +51,13 @@ fn control_of_forces(keys: &mut Keys, bounds: Option<Closure>) -> Option<Choice>
     Some(Choice { price, bounds })
 }
 
-/// The end has a price where something is chosen that leads there.
-pub(super) fn check_endpoint(keys: &Keys, control: Option<&Choice>) {
+/// The end has a price, or conditions, where something is chosen that leads there.
+pub(super) fn check_end(keys: &Keys, control: Option<&Choice>) {
     let chosen = control.is_some() || keys.dials.emit.boundary || keys.was_given("effort");
+    if let Some(target) = keys.closures.get("target").filter(|_| !chosen) {
+        report!(keys.diagnostics, &target.key, "`target` without anything to choose";
+            help "add `effort`, `controls` or `dynamics` for inputs that lead there");
+    }
     if let Some(endpoint) = keys.closures.get("endpoint").filter(|_| !chosen) {
         report!(keys.diagnostics, &endpoint.key, "`endpoint` without anything to choose";
             help "add `emit = [boundary]` for paths of least action to a free end, or `effort`, `controls` or `dynamics` for inputs");

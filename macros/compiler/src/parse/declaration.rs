@@ -42,6 +42,8 @@ pub struct Declaration {
     pub control: Option<Choice>,
     /// The price of the end.
     pub endpoint: Option<Closure>,
+    /// The conditions of the end.
+    pub target: Option<Closure>,
     /// The symmetries that the user offers.
     pub symmetries: Vec<Closure>,
     /// Everything else.
@@ -98,7 +100,12 @@ impl Declaration {
         let forces = self.force.iter().chain(&self.force_on).chain(&self.constraints).chain(&self.spaces);
         let energies = [Some(&self.action), Some(self.kinetic.closure()), potential];
         let control = self.control.iter().flat_map(|control| [Some(&control.price), control.bounds.as_ref()]);
-        energies.into_iter().chain(control).flatten().chain(forces).chain(&self.endpoint).chain(&self.symmetries)
+        energies.into_iter().chain(control).flatten().chain(forces).chain(self.of_end()).chain(&self.symmetries)
+    }
+
+    /// The closures of the end of plans.
+    pub fn of_end(&self) -> impl Iterator<Item = &Closure> {
+        self.endpoint.iter().chain(&self.target)
     }
 }
 
@@ -137,9 +144,9 @@ pub(super) fn assemble(input: &DeriveInput, mut keys: Keys, fields: Vec<Field>) 
     {
         diagnostics.push(missing_kinetic(&input.ident, &fields));
     }
-    control::check_endpoint(&keys, control.as_ref());
-    let [action, force, force_on, endpoint] =
-        ["action", "force", "force_on", "endpoint"].map(|name| keys.closures.remove(name));
+    control::check_end(&keys, control.as_ref());
+    let [action, force, force_on, endpoint, target] =
+        ["action", "force", "force_on", "endpoint", "target"].map(|name| keys.closures.remove(name));
     let [constraints, spaces, symmetries] =
         ["constraint", "space", "symmetry"].map(|name| keys.lists.remove(name).unwrap_or_default());
     let Keys { potential, groups, dials, methods, .. } = keys;
@@ -162,6 +169,7 @@ pub(super) fn assemble(input: &DeriveInput, mut keys: Keys, fields: Vec<Field>) 
         spaces,
         control,
         endpoint,
+        target,
         symmetries,
         dials,
         methods,
@@ -248,7 +256,7 @@ impl fmt::Display for Declaration {
         let control = self.control.iter().flat_map(|control| [Some(&control.price), control.bounds.as_ref()]).flatten();
         let others =
             self.force.iter().chain(&self.force_on).chain(&self.constraints).chain(&self.spaces).chain(control);
-        others.chain(&self.endpoint).chain(&self.symmetries).try_for_each(|closure| entry(f, closure))?;
+        others.chain(self.of_end()).chain(&self.symmetries).try_for_each(|closure| entry(f, closure))?;
         for (name, value) in self.dials.given() {
             writeln!(f, "  {name:<10} = {}", value.value)?;
         }

@@ -93,7 +93,7 @@ impl Declaration {
             krate: system.krate.clone(),
             ..method.dials.clone()
         };
-        Declaration { dials, control: None, endpoint: None, methods: Vec::new(), ..self.clone() }
+        Declaration { dials, control: None, endpoint: None, target: None, methods: Vec::new(), ..self.clone() }
     }
 
     /// The same system without derivatives of its steps.

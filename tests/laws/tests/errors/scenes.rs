@@ -486,6 +486,10 @@ fn plans() -> Vec<Scene> {
         scene(steered(-0.1), &["`torque.x <= self.top` is violated by", "relax it, or guess inputs that keep it"]),
         scene(steered(0.1), &["were left after", "give more steps or wider bounds"]),
         scene(
+            refused(regulator.solve(&start, Target::Conditions, &mut one)),
+            &["the declaration has no `target`", "write `target = |q| [a == b]`", "or pass `Target::Place`"],
+        ),
+        scene(
             refused(follower.solve(&Matrix3::identity(), Target::Free, &mut followed)),
             &[
                 "reference 3 is missing",

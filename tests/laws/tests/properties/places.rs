@@ -5,7 +5,7 @@
 use crate::arbitrary::{attitude, cases, definite, matrix, rotation, unit, vector};
 use crate::runner::proptest;
 use clebsch::__private as private;
-use clebsch::Error;
+use clebsch::{Error, TargetExpansion};
 use clebsch_tests::oracle::near::assert_near;
 use nalgebra::{Matrix2, Matrix3, Quaternion, SMatrix, SVector, UnitQuaternion, Vector3};
 use proptest::prelude::*;
@@ -237,6 +237,24 @@ proptest! {
         assert_near(&(found.by_place * place), &(by_motion * eta), NEAR, "slopes");
         assert_near(&(found.mixed_curvature * place), &(mixed * eta), NEAR, "mixed");
         prop_assert!((place.dot(&(found.place_curvature * place)) - eta.dot(&(motions * eta))).abs() < NEAR);
+    }
+
+    /// Two conditions of a state, in which there is room for six.
+    #[test]
+    fn conditions_are_differences_of_their_sides(
+        (left, right, by_time) in (vector::<2>(1.0), vector::<2>(1.0), vector::<2>(1.0)), slope in matrix::<2, 3>(1.0), curvature in matrix::<3, 3>(1.0),
+        (eta, nu) in (vector::<3>(1.0), vector::<3>(1.0)),
+    ) {
+        let found: TargetExpansion<f64, 6> = private::conditions([&left, &right, &by_time], &slope, &curvature);
+        let place: SVector<f64, 6> = private::pair(&eta, &nu);
+        let first = |all: SVector<f64, 6>| private::weights::<f64, 2, 6>(&all);
+        assert_near(&first(found.values), &(left - right), NEAR, "a − b");
+        prop_assert_eq!((first(found.sizes), first(found.by_time)), (left.abs() + right.abs(), by_time));
+        assert_near(&first(found.slope * place), &(slope * eta), NEAR, "slopes");
+        prop_assert!((place.dot(&(found.curvature * place)) - eta.dot(&(curvature * eta))).abs() < NEAR);
+        let none = TargetExpansion::<f64, 6>::none();
+        prop_assert_eq!(none.slope - found.slope, -found.slope);
+        prop_assert_eq!(found.values.fixed_rows::<4>(2), none.values.fixed_rows::<4>(2));
     }
 
     #[test]

@@ -8,9 +8,10 @@ use clebsch::{
 use clebsch_tests::fixtures::follower::Follower;
 use clebsch_tests::fixtures::regulator::Regulator;
 use clebsch_tests::fixtures::steered_body::SteeredBody;
+use clebsch_tests::fixtures::telescope::Telescope;
 use clebsch_tests::fixtures::unicycle::Unicycle;
 use clebsch_tests::oracle::near::assert_near;
-use nalgebra::{Matrix2, Matrix3, Rotation3, SMatrix, Vector1, Vector2, Vector3};
+use nalgebra::{Matrix2, Matrix3, Rotation3, SMatrix, Vector1, Vector2, Vector3, Vector6};
 use proptest::prelude::*;
 
 const H: f64 = 0.1;
@@ -152,6 +153,26 @@ proptest! {
         let by_time = system.price_of_time(&constants, t, 3.0, &x, &u, &costate)?;
         let expected = price(0.0) / H + costate.dot(&Vector3::new(u.x, u.y, 0.0));
         prop_assert!((by_time - expected).abs() < 1e-12, "{by_time} for {expected}");
+    }
+
+    /// A telescope ends on its star at a slow rate, wherever both are. Conditions are R b = s and |ω|² ≤ r² (1 + t).
+    #[test]
+    fn telescopes_end_on_their_stars(turn in attitude(), star in vector::<3>(1.0), slow in 0.01_f64..0.5) {
+        let star = (star + Vector3::new(0.0, 0.0, 2.0)).normalize();
+        let inertia = Matrix3::from_diagonal(&Vector3::new(1.0, 1.2, 1.4));
+        let control = Telescope { inertia, boresight: Vector3::x(), slow }.control(H)?.with_end_reference(star)?;
+        let start = (turn, Vector3::new(0.1, 0.0, -0.2));
+        let mut plan = [control.stage(&start); STEPS];
+        let optimum = control.solve(&start, Target::Conditions, &mut plan)?;
+        let (end, momentum) = *optimum.end();
+        let (t, rate) = (H * STEPS as f64, Vector3::new(momentum.x, momentum.y / 1.2, momentum.z / 1.4));
+        let most = slow.powi(2) * (1.0 + t);
+        prop_assert!(optimum.gap() < 1e-11 && (end * Vector3::x() - star).norm() < 1e-11);
+        prop_assert!(rate.norm_squared() <= most + 1e-11);
+        let constants = Referring { end_reference: star, ..control.system().prepare(H)? };
+        let expanded = control.system().target_expanded(&constants, t, &(turn, momentum), &Vector6::zeros());
+        let g = turn * Vector3::x() - star;
+        assert_near(&expanded.values, &Vector6::new(g.x, g.y, g.z, rate.norm_squared() - most, 0.0, 0.0), 1e-12, "g");
     }
 
     /// Linear steps at quadratic prices: the optimum is Riccati's, and costates are the slopes of the least price.

@@ -189,6 +189,7 @@ pub const PROPERTIES: &[(&str, &[Property])] = &[
         ("displacements_are_shortest",                   &["displacement"]),
         ("places_are_pairs",                             &["pair", "parted", "arrival_of_state", "endpoint", "no_endpoint"]),
         ("bounds_do_not_depend_on_momenta",              &["bounds"]),
+        ("conditions_are_differences_of_their_sides",    &["conditions", "weights", "TargetExpansion::none"]),
         ("places_are_checked",                           &["check_on_orbit", "check_reached"]),
     ]),
     ("tests/laws/tests/properties/plans.rs", &[
@@ -196,6 +197,7 @@ pub const PROPERTIES: &[(&str, &[Property])] = &[
             "Controlled::prepare", "Controlled::check_place", "Controlled::control", "Controlled::follow", "Controlled::price", "Controlled::expand", "Controlled::price_of_time", "Controlled::bounds",
             "Controlled::bounds_expanded", "Controlled::endpoint", "Controlled::endpoint_expanded", "Controlled::arrival", "Controlled::displacement", "Control::follow",
         ]),
+        ("telescopes_end_on_their_stars", &["Controlled::target_expanded"]),
         ("regulators_are_those_of_riccati", &[
             "Control::solve", "Control::feedback", "Control::stage", "Control::step_size", "Control::system", "Stage::place", "Stage::input", "Stage::costate", "Stage::gain", "Optimum::price", "Optimum::step_size",
             "Optimum::iterations", "Optimum::residual", "Optimum::gap", "Optimum::negative", "Optimum::is_minimum", "Optimum::end", "Optimum::final_costate", "Optimum::stages",

@@ -42,6 +42,9 @@ pub(super) fn forces(formulas: &MechanicsFormulas<'_>) -> String {
         if is_moving {
             text += "The price of the end takes the velocity Σ⁻¹(N − A) of the momentum there.\n";
         }
+        if model.target.as_ref().is_some_and(|target| !target.velocities.is_empty()) {
+            text += "The target takes the velocity Σ⁻¹(N − A) of the momentum at the end.\n";
+        }
         text += &references(model);
     }
     text

@@ -57,7 +57,7 @@ impl<'g> Elaborator<'_, '_, 'g> {
                 let (left, right) = (spell(&link.left), parenthesized(&link.right));
                 error
                     .help(format!("write the price of the distance, as in `self.price * ({left} - {right}).{square}`"))
-                    .note("the endpoint is a price, and a plan ends where it is small")
+                    .note("the endpoint is a price, and a plan ends where it is small; for an equation that holds at the end write it in `target`")
             }
             BinOp::Eq(_) if self.key == "potential" => {
                 let equation = spell(&Syntax::Binary(link.clone()));

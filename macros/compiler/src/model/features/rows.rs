@@ -15,7 +15,7 @@ const WITHOUT_MATRICES: &[Feature] =
 
 /// The refused features, the others, the message, the reason, and the replacement.
 #[rustfmt::skip]
-pub(super) const ROWS: [Row; 86] = [
+pub(super) const ROWS: [Row; 88] = [
     // inputs move the configuration
     row(&[Dynamics], &[Controls],
         "there are `controls` and `dynamics`, but one thing moves a configuration", "",
@@ -80,6 +80,14 @@ pub(super) const ROWS: [Row; 86] = [
         "a price of the velocity `{name}` at the end needs a Lagrangian that is quadratic in it",
         "the velocity there is Σ⁻¹(N − A), a formula of the momentum only for such a Lagrangian",
         "leave `{name}` out of `endpoint`; `effort` and `bounds` take the velocity of each step"),
+    row(&[VelocityOfTarget], &[GeneralLagrangian],
+        "a condition on the velocity `{name}` at the end needs a Lagrangian that is quadratic in it",
+        "the velocity there is Σ⁻¹(N − A), a formula of the momentum only for such a Lagrangian",
+        "leave `{name}` out of `target`; `bounds` take the velocity of each step"),
+    row(&[Target], &[Boundary],
+        "a path of least action has no `target`",
+        "a path between endpoints has no inputs that could lead to it",
+        "leave out `target`, or the word `boundary`"),
     row(&[OpaquePotential], &[Tangent, Boundary],
         "{beside} needs a potential that is a formula",
         "it differentiates forces, and an opaque potential gives a value and a gradient, no second derivatives",
@@ -122,7 +130,7 @@ pub(super) const ROWS: [Row; 86] = [
         "`projection` gives (F - I)/h, and the projected F⁻¹ is not minus the projected F where turns and translations are coupled",
         "write `discretization = moser_veselov`, or leave `discretization` out"),
     // momenta alone
-    row(&[Potential, ForceOn, Symmetry, Isotropy, Endpoint, Effort, Controls, Dynamics, Bounds], &[Momentum],
+    row(&[Potential, ForceOn, Symmetry, Isotropy, Endpoint, Target, Effort, Controls, Dynamics, Bounds], &[Momentum],
         "{beside} steps the momentum alone, without {refused}",
         "it needs the configuration, and none is stepped",
         "leave out {refused}, or the word `momentum`"),
@@ -150,7 +158,7 @@ pub(super) const ROWS: [Row; 86] = [
         "a power has no offered symmetry",
         "an offered motion moves all sites together, and formulas are those of one site",
         "leave out `symmetry`: motions that move all sites alike are found without it"),
-    row(&[Controls, Dynamics, Effort, Endpoint], &[Power],
+    row(&[Controls, Dynamics, Effort, Endpoint, Target], &[Power],
         "a power has no {refused}",
         "inputs are chosen by Newton's method on paths, whose equations tie all sites to each other",
         ALL_SITES),
@@ -183,7 +191,7 @@ pub(super) const ROWS: [Row; 86] = [
         "the sites of a field cannot have a constraint",
         "its multipliers would tie all sites together, and a field steps each site by itself",
         "leave out the constraint; joints of a chain are for `[…; N]` with a const generic"),
-    row(&[Effort, Endpoint, Tangent, Boundary], &[Field],
+    row(&[Effort, Endpoint, Target, Tangent, Boundary], &[Field],
         "a field has no {refused}",
         "the number of its sites is known at run time alone, and so is the size of that derivative",
         "leave it out; for a few sites write `[…; 8]` in place of `space`"),
