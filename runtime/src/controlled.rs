@@ -105,7 +105,7 @@ pub trait Controlled<const D: usize, const U: usize, const C: usize>: Sized {
         u: &SVector<Self::Scalar, U>,
     ) -> Result<Self::Place, Error>;
 
-    /// ℓ(t, h, x, u)
+    /// ℓ(t, h, x, u), smooth: without the kinks that [`bound_prices`](Self::bound_prices) tells.
     ///
     /// # Errors
     /// Those of a step, where the price takes its velocity.
@@ -155,6 +155,12 @@ pub trait Controlled<const D: usize, const U: usize, const C: usize>: Sized {
         x: &Self::Place,
         u: &SVector<Self::Scalar, U>,
     ) -> Result<SVector<Self::Scalar, C>, Error>;
+
+    /// w: the price of a unit of each bound by which it is violated; infinite for bounds that have to hold. It is ℓ without Σ w max(a, 0) that
+    /// [`price`](Self::price) gives.
+    fn bound_prices(&self, _constants: &Self::Constants, _t: Self::Scalar) -> SVector<Self::Scalar, C> {
+        SVector::from_element(Self::Scalar::from_f64(f64::INFINITY))
+    }
 
     /// a with its derivatives, and the second derivatives of z·a.
     ///

@@ -455,6 +455,14 @@ errors! {
         NoTarget =>
             "the declaration has no `target`: write `target = |q| [a == b]`, or pass `Target::Place`, \
              `Target::Configuration` or `Target::Free`";
+        /// A price has a term |a| or max(a, b) with a negative factor, which no minimum has at its kink.
+        NegativePrice {
+            /// The term, as it was written.
+            term: &'static str,
+            /// Its factor.
+            price: f64,
+        } =>
+            "the factor of `{term}` in the price is {price:.3e}: it has to be positive, or 0, for the price to have a minimum";
         /// Price or bounds read a reference that was not given.
         NoReference {
             /// The step whose reference is missing, counted from 0. It is `steps` for the reference of the end.

@@ -3,7 +3,7 @@
 //! The unit tests of this crate include it, and the test `properties` of `clebsch-laws`.
 
 use proptest::prelude::*;
-use proptest::test_runner::{TestCaseResult, TestRunner};
+use proptest::test_runner::{TestCaseResult, TestRunner, contextualize_config};
 use std::boxed::Box;
 use std::fmt::Debug;
 
@@ -48,7 +48,8 @@ pub(crate) fn check<S>(
 
 #[track_caller]
 fn run(config: ProptestConfig, cases: &BoxedStrategy<Box<dyn Case>>) {
-    let mut runner = TestRunner::new(config);
+    // variables of the environment go before the numbers of a test, as in the library
+    let mut runner = TestRunner::new(contextualize_config(config));
     if let Err(error) = runner.run(cases, |case| case.holds()) {
         panic!("{error}\n{runner}");
     }

@@ -85,6 +85,13 @@ pub fn no_endpoint<T: Scalar, const D: usize>() -> EndpointExpansion<T, D> {
     EndpointExpansion { price: T::zero(), by_time: T::zero(), slope: SVector::zeros(), curvature: SMatrix::zeros() }
 }
 
+/// The prices of bounds: the last K are soft.
+#[inline]
+pub fn bound_prices<T: Scalar, const K: usize, const C: usize>(soft: &SVector<T, K>) -> SVector<T, C> {
+    let price = |i: usize| (i + K).checked_sub(C).and_then(|k| soft.get(k)).copied();
+    SVector::from_fn(|i, _| price(i).unwrap_or(T::from_f64(f64::INFINITY)))
+}
+
 /// The multipliers of so many conditions of the end.
 #[inline]
 pub fn weights<T: Scalar, const N: usize, const D: usize>(multipliers: &SVector<T, D>) -> SVector<T, N> {

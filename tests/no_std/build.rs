@@ -36,8 +36,9 @@ const DIRECTIONS: [(&str, &str); 6] = [
 const LANES: [&str; 2] = ["F64x4", "F64x8"];
 
 /// Dimensions of problems of optimal control: of places, of inputs, and the number of bounds.
-const DIMENSIONS: [(&str, &str); 12] = [
+const DIMENSIONS: [(&str, &str); 13] = [
     ("follower", "3, 2, 1"),
+    ("frugal_car", "3, 2, 4"),
     ("telescope", "6, 3, 0"),
     ("regulator", "2, 1, 0"),
     ("rate_limited_body", "6, 3, 2"),

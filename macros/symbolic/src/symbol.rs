@@ -45,6 +45,8 @@ pub enum Role {
     Multiplier,
     /// The multipliers of bounds.
     Weight,
+    /// max(a, 0) in a price, by the number of a.
+    Kink(usize),
     /// The representing matrix of the momentum of a factor.
     MomentumMatrix(usize),
     /// The weight of a kick that is a part of a step.

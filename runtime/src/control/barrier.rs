@@ -61,6 +61,8 @@ pub(super) struct Barriers<T, const C: usize> {
     pub excess: SVector<T, C>,
     /// The slacks that a correction proposes.
     pub next_slack: SVector<T, C>,
+    /// w: the price of a unit of a, infinite where a bound has to hold. A soft bound has the slack −a, of any sign.
+    pub price: SVector<T, C>,
 }
 
 /// The slacks of all bounds after a correction, against those before.
@@ -73,13 +75,78 @@ pub(super) struct Proposed<T> {
     pub excess_price: T,
     /// The largest part to which bounds stay relaxed.
     pub relaxed: T,
+    /// By how much soft bounds become dearer, with barriers.
+    pub dearer: T,
+    /// The price of soft bounds, with barriers.
+    pub soft: T,
+}
+
+/// A bound a ≤ 0 that may be violated at the price w of each unit. With the barrier it costs
+/// ```text
+/// ρ(a) = min over t of w t − μ ln t − μ ln(t − a),    ρ′(a) = μ/(t − a) = w − μ/t
+/// ```
+/// which is w max(a, 0) where μ vanishes. So it needs no slack that a step could reach.
+#[derive(Clone, Copy)]
+struct Soft<T> {
+    price: T,
+    value: T,
+}
+
+impl<T: Real> Soft<T> {
+    /// t and t − a: the roots of w t (t − a) = μ (2t − a).
+    fn slacks(self, barrier: T) -> [T; 2] {
+        let two = T::from_f64(2.0);
+        let (forced, smoothing) = (self.price * self.value, two * barrier);
+        let root = (forced * forced + smoothing * smoothing).sqrt();
+        // the smaller one without cancellation, from t (t − a) = μ (2t − a)/w
+        let larger_one = (forced.abs() + smoothing + root) / (two * self.price);
+        let smaller_one = barrier * (smoothing + root) / (self.price * self.price * larger_one);
+        if self.value > T::zero() { [larger_one, smaller_one] } else { [smaller_one, larger_one] }
+    }
+
+    /// ρ(a), with w max(a, 0) for no barrier.
+    fn smoothed(self, barrier: T) -> T {
+        if barrier == T::zero() {
+            return self.price * larger(self.value, T::zero());
+        }
+        let [t, s] = self.slacks(barrier);
+        self.price * t - barrier * (t.ln() + s.ln())
+    }
+
+    /// ρ′(a). Before there is a barrier nothing is known of it.
+    fn force(self, barrier: T) -> T {
+        if barrier == T::zero() { T::zero() } else { barrier / self.slacks(barrier)[1] }
+    }
+
+    /// 1/(t/(w − z) + (t − a)/z), which is ρ″ where z is ρ′. Before there is a barrier it makes unit values as dear as they are.
+    fn stiffness(self, barrier: T, z: T) -> T {
+        if barrier == T::zero() {
+            return self.price;
+        }
+        let [t, s] = self.slacks(barrier);
+        (t / (self.price - z) + s / z).recip()
+    }
+
+    /// A multiplier between a part of the one before and the one that is left to w, near ρ′.
+    fn within(self, barrier: T, before: T, next: T) -> T {
+        let wide = T::EPSILON.sqrt().recip();
+        let part = T::from_f64(1.0 - TO_BOUNDARY);
+        let [t, s] = self.slacks(barrier);
+        let least = larger(part * before, barrier / s / wide);
+        let from_top = larger(part * (self.price - before), barrier / t / wide);
+        let most = self.price - from_top;
+        let next = if next < least { least } else { next };
+        let next = if next > most { most } else { next };
+        // for a price so small that both ends meet
+        if next > T::zero() && next < self.price { next } else { self.price * T::from_ratio(1, 2) }
+    }
 }
 
 impl<T: Real> Proposed<T> {
     /// Of no bounds.
     pub fn none() -> Self {
         let zero = T::zero();
-        Self { allowed: None, logarithms: zero, excess_price: zero, relaxed: zero }
+        Self { allowed: None, logarithms: zero, excess_price: zero, relaxed: zero, dearer: zero, soft: zero }
     }
 }
 
@@ -94,14 +161,40 @@ pub(super) struct Condensed<T, const C: usize> {
 impl<T: Real, const C: usize> Barriers<T, C> {
     pub fn none() -> Self {
         let zero = SVector::from_element(T::zero());
-        Self { multipliers: zero, slack: zero, excess: zero, next_slack: zero }
+        let price = SVector::from_element(T::from_f64(f64::INFINITY));
+        Self { multipliers: zero, slack: zero, excess: zero, next_slack: zero, price }
     }
 
     #[inline]
     pub fn condensed(&self, barrier: T) -> Condensed<T, C> {
-        let stiffness = SVector::<T, C>::from_fn(|i, _| self.multipliers[i] / self.slack[i]);
-        let force = SVector::from_fn(|i, _| barrier / self.slack[i] + stiffness[i] * self.excess[i]);
+        let stiffness = SVector::<T, C>::from_fn(|i, _| match self.soft(i) {
+            Some(soft) => soft.stiffness(barrier, self.multipliers[i]),
+            None => self.multipliers[i] / self.slack[i],
+        });
+        let force = SVector::from_fn(|i, _| match self.soft(i) {
+            Some(soft) => soft.force(barrier),
+            None => barrier / self.slack[i] + stiffness[i] * self.excess[i],
+        });
         Condensed { force, stiffness }
+    }
+
+    /// A bound that may be violated.
+    #[inline]
+    fn soft(&self, i: usize) -> Option<Soft<T>> {
+        let price = self.price[i];
+        (price > T::zero() && price.is_finite()).then(|| Soft { price, value: -self.slack[i] })
+    }
+
+    /// Σ w max(a, 0)
+    pub fn price_of_violations(&self) -> T {
+        let soft = (0..C).filter_map(|i| self.soft(i));
+        soft.fold(T::zero(), |sum, soft| sum + soft.price * larger(soft.value, T::zero()))
+    }
+
+    /// Σ w |a| of bounds that are moved so far, the price that they may come to.
+    fn price_of_motion(&self, moved: &SVector<T, C>) -> T {
+        let of = |i: usize| self.soft(i).map(|soft| soft.price * (soft.value + moved[i]).abs());
+        (0..C).filter_map(of).fold(T::zero(), |sum, price| sum + price)
     }
 
     /// Σ z |∂a/∂u|: how hard bounds push each input, without signs.
@@ -122,17 +215,28 @@ impl<T: Real, const C: usize> Barriers<T, C> {
     #[inline]
     pub fn violated(&self) -> (T, SVector<T, C>) {
         let violation = self.excess - self.slack;
-        let is_violated = |i: usize| violation[i] > T::zero();
+        let is_violated = |i: usize| violation[i] > T::zero() && !self.price[i].is_finite();
         let sum = (0..C).filter(|i| is_violated(*i)).fold(T::zero(), |sum, i| sum + violation[i] / self.slack[i]);
         (sum, SVector::from_fn(|i, _| if is_violated(i) { self.slack[i].recip() } else { T::zero() }))
     }
 
-    /// Takes these values of the bounds, without excess, and returns how many bounds are present.
-    fn take_values(&mut self, values: SVector<T, C>, name: impl Fn(usize) -> &'static str) -> Result<usize, Error> {
-        self.slack = -values;
+    /// Takes these values of the bounds with their prices, without excess, and returns how many bounds are present.
+    fn take_values(
+        &mut self,
+        values: SVector<T, C>,
+        price: SVector<T, C>,
+        name: impl Fn(usize) -> &'static str,
+    ) -> Result<usize, Error> {
+        (self.slack, self.price) = (-values, price);
         self.excess = SVector::from_element(T::zero());
         let mut present = 0;
         for i in 0..C {
+            // Written so that NaN is refused.
+            match price[i] {
+                none if none == T::zero() => self.slack[i] = T::from_f64(f64::INFINITY),
+                positive if positive > T::zero() => {}
+                negative => return Err(Error::NegativePrice { term: name(i), price: negative.to_f64() }),
+            }
             match self.slack[i] {
                 slack if slack.is_finite() => present += 1,
                 slack if is_none(slack) => self.multipliers[i] = T::zero(),
@@ -150,7 +254,7 @@ impl<T: Real, const C: usize> Barriers<T, C> {
     /// Relaxes bounds that have a least slack to it.
     fn relax(&mut self, least: impl Fn(usize) -> Option<T>) {
         for i in 0..C {
-            if let Some(least) = least(i).filter(|_| !is_none(self.slack[i])) {
+            if let Some(least) = least(i).filter(|_| !is_none(self.slack[i]) && !self.price[i].is_finite()) {
                 let value = self.excess[i] - self.slack[i];
                 self.slack[i] = larger(-value, least);
                 self.excess[i] = self.slack[i] + value;
@@ -160,7 +264,32 @@ impl<T: Real, const C: usize> Barriers<T, C> {
 
     /// Multipliers μ/s for the slacks.
     fn begin(&mut self, barrier: T) {
-        self.multipliers = self.slack.map(|slack| barrier / slack);
+        self.multipliers = SVector::from_fn(|i, _| match self.soft(i) {
+            Some(soft) => soft.force(barrier),
+            None => barrier / self.slack[i],
+        });
+    }
+
+    /// Whether multipliers are inside their bounds, so that a search may go on with them.
+    fn is_warm(&self) -> bool {
+        let is_within = |i: usize| {
+            let (z, s) = (self.multipliers[i], self.slack[i]);
+            is_none(s) || z > T::zero() && z < self.price[i] && (s > T::zero() || self.price[i].is_finite())
+        };
+        (0..C).all(is_within)
+    }
+
+    /// Σ z s, for soft bounds Σ z max(−a, 0) + (w − z) max(a, 0).
+    fn complementarity(&self) -> T {
+        let of = |i: usize| {
+            let (z, s) = (self.multipliers[i], self.slack[i]);
+            match self.soft(i) {
+                _ if is_none(s) => T::zero(),
+                Some(soft) if s < T::zero() => (soft.price - z) * -s,
+                _ => z * s,
+            }
+        };
+        (0..C).map(of).fold(T::zero(), |sum, part| sum + part)
     }
 
     /// Stores the slacks after a fraction of a correction that leads to these values of the bounds, and adds them to `proposed`.
@@ -179,10 +308,21 @@ impl<T: Real, const C: usize> Barriers<T, C> {
             if is_none(s) {
                 self.next_slack[i] = s;
                 // Written so that NaN is refused.
-                if values[i] <= zero {
+                if values[i] <= zero || self.price[i] == zero {
                     continue;
                 }
                 return Err(Error::NotFinite { name: name(i) });
+            }
+            if let Some(soft) = self.soft(i) {
+                let value = values[i];
+                if !value.is_finite() {
+                    return Err(Error::NotFinite { name: name(i) });
+                }
+                self.next_slack[i] = -value;
+                let next = Soft { value, ..soft }.smoothed(barrier);
+                proposed.dearer += next - soft.smoothed(barrier);
+                proposed.soft += next;
+                continue;
             }
             let excess = (one - fraction) * self.excess[i];
             let next = excess - values[i];
@@ -207,8 +347,8 @@ impl<T: Real, const C: usize> Barriers<T, C> {
 
     /// Σ ln s of the slacks that are proposed.
     pub fn logarithms(&self) -> T {
-        let present = self.next_slack.iter().filter(|slack| !is_none(**slack));
-        present.fold(T::zero(), |sum, slack| sum + slack.ln())
+        let present = (0..C).filter(|i| !is_none(self.next_slack[*i]) && !self.price[*i].is_finite());
+        present.fold(T::zero(), |sum, i| sum + self.next_slack[i].ln())
     }
 
     /// Takes the slacks that a fraction of a correction proposes. Multipliers stay positive, near μ/s.
@@ -220,6 +360,12 @@ impl<T: Real, const C: usize> Barriers<T, C> {
                 continue;
             }
             let (z, slack, moved) = (self.multipliers[i], self.slack[i], self.next_slack[i]);
+            if let Some(soft) = self.soft(i) {
+                let next = z + fraction * (soft.force(barrier) - z) + soft.stiffness(barrier, z) * (slack - moved);
+                self.slack[i] = moved;
+                self.multipliers[i] = Soft { value: -moved, ..soft }.within(barrier, z, next);
+                continue;
+            }
             let next = z + fraction * (barrier / slack - z) - z / slack * (moved - slack);
             let central = barrier / moved;
             let least = larger(T::from_f64(1.0 - TO_BOUNDARY) * z, central / wide);
@@ -234,7 +380,10 @@ impl<T: Real, const C: usize> Barriers<T, C> {
     /// Multipliers from a correction that moves bounds so far, to first order. The slacks of active bounds have few digits, so μ/s has few too.
     fn settle(&mut self, moved: &SVector<T, C>, barrier: T) {
         let Condensed { force, stiffness } = self.condensed(barrier);
-        self.multipliers = SVector::from_fn(|i, _| larger(T::zero(), force[i] + stiffness[i] * moved[i]));
+        self.multipliers = SVector::from_fn(|i, _| {
+            let next = larger(T::zero(), force[i] + stiffness[i] * moved[i]);
+            if next < self.price[i] { next } else { self.price[i] }
+        });
     }
 
     fn is_relaxed(&self) -> bool {
@@ -280,16 +429,17 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: usize
         for (index, stage) in self.stages.iter_mut().enumerate() {
             let t = self.problem.time_after(index);
             let values = self.problem.bounds(stage, t, &stage.place, &stage.input)?;
-            bounds += stage.limits.take_values(values, |i| S::BOUNDS[i])?;
+            let prices = self.problem.bound_prices(stage, t);
+            bounds += stage.limits.take_values(values, prices, |i| S::BOUNDS[i])?;
         }
         self.bounds = T::from_f64(bounds as f64);
         if bounds == 0 {
             return Ok(Some(zero));
         }
-        let pairs = self.stages.iter().flat_map(|stage| stage.limits.multipliers.iter().zip(stage.limits.slack.iter()));
-        let pairs = pairs.filter(|(_, s)| !is_none(**s));
-        if pairs.clone().all(|(z, s)| *z > zero && *s > zero && z.is_finite()) {
-            return Ok(Some(pairs.fold(zero, |sum, (z, s)| sum + *z * *s) / self.bounds));
+        let sum = self.stages.iter().fold(zero, |sum, stage| sum + stage.limits.complementarity());
+        // none is left where all kinks are reached
+        if sum > zero && self.stages.iter().all(|stage| stage.limits.is_warm()) {
+            return Ok(Some(sum / self.bounds));
         }
         let sizes = self.sizes();
         self.relax(|i| Some(if sizes[i] > zero { sizes[i] * T::from_ratio(PART.0, PART.1) } else { T::one() }));
@@ -387,6 +537,24 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: usize
         Ok(())
     }
 
+    /// The price that soft bounds come to by a correction without barriers.
+    #[cold]
+    pub fn price_of_kinks(&mut self, change: &SVector<T, D>) -> Result<T, Error> {
+        let mut sum = T::zero();
+        self.follow_correction(change, |stage, moved| sum += stage.limits.price_of_motion(&moved))?;
+        Ok(sum)
+    }
+
+    /// Whether any bound is soft.
+    pub fn has_kinks(&self) -> bool {
+        self.stages.iter().any(|stage| stage.limits.price.iter().any(|price| price.is_finite()))
+    }
+
+    /// Σ w max(a, 0) of all stages.
+    pub fn price_of_violations(&self) -> T {
+        self.stages.iter().fold(T::zero(), |sum, stage| sum + stage.limits.price_of_violations())
+    }
+
     /// Whether bounds are relaxed.
     pub fn is_relaxed(&self) -> bool {
         self.stages.iter().any(|stage| stage.limits.is_relaxed())
@@ -409,7 +577,7 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: usize
             !(0..C).all(|i| {
                 let by_place = (0..D).fold(zero, |sum, j| sum + bounds.by_place[(i, j)].abs() * place);
                 let terms = (0..U).fold(by_place, |sum, j| sum + (bounds.by_input[(i, j)] * u[j]).abs());
-                bounds.values[i] <= larger(zero, round_off * terms)
+                stage.limits.price[i].is_finite() || bounds.values[i] <= larger(zero, round_off * terms)
             })
         })
     }
@@ -422,7 +590,11 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: usize
         self.stages.iter().enumerate().fold(T::zero(), |largest, (index, stage)| {
             let t = self.problem.time_after(index);
             let values = self.problem.bounds(stage, t, &stage.place, &stage.input);
-            values.map_or(largest, |values| values.iter().fold(largest, |largest, value| larger(largest, *value)))
+            let hard = |values: SVector<T, C>| {
+                let hard = (0..C).filter(|i| !stage.limits.price[*i].is_finite());
+                hard.fold(largest, |largest, i| larger(largest, values[i]))
+            };
+            values.map_or(largest, hard)
         })
     }
 

@@ -360,6 +360,12 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: usize
         }
         gaps += size(self.problem.end(&last, zero, &self.pushing).motion);
         price += system.endpoint(constants, problem.end_time(), &last);
-        Ok(Proposal { last, gaps: gaps + slacks.relaxed, price, logarithms, allowed: slacks.allowed })
+        Ok(Proposal {
+            last,
+            gaps: gaps + slacks.relaxed,
+            price: price + slacks.soft,
+            logarithms,
+            allowed: slacks.allowed,
+        })
     }
 }

@@ -181,6 +181,7 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: usize
         now.is_open = false;
         now.settings.weight = now.stiffer;
         if self.bounds > T::zero() {
+            let price = if self.has_kinks() { larger(price, self.price_of_kinks(change)?) } else { price };
             self.size(change)?;
             // If neither plans nor the inputs that satisfy bounds have a price, any is as good.
             let is_free = price <= T::zero() && self.is_violated();
@@ -262,7 +263,7 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: usize
             stages: &[],
             ended,
             step_size: self.problem.h,
-            price: summary.price,
+            price: summary.price + self.price_of_violations(),
             residual: summary.residual,
             gap: self.end().distance,
             violation: self.violation(),

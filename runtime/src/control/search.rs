@@ -226,7 +226,7 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: usize
         let end = problem.end(&x, T::zero(), &self.pushing);
         let penalties = descent.penalty(change, &end) - descent.penalty(change, descent.end);
         let barriers = barrier * slacks.logarithms + fraction * slacks.excess_price;
-        let difference = price - descent.summary.price - barriers + penalties;
+        let difference = price - descent.summary.price - barriers + penalties + slacks.dearer;
         Ok(Rolled { last: x, distance: end.distance, difference, allowed: slacks.allowed })
     }
 }

@@ -209,6 +209,11 @@ impl<S: Controlled<D, U, C, Scalar: Real>, const D: usize, const U: usize, const
         self.constants.at(&stage.reference, |constants| self.system.bounds(constants, t, x, u))
     }
 
+    /// w with the reference of a stage, at the time t.
+    pub fn bound_prices(&self, stage: &Stage<S, D, U, C>, t: S::Scalar) -> SVector<S::Scalar, C> {
+        self.constants.at(&stage.reference, |constants| self.system.bound_prices(constants, t))
+    }
+
     /// The step of a stage with its derivatives, at the time t.
     #[inline]
     pub fn expand(
@@ -348,6 +353,9 @@ impl<'a, T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: u
                 }
             }
             summary.count(index, step.price, &policy);
+            if self.bounds > zero {
+                summary.magnitude += stage.limits.price_of_violations();
+            }
             if settings.is_last {
                 // the costate of the plan as it is, without the correction that is round-off
                 before.costate = policy.gradient.0;

@@ -4,6 +4,7 @@ mod bounds;
 mod closed_forms;
 mod derivatives;
 mod extremes;
+mod kinks;
 mod plans;
 mod references;
 mod right_hand_sides;

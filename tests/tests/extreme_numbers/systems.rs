@@ -70,12 +70,13 @@ macro_rules! modules {
 
 clebsch_tests::every_scene!(modules);
 
-/// Systems that are not stepped here: `follower`, `regulator`, `telescope` and `unicycle` are planned, in the tests of control, and
+/// Systems that are not stepped here: `follower`, `frugal_car`, `regulator`, `telescope` and `unicycle` are planned, in the tests of control, and
 /// `annotated_body` has private fields. `cosserat_rod`, `harmonic_map`, `sine_gordon` and `wave_map` are fields, whose tests step them on grids.
-const OTHERS: [&str; 10] = [
+const OTHERS: [&str; 11] = [
     "annotated_body",
     "cosserat_rod",
     "follower",
+    "frugal_car",
     "harmonic_map",
     "rate_limited_body",
     "regulator",

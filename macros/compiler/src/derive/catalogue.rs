@@ -258,6 +258,8 @@ catalogue! {
     Price = listed("price", Hot);
     /// The bounds of inputs.
     Bounds = listed("bounds", Hot);
+    /// The prices of soft bounds.
+    BoundPrices = listed("prices of soft bounds", Hot);
     /// The price of the end.
     PriceOfEnd = listed("price of the end", Hot);
     /// The equations of the end.

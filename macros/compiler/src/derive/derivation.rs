@@ -146,12 +146,19 @@ fn references(model: &System<'_>) -> String {
     told.collect()
 }
 
-/// `one bound`, `3 bounds`; `None` where nothing is bounded.
+/// `one bound`, `3 bounds, and a soft one where that pays`; `None` where nothing is bounded.
 fn bounds(model: &System<'_>) -> Option<String> {
-    match model.control.as_ref().map_or(0, |control| control.bounds.len()) {
+    let all = model.control.as_ref().map_or(&[][..], |control| &control.bounds);
+    let soft = all.iter().filter(|bound| bound.price.is_some()).count();
+    let counted = |count: usize, of: &str| match count {
         0 => None,
-        1 => Some("one bound".to_string()),
-        count => Some(format!("{count} bounds")),
+        1 => Some(format!("one {of}bound")),
+        count => Some(format!("{count} {of}bounds")),
+    };
+    match (counted(all.len() - soft, ""), counted(soft, "soft ")) {
+        (Some(hard), Some(soft)) => Some(format!("{hard}, and {soft} where that pays")),
+        (None, Some(soft)) => Some(format!("{soft} where that pays")),
+        (hard, None) => hard,
     }
 }
 

@@ -92,9 +92,14 @@ impl<'g> SystemFormulas<'g> {
             let velocity = tuple(control.velocities.iter().map(Expr::to_string));
             let read = if steering.on_edge.price { format!("{velocity}, {u}") } else { u.clone() };
             let read = referring(read, control.price, &self.model.reference.1);
-            let price = Formula::new(Id::Price, format!("ℓ(h, {read})"), [control.price]);
+            let prices: Vec<_> = control.bounds.iter().filter_map(|bound| bound.price).into_list();
+            let (symbol, kinks) = match prices.len() {
+                0 => ("0 ≥ a".to_string(), ""),
+                count => (format!("0 ≥ a, the last {count} soft"), " − Σ w max(a, 0)"),
+            };
+            let price = Formula::new(Id::Price, format!("ℓ(h, {read}){kinks}"), [control.price]);
             let bounds: Vec<_> = control.bounds.each(|bound| bound.value);
-            let bounds = Formula::new(Id::Bounds, "0 ≥ a", bounds);
+            let bounds = Formula::new(Id::Bounds, symbol, bounds);
             let values: Vec<_> = steering.bounds.each(|bound| bound.value);
             rows.push(match steering.on_edge.price {
                 true => price.computed_as(self.at_increments(&[steering.price.value])),
@@ -104,6 +109,9 @@ impl<'g> SystemFormulas<'g> {
                 true => bounds.computed_as(self.at_increments(&values)),
                 false => bounds,
             });
+            if !prices.is_empty() {
+                rows.push(Formula::new(Id::BoundPrices, "w", prices));
+            }
         }
         if let (Some(price), Some(endpoint)) = (&self.model.endpoint, &self.endpoint) {
             let read = match price.velocities.as_slice() {

@@ -8,7 +8,7 @@ use super::SystemEmitter;
 use super::block::{Block, leaf, matrix};
 use super::function::{Function, Words};
 use super::functions::{
-    BOUNDED, BOUNDED_ON_EDGE, ENDED, EXPANDED, EXPANDED_ON_EDGE, FORCED, PRICED, PRICED_ON_EDGE, STEERED,
+    BOUNDED, BOUNDED_ON_EDGE, ENDED, EXPANDED, EXPANDED_ON_EDGE, FORCED, PRICED, PRICED_ON_EDGE, SOFT, STEERED,
 };
 use super::scope::{nested_type, size};
 use crate::derive::Id;
@@ -102,6 +102,7 @@ impl SystemEmitter<'_, '_> {
             let tables = [
                 if self.on_edge.price { PRICED_ON_EDGE } else { PRICED },
                 if self.on_edge.bounds { BOUNDED_ON_EDGE } else { BOUNDED },
+                SOFT,
                 ENDED,
                 if is_steered { STEERED } else { FORCED },
                 match self.on_edge.price {

@@ -628,6 +628,14 @@ functions! {
         }
     }
 
+    /// `Controlled`: the prices of soft bounds.
+    SOFT(false) {
+        /// The prices of soft bounds.
+        fn bound_prices(&self, constants: &Self::Constants, t: T) -> Bounds { Id::BoundPrices } = {
+            let h = StepSize; Locals runtime::bound_prices(&Value0)
+        }
+    }
+
     /// `Controlled`: the price of the end.
     ENDED(false) {
         /// The price of the end.

@@ -104,7 +104,7 @@ fn is_stacked(id: Id) -> bool {
     );
     let is_momentum = matches!(id, MomentumMap | Coadjoint | Legendre | LegendreNext | MomentumComponents | Inertia);
     let is_of_scheme = matches!(id, SynchronizedMomentum | Gyroscopic | SplittingKick | Guess);
-    is_of_step || is_momentum || is_of_scheme || matches!(id, ConservedMomenta | Bounds)
+    is_of_step || is_momentum || is_of_scheme || matches!(id, ConservedMomenta | Bounds | BoundPrices)
 }
 
 /// Several expressions, one output each, nothing taken out.

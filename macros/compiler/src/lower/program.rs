@@ -125,6 +125,7 @@ const OF_CHOICE: Names<Id> = &[
     ("price_of_time", Id::PriceOfTime),
     ("bounds", Id::Bounds),
     ("bounds_expanded", Id::BoundsExpanded),
+    ("bound_prices", Id::BoundPrices),
     ("endpoint", Id::PriceOfEnd),
     ("endpoint_expanded", Id::PriceOfEndExpanded),
     ("target_expanded", Id::TargetExpanded),

@@ -53,6 +53,7 @@ impl<'g> Maker<'_, 'g> {
         }
         made(self, Id::PriceOfTime);
         self.rows([Id::Bounds]);
+        self.known_rows([Id::BoundPrices]);
         made(self, Id::BoundsExpanded);
     }
 

@@ -1,10 +1,10 @@
 //! The choice of inputs: the closures `controls` and `dynamics`, the price, the bounds and the price of the end.
 
-use clebsch_symbolic::{Expr, IntoList};
+use clebsch_symbolic::{Elements, Expr, IntoList};
 use syn::{BinOp, Expr as Syntax};
 
 use super::closures::{chosen_discretization, optional, scalar, written};
-use super::elaborate::Elaborator;
+use super::elaborate::{Elaborator, Kink};
 use super::features::{self, Feature, Found};
 use super::groups::without_cayley_map;
 use super::scope::Scope;
@@ -110,19 +110,53 @@ impl<'g> ActedSystem<'_, '_, 'g> {
         }
         let matched = self.arguments.matched(&control.price, if is_steered { PRICE } else { EFFORT });
         let priced = self.with_velocity(&matched, Some(input)).and_then(|(scope, velocities)| {
-            let price = scalar(self.context, &control.price, scope, "a price is a scalar")?;
-            Some((price, velocities))
+            self.context.kinks = Some(Vec::new());
+            let price = scalar(self.context, &control.price, scope, "a price is a scalar");
+            let kinks = self.context.kinks.take().unwrap_or_default();
+            let (price, kinks) = self.without_kinks(price?, kinks, input, &velocities)?;
+            Some((price, velocities, kinks))
         });
         let bounded = optional(control.bounds.as_ref(), |closure| self.bounds(closure, input, is_steered));
-        let ((price, velocities), bounded) = (priced?, bounded?);
+        let ((price, velocities, kinks), bounded) = (priced?, bounded?);
         let (mut bounds, of_bounds) = bounded.unwrap_or_default();
         // price and bounds speak of one velocity, each under its own name
         if !velocities.is_empty() {
             let names: Vec<_> = of_bounds.iter().copied().zip(velocities.iter().copied()).into_list();
             bounds.iter_mut().for_each(|bound| bound.value = bound.value.substitute(&names));
         }
+        bounds.extend(kinks);
         let velocities = if velocities.is_empty() { of_bounds } else { velocities };
         Some(InputChoice { price, velocities, bounds, written: written(&control.price) })
+    }
+
+    /// A price p = p₀ + Σ w max(a, 0) as p₀, and as bounds a ≤ 0 that may be violated at the price w.
+    fn without_kinks(
+        &self,
+        price: Expr<'g>,
+        kinks: Vec<Kink<'g>>,
+        input: &Space<'g>,
+        velocities: &[Expr<'g>],
+    ) -> Option<(Expr<'g>, Vec<Bound<'g>>)> {
+        let (graph, diagnostics) = (self.context.graph, self.context.diagnostics);
+        let symbols = kinks.each(|kink| kink.symbol);
+        let leaves = self.space.leaves.iter().chain(&input.leaves).map(|leaf| leaf.symbol);
+        let moving = leaves.chain(velocities.iter().copied()).chain(symbols.iter().copied()).into_list();
+        let moves = |value: Expr<'g>| moving.iter().any(|symbol| value.depends_on(*symbol));
+        let soft = |Kink { symbol, value, written }: Kink<'g>| {
+            let weight = price.differential(&[(symbol, graph.integer(1))]);
+            if symbols.iter().any(|other| value.depends_on(*other)) {
+                refuse!(diagnostics, written.place, "`{}` has another `abs` or `max` in it", written.text;
+                    help "write a sum of them");
+            }
+            if moves(weight) {
+                refuse!(diagnostics, written.place, "the factor of `{}` depends on the place, the input or the velocity", written.text;
+                    help "write a sum of such terms, each times fields and `h`, as in `h * self.price * {}`", written.text);
+            }
+            Some(Bound { value, price: Some(weight), text: written.text })
+        };
+        let bounds = kinks.into_iter().map(soft).collect::<Option<Vec<_>>>()?;
+        let zeros = symbols.each(|symbol| (*symbol, graph.integer(0)));
+        Some((price.substitute(&zeros), bounds))
     }
 
     /// The price of the end, with the velocity there, one for each factor, where it takes one; `None` if it has an
@@ -194,7 +228,7 @@ impl<'g> ActedSystem<'_, '_, 'g> {
             if let Some(error) = without_absolute_value((lower, upper), "bounds") {
                 return diagnostics.refuse(error);
             }
-            Some(Bound { value: side(lower)? - side(upper)?, text: spell(inequality) })
+            Some(Bound { value: side(lower)? - side(upper)?, price: None, text: spell(inequality) })
         };
         let bounds = list.elems.iter().map(bound).collect::<Option<Vec<_>>>()?;
         Some((bounds, velocities))

@@ -135,7 +135,10 @@ impl System<'_> {
         }
         if let Some(control) = &self.control {
             writeln!(f, "  price      {}", control.price)?;
-            control.bounds.iter().try_for_each(|bound| writeln!(f, "  bound      {} <= 0", bound.value))?;
+            control.bounds.iter().try_for_each(|bound| match bound.price {
+                None => writeln!(f, "  bound      {} <= 0", bound.value),
+                Some(price) => writeln!(f, "  soft bound {} <= 0, else {price} times it", bound.value),
+            })?;
         }
         self.endpoint.iter().try_for_each(|price| writeln!(f, "  endpoint   {}", price.value))?;
         let conditions = self.target.iter().flat_map(|target| &target.conditions);

@@ -451,10 +451,12 @@ pub struct Condition<'g> {
     pub text: String,
 }
 
-/// a(t, q, ξ, u) ≤ 0.
+/// a(t, q, ξ, u) ≤ 0. The soft ones, of a price with max(a, 0), come last.
 pub struct Bound<'g> {
     /// a.
     pub value: Expr<'g>,
+    /// w(t, h), the price of one unit of a where it may be violated.
+    pub price: Option<Expr<'g>>,
     /// As it was written, `u.x <= 1`.
     pub text: String,
 }

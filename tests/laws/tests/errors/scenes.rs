@@ -10,6 +10,7 @@ use clebsch_tests::fixtures::damped_body::DampedBody;
 use clebsch_tests::fixtures::exact_body::ExactBody;
 use clebsch_tests::fixtures::follower::Follower;
 use clebsch_tests::fixtures::free_rigid_body::FreeRigidBody;
+use clebsch_tests::fixtures::frugal_car::FrugalCar;
 use clebsch_tests::fixtures::generic_body::GenericBody;
 use clebsch_tests::fixtures::heavy_top::HeavyTop;
 use clebsch_tests::fixtures::promised_top::PromisedTop;
@@ -459,6 +460,9 @@ fn plans() -> Vec<Scene> {
     let follower = Follower { price: 1.0, clearance: 0.1, miss_price: 1.0 }.control(0.1).expect("a follower");
     let mut followed = [follower.stage(&Matrix3::identity()); 5];
     follower.refer(&mut followed, |k, _| (Vector2::zeros(), Vector2::new(if k == 3 { f64::NAN } else { 1.0 }, 0.0)));
+    let frugal =
+        FrugalCar { turning: -1.0, off: 1.0, fine: 1.0, fast: 1.0, fastest: 2.0, miss_price: 1.0, goal: Vector2::x() };
+    let frugal = frugal.control(0.1).expect("a car");
     let steered = |top: f64| {
         let body = SteeredBody { inertia: Matrix3::identity(), damping: 0.1, top };
         let control = body.control(0.1).expect("a body");
@@ -485,6 +489,10 @@ fn plans() -> Vec<Scene> {
         ),
         scene(steered(-0.1), &["`torque.x <= self.top` is violated by", "relax it, or guess inputs that keep it"]),
         scene(steered(0.1), &["were left after", "give more steps or wider bounds"]),
+        scene(
+            refused(frugal.solve(&Matrix3::identity(), Target::Free, &mut [frugal.stage(&Matrix3::identity()); 3])),
+            &["the factor of `u.x.abs()` in the price is -2.000e-1", "it has to be positive, or 0"],
+        ),
         scene(
             refused(regulator.solve(&start, Target::Conditions, &mut one)),
             &["the declaration has no `target`", "write `target = |q| [a == b]`", "or pass `Target::Place`"],

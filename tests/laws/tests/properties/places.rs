@@ -258,6 +258,13 @@ proptest! {
     }
 
     #[test]
+    fn the_last_bounds_are_soft(prices in vector::<2>(1.0)) {
+        let all = private::bound_prices::<f64, 2, 5>(&prices);
+        prop_assert!(all.iter().take(3).all(|price| *price == f64::INFINITY));
+        prop_assert_eq!(all.fixed_rows::<2>(3), prices);
+    }
+
+    #[test]
     fn places_are_checked(q in unit(), r in rotation(1.0), defect in 1e-6_f64..1.0) {
         prop_assert_eq!(private::check_on_orbit::<f64, _>(&q, 1e-12), Ok(()));
         let is_refused = matches!(private::check_on_orbit::<f64, _>(&q, defect), Err(Error::OffOrbit { defect: found, .. }) if found == defect);

@@ -6,12 +6,13 @@ use clebsch::{
     __private as private, Control, Controlled, Ended, Error, Limits, Optimum, Referenced, Referring, Space, Target,
 };
 use clebsch_tests::fixtures::follower::Follower;
+use clebsch_tests::fixtures::frugal_car::FrugalCar;
 use clebsch_tests::fixtures::regulator::Regulator;
 use clebsch_tests::fixtures::steered_body::SteeredBody;
 use clebsch_tests::fixtures::telescope::Telescope;
 use clebsch_tests::fixtures::unicycle::Unicycle;
 use clebsch_tests::oracle::near::assert_near;
-use nalgebra::{Matrix2, Matrix3, Rotation3, SMatrix, Vector1, Vector2, Vector3, Vector6};
+use nalgebra::{Matrix2, Matrix3, Rotation3, SMatrix, Vector1, Vector2, Vector3, Vector4, Vector6};
 use proptest::prelude::*;
 
 const H: f64 = 0.1;
@@ -153,6 +154,33 @@ proptest! {
         let by_time = system.price_of_time(&constants, t, 3.0, &x, &u, &costate)?;
         let expected = price(0.0) / H + costate.dot(&Vector3::new(u.x, u.y, 0.0));
         prop_assert!((by_time - expected).abs() < 1e-12, "{by_time} for {expected}");
+    }
+
+    /// The price of a plan is that of its terms, |u|, |y| and max(v, v₁), and multipliers stay between 0 and the prices.
+    #[test]
+    fn frugal_cars_pay_for_kinks(
+        (turning, off, fine, fast) in (0.0_f64..1.0, 0.0_f64..2.0, 0.0_f64..2.0, 0.1_f64..1.0), (goal, aside) in (vector::<2>(1.0), -1.0_f64..1.0),
+    ) {
+        let goal = goal + Vector2::new(1.0, 0.0);
+        let car = FrugalCar { turning, off, fine, fast, fastest: 1.5, miss_price: 5.0, goal };
+        let control = car.clone().control(H)?;
+        let start = moved(&Matrix3::identity(), &Vector3::new(0.0, 0.0, aside));
+        let mut plan = [control.stage(&start); STEPS];
+        let optimum = control.solve(&start, Target::Free, &mut plan)?;
+        let constants = car.prepare(H)?;
+        let mut sum = 0.0;
+        for (k, stage) in optimum.stages().iter().enumerate() {
+            let (u, y, t) = (stage.input(), stage.place()[(1, 2)], H * k as f64);
+            sum += H * (u.norm_squared() / 2.0 + turning * u.x.abs() + off * y.abs() + fine * (1.0 + t) * u.y.max(fast));
+            let prices = car.bound_prices(&constants, t);
+            let expected = Vector4::new(f64::INFINITY, 2.0 * turning * H, 2.0 * off * H, fine * (1.0 + t) * H);
+            prop_assert!(prices[0] == f64::INFINITY && prices.iter().zip(expected.iter()).skip(1).all(|(a, b)| (a - b).abs() < NEAR));
+            prop_assert!(stage.multipliers().iter().zip(prices.iter()).all(|(z, w)| *z >= 0.0 && z <= w));
+            prop_assert!(u.y <= 1.5 + 1e-9);
+        }
+        let end = optimum.end().fixed_view::<2, 1>(0, 2) - goal;
+        sum += 5.0 * end.norm_squared() / 2.0;
+        prop_assert!((optimum.price() - sum).abs() < 1e-12 * (1.0 + sum), "{} {sum}", optimum.price());
     }
 
     /// A telescope ends on its star at a slow rate, wherever both are. Conditions are R b = s and |ω|² ≤ r² (1 + t).

@@ -190,6 +190,7 @@ pub const PROPERTIES: &[(&str, &[Property])] = &[
         ("places_are_pairs",                             &["pair", "parted", "arrival_of_state", "endpoint", "no_endpoint"]),
         ("bounds_do_not_depend_on_momenta",              &["bounds"]),
         ("conditions_are_differences_of_their_sides",    &["conditions", "weights", "TargetExpansion::none"]),
+        ("the_last_bounds_are_soft",                     &["bound_prices"]),
         ("places_are_checked",                           &["check_on_orbit", "check_reached"]),
     ]),
     ("tests/laws/tests/properties/plans.rs", &[
@@ -198,6 +199,7 @@ pub const PROPERTIES: &[(&str, &[Property])] = &[
             "Controlled::bounds_expanded", "Controlled::endpoint", "Controlled::endpoint_expanded", "Controlled::arrival", "Controlled::displacement", "Control::follow",
         ]),
         ("telescopes_end_on_their_stars", &["Controlled::target_expanded"]),
+        ("frugal_cars_pay_for_kinks", &["Controlled::bound_prices"]),
         ("regulators_are_those_of_riccati", &[
             "Control::solve", "Control::feedback", "Control::stage", "Control::step_size", "Control::system", "Stage::place", "Stage::input", "Stage::costate", "Stage::gain", "Optimum::price", "Optimum::step_size",
             "Optimum::iterations", "Optimum::residual", "Optimum::gap", "Optimum::negative", "Optimum::is_minimum", "Optimum::end", "Optimum::final_costate", "Optimum::stages",

@@ -28,7 +28,7 @@ pub(crate) fn functions_as_markdown() -> String {
 {}
 ## Refused
 
-These have no derivative somewhere, so no closure can use them.
+These have no derivative somewhere, so no closure can use them. Only the price of inputs takes `abs` and `max`, which are soft bounds there.
 
 {}",
         table(["method", "of", "gives"], methods),

@@ -1,13 +1,17 @@
 //! Method calls: the table looked up, shapes checked, the expression made.
 
-use clebsch_symbolic::{Expr, Function, Rational, Role, Shape, integer};
+use clebsch_symbolic::{Expr, Function, Property, Rational, Role, Shape, integer};
 use syn::{Expr as Syntax, ExprMethodCall, Ident};
 
 use super::access::{is_self, strip};
 use super::tables::{Binary, ITERATORS, METHODS, NEEDLESS, REFUSED, Rule, SYNONYMS, Unary};
-use super::{Elaborator, Growth, Value, open_identity};
-use crate::diagnostic::{Diagnostic, LATER, error, meant, refuse};
+use super::{Elaborator, Growth, Kink, Value, open_identity};
+use crate::diagnostic::{Diagnostic, LATER, Location, error, meant, refuse};
+use crate::model::Written;
 use crate::parse::{listed, parenthesized, shortened, spell};
+
+/// The methods with a kink that a price of inputs takes, with the number of their arguments.
+const KINKS: [(&str, usize); 2] = [("abs", 0), ("max", 1)];
 
 /// The logarithm of a group element, by the names that libraries give it.
 const LOGARITHMS: [&str; 6] = ["ln", "log", "logm", "log_map", "logarithm", "scaled_axis"];
@@ -32,6 +36,9 @@ impl<'g> Elaborator<'_, '_, 'g> {
         if let Some(Value::Quaternion(q)) = receiver {
             return self.quaternion_method(call, q);
         }
+        if let Some(sides) = KINKS.iter().find(|(kink, _)| *kink == name && self.context.kinks.is_some()) {
+            return self.kink(call, receiver?, *sides);
+        }
         let Some(&(_, arity, rule, _)) = METHODS.iter().find(|(method, ..)| *method == name) else {
             return self.unknown_method(call, &name, receiver);
         };
@@ -48,6 +55,36 @@ impl<'g> Elaborator<'_, '_, 'g> {
                 self.plain(rule, call, a)
             }
         }
+    }
+
+    /// |a| = 2 max(a, 0) − a, and max(a, b) = b + max(a − b, 0).
+    fn kink(&mut self, call: &ExprMethodCall, receiver: Value<'g>, (name, arity): (&str, usize)) -> Option<Value<'g>> {
+        if call.args.len() != arity {
+            return self.refuse(wrong_count(&call.method, ".", name, arity, call.args.len()));
+        }
+        let a = self.as_matrix(&call.receiver, receiver)?;
+        let b = match call.args.first() {
+            Some(other) => {
+                let value = self.elaborate(other)?;
+                Some(self.as_matrix(other, value)?)
+            }
+            None => None,
+        };
+        if !a.shape().is_scalar() || b.is_some_and(|b| !b.shape().is_scalar()) {
+            refuse!(self, &call.method, "`{name}` is of scalars"; help "take it of each component, as in `{}.x.{name}({})`",
+                parenthesized(&call.receiver), if arity == 0 { "" } else { "…" });
+        }
+        let written = Written { place: Location::from(call), text: shortened(&Syntax::MethodCall(call.clone())) };
+        let value = b.map_or(a, |b| a - b);
+        let graph = self.context.graph;
+        let kinks = self.context.kinks.as_mut()?;
+        let role = Role::Kink(kinks.len());
+        let symbol = graph.symbol(&format!("s{}", kinks.len()), Shape::scalar(), role, Property::General);
+        kinks.push(Kink { symbol, value, written });
+        Some(Value::Matrix(match b {
+            Some(b) => b + symbol,
+            None => 2 * symbol - a,
+        }))
     }
 
     /// The error for the logarithm or the exponential of a matrix or of a quaternion.

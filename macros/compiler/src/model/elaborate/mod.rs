@@ -41,6 +41,15 @@ const WEIGHT: u64 = 1 << 14;
 /// Functions of functions, products of sums of products.
 const NESTING: u32 = 512;
 
+/// A term max(a, 0) of a price.
+pub(super) struct Kink<'g> {
+    /// The symbol that stands for it.
+    pub symbol: Expr<'g>,
+    /// a.
+    pub value: Expr<'g>,
+    pub written: Written,
+}
+
 /// The data that the elaboration of all closures shares.
 pub(super) struct Context<'c, 'g> {
     pub graph: &'g Graph,
@@ -50,6 +59,8 @@ pub(super) struct Context<'c, 'g> {
     pub constants: Vec<Constant<'g>>,
     /// The sites of a power; `None` where the declaration is none.
     pub power: Option<Sites<'g>>,
+    /// The kinks of a price, where one is read.
+    pub kinks: Option<Vec<Kink<'g>>>,
     /// The squares in the potential, each with the number or vector that is squared.
     pub squares: Vec<(Written, Expr<'g>)>,
     pub diagnostics: &'c Diagnostics,
@@ -63,7 +74,7 @@ impl<'c, 'g> Context<'c, 'g> {
         power: Option<Sites<'g>>,
         diagnostics: &'c Diagnostics,
     ) -> Self {
-        Context { graph, fields, generics, constants: Vec::new(), power, squares: Vec::new(), diagnostics }
+        Context { graph, fields, generics, constants: Vec::new(), power, squares: Vec::new(), kinks: None, diagnostics }
     }
 
     /// The value of a closure with these names; `None` if it has an error, which was reported.
