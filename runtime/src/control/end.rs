@@ -23,6 +23,12 @@ pub(super) struct PlanEnd<T, const D: usize> {
     pub lack: SVector<T, D>,
     /// E: the lengths of δ, projected to those that the target fixes.
     pub slope: SMatrix<T, D, D>,
+    /// A basis of conditions that are independent, the columns S B, and its dual, S⁻¹ B. The columns of B are orthonormal, and S has the
+    /// reciprocal sizes of conditions. `None` where changes are the conditions.
+    ///
+    /// An equation that follows from others may have slopes that vanish by and by, as that of a unit vector along an axis. By itself it would
+    /// count as much as the others do.
+    pub basis: Option<[SMatrix<T, D, D>; 2]>,
     /// The smallest change that closes the gap, to first order.
     pub motion: SVector<T, D>,
     /// Half the gradient of the squared distance, reversed, and half its Hessian but for the bend of the space.
@@ -52,7 +58,14 @@ impl<S: Controlled<D, U, C, Scalar: Real>, const D: usize, const U: usize, const
         multipliers: &SVector<S::Scalar, D>,
     ) -> Option<TargetExpansion<S::Scalar, D>> {
         let is_declared = matches!(self.target, Target::Conditions);
-        is_declared.then(|| self.system.target_expanded(self.constants, self.end_time(), x, multipliers))
+        is_declared.then(|| {
+            let mut conditions = self.system.target_expanded(self.constants, self.end_time(), x, multipliers);
+            without_kinks(&mut conditions.slope);
+            if !conditions.curvature.all_finite() {
+                conditions.curvature = SMatrix::zeros();
+            }
+            conditions
+        })
     }
 
     /// The end of a plan where conditions are the target. An inequality counts as an equation where it pushes or is violated, and else as none.
@@ -73,7 +86,15 @@ impl<S: Controlled<D, U, C, Scalar: Real>, const D: usize, const U: usize, const
         let relative = (0..D).fold(zero, |most, i| larger(most, gap(i)));
         let square = lack.dot(&lack);
         let distance = square.sqrt();
-        let inverse = Equilibrated::of(&(slope * slope.transpose())).inverse();
+        let unit = |i: usize| if counts(i) && sizes[i] > zero { sizes[i].recip() } else { zero };
+        let metric = slope * slope.transpose();
+        let spectrum = Spectrum::of(&SMatrix::<_, D, D>::from_fn(|i, j| unit(i) * metric[(i, j)] * unit(j)));
+        let least = S::Scalar::from_f64(UNITS) * S::Scalar::EPSILON * spectrum.largest();
+        let column = |i: usize, k: usize| if spectrum.values[k] <= least { zero } else { spectrum.vectors[(i, k)] };
+        let basis = SMatrix::from_fn(|i, k| unit(i) * column(i, k));
+        let dual = SMatrix::from_fn(|i, k| if counts(i) { sizes[i] * column(i, k) } else { zero });
+        let inverse = spectrum.map(|value| if value <= least { zero } else { value.recip() });
+        let inverse = SMatrix::<_, D, D>::from_fn(|i, j| unit(i) * inverse[(i, j)] * unit(j));
         let motion = slope.tr_mul(&(inverse * lack));
         PlanEnd {
             pull: slope.tr_mul(&lack),
@@ -85,6 +106,7 @@ impl<S: Controlled<D, U, C, Scalar: Real>, const D: usize, const U: usize, const
             distance,
             scale: if relative > zero { distance / relative } else { one },
             slope,
+            basis: Some([basis, dual]),
         }
     }
 
@@ -121,12 +143,22 @@ impl<S: Controlled<D, U, C, Scalar: Real>, const D: usize, const U: usize, const
         PlanEnd {
             lack,
             motion: lack.component_div(lengths),
+            basis: None,
             slope: SMatrix::from_fn(|i, j| projector[(i, j)] * lengths[j]),
             pull: SVector::from_fn(|i, _| residual[i] * is_asked(i)),
             metric: SMatrix::from_fn(|i, j| slope[(i, j)] * is_asked(i) * is_asked(j)),
             squares: [chord, momentum],
             distance: (chord + momentum).sqrt(),
             scale: larger(larger(goal.max_abs(), x.max_abs()), largest),
+        }
+    }
+}
+
+/// Leaves out slopes that are no numbers, as that of |x| where x is 0. The next correction leads away from there.
+pub(super) fn without_kinks<T: Real, const M: usize, const N: usize>(slope: &mut SMatrix<T, M, N>) {
+    for i in 0..M {
+        if !slope.row(i).iter().all(|entry| entry.is_finite()) {
+            slope.row_mut(i).fill(T::zero());
         }
     }
 }
@@ -139,6 +171,8 @@ fn round_off<T: Real>() -> T {
 impl<T: Real, const D: usize> TargetExpansion<T, D> {
     /// The sizes of terms, for places as large as this.
     fn sizes_for(&self, largest: T) -> SVector<T, D> {
+        // of a place at the origin the unit is that of its entries
+        let largest = if largest > T::zero() { largest } else { T::one() };
         SVector::from_fn(|i, _| self.slope.row(i).iter().fold(self.sizes[i], |sum, slope| sum + slope.abs() * largest))
     }
 }
@@ -189,7 +223,7 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: usize
             return false;
         }
         for _ in 0..D {
-            let change = Equilibrated::of(&summary.gramian).inverse() * summary.lack;
+            let change = end.gramian(&summary.gramian).inverse() * summary.lack;
             let (mut least, mut pulls) = (zero, D);
             for i in 0..D {
                 let next = settings.multipliers[i] + change[i];
@@ -214,6 +248,12 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: usize
 }
 
 impl<T: Real, const D: usize> PlanEnd<T, D> {
+    /// Γ, or another matrix of conditions, ready to be inverted.
+    pub fn gramian(&self, gramian: &SMatrix<T, D, D>) -> Gramian<T, D> {
+        let inner = self.basis.map_or(*gramian, |[basis, _]| basis.tr_mul(&(gramian * basis)));
+        Gramian { inner: Equilibrated::of(&inner), basis: self.basis }
+    }
+
     /// Whether the gap is round-off.
     pub fn is_closed(&self) -> bool {
         self.distance <= round_off::<T>() * self.scale
@@ -222,6 +262,37 @@ impl<T: Real, const D: usize> PlanEnd<T, D> {
     /// Whether the gap is none to a person: below √ε.
     pub fn is_reached(&self) -> bool {
         is_reached(self.distance, self.scale)
+    }
+}
+
+/// The Gramian Γ in a basis of conditions that are independent.
+pub(super) struct Gramian<T, const D: usize> {
+    inner: Equilibrated<T, D>,
+    basis: Option<[SMatrix<T, D, D>; 2]>,
+}
+
+impl<T: Real, const D: usize> Gramian<T, D> {
+    /// Γ⁺
+    pub fn inverse(&self) -> SMatrix<T, D, D> {
+        let inverse = self.inner.inverse();
+        self.basis.map_or(inverse, |[basis, _]| basis * inverse * basis.transpose())
+    }
+
+    /// R for the next sweep, from Γ with R.
+    pub fn weight(&self, gramian: &SMatrix<T, D, D>, weight: &SMatrix<T, D, D>) -> SMatrix<T, D, D> {
+        let Some([basis, dual]) = self.basis else { return self.inner.weight(gramian, weight) };
+        let [gramian, weight] = [basis.tr_mul(&(gramian * basis)), dual.tr_mul(&(weight * dual))];
+        basis * self.inner.weight(&gramian, &weight) * basis.transpose()
+    }
+
+    /// The number of directions that inputs reach, where all Q_uu are positive.
+    pub fn rank(&self) -> usize {
+        self.inner.rank()
+    }
+
+    /// The number of negative eigenvalues of the Hessian on plans that keep the target.
+    pub fn index(&self, negative: usize, rank: usize) -> usize {
+        self.inner.index(negative, rank)
     }
 }
 

@@ -1,10 +1,10 @@
 //! The data between two sweeps, and the decisions that it allows.
 
 use super::barrier;
-use super::end::PlanEnd;
+use super::end::{Gramian, PlanEnd};
 use super::sweep::{PlanSummary, Settings};
 use crate::Real;
-use crate::newton::{Curvature, Equilibrated, adapted};
+use crate::newton::{Curvature, adapted};
 use crate::space::larger;
 use nalgebra::{SMatrix, SVector};
 
@@ -127,7 +127,7 @@ impl<T: Real, const D: usize> Iterate<T, D> {
     /// curvature of steps where that leaves no minimum. If the price alone leaves none either, the exact model is tried,
     /// and then that without the curvature of any step. Near a solution the exact model comes first. Its correction
     /// counts where the model has a minimum among the plans that reach the target, far from a solution too.
-    pub fn judge<const U: usize>(&mut self, summary: &PlanSummary<T, D, U>, gramian: &Equilibrated<T, D>) -> Verdict {
+    pub fn judge<const U: usize>(&mut self, summary: &PlanSummary<T, D, U>, gramian: &Gramian<T, D>) -> Verdict {
         self.stiffer = gramian.weight(&summary.gramian, &self.settings.weight);
         self.is_straightened = summary.straightened > 0;
         self.is_mostly_straight = summary.is_mostly_straight;

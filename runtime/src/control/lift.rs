@@ -20,7 +20,7 @@ use super::barrier::{FIRST, Proposed};
 use super::iterate::Iterate;
 use super::search::Descent;
 use super::sweep::{Plan, Problem};
-use crate::newton::{Curvature, Equilibrated};
+use crate::newton::Curvature;
 use crate::space::{larger, plus};
 use crate::{Controlled, Error, Real};
 use nalgebra::{SMatrix, SVector};
@@ -182,7 +182,7 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: usize
                 now.rank = 0;
                 continue;
             }
-            let gramian = Equilibrated::of(&summary.gramian);
+            let gramian = end.gramian(&summary.gramian);
             let descent = Descent { summary: &summary, end: &end, settings: now.settings, inverse: gramian.inverse() };
             let (change, decrement) = descent.correction(one);
             if now.settings.curvature.is_mirrored {

@@ -6,7 +6,7 @@ use super::iterate::{Iterate, Verdict};
 use super::search::Descent;
 use super::sweep::{Plan, PlanSummary, Problem, Settings, Way};
 use super::{Ended, Optimum, Target, barrier};
-use crate::newton::{Curvature, Equilibrated};
+use crate::newton::Curvature;
 use crate::parameters::check_finite;
 use crate::space::larger;
 use crate::{Controlled, Error, Real, Space};
@@ -45,7 +45,7 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: usize
                 now.rank = 0;
                 continue;
             }
-            let gramian = Equilibrated::of(&summary.gramian);
+            let gramian = end.gramian(&summary.gramian);
             let descent = Descent { summary: &summary, end: &end, settings: now.settings, inverse: gramian.inverse() };
             let (change, decrement) = descent.correction(T::one());
             check_finite("the price of the plan", &summary.price)?;
@@ -165,7 +165,9 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: usize
         let mut multipliers = costate.map_or(SVector::zeros(), |costate| self.multipliers(&self.end(), &costate));
         self.push(&mut multipliers);
         let barrier = self.resume_or_relax()?;
-        let mut now = Iterate::new(multipliers, barrier, self.end().distance);
+        let distance = self.end().distance;
+        check_finite("the target at the end of the guessed plan", &distance)?;
+        let mut now = Iterate::new(multipliers, barrier, distance);
         now.is_open |= is_priced;
         Ok(now)
     }
@@ -206,7 +208,7 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: usize
         let covector: SVector<T, D> = costate - slope;
         if matches!(self.problem.target, Target::Conditions) {
             let metric = end.slope * end.slope.transpose();
-            return Equilibrated::of(&metric).inverse() * (end.slope * covector);
+            return end.gramian(&metric).inverse() * (end.slope * covector);
         }
         SMatrix::<T, D, D>::from_fn(|i, j| end.slope[(i, j)] / lengths[j]) * covector.component_div(lengths)
     }
@@ -259,15 +261,16 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: usize
         summary: &PlanSummary<T, D, U>,
         ended: Ended,
     ) -> Optimum<'p, S, D, U, C> {
+        let end = self.end();
         Optimum {
             stages: &[],
             ended,
             step_size: self.problem.h,
             price: summary.price + self.price_of_violations(),
             residual: summary.residual,
-            gap: self.end().distance,
+            gap: end.distance,
             violation: self.violation(),
-            negative: Equilibrated::of(&summary.gramian).index(summary.negative, now.rank),
+            negative: end.gramian(&summary.gramian).index(summary.negative, now.rank),
             iterations: self.sweeps,
             end: self.last,
             final_costate: summary.costate,

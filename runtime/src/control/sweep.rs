@@ -13,14 +13,15 @@
 //! * for the bounds Rao, Wright and Rawlings, *Application of interior-point methods to model predictive control* (1998).
 
 use super::attempt::Amplitudes;
-use super::end::PlanEnd;
+use super::end::{PlanEnd, without_kinks};
 use super::lift::Gap;
 use super::quadratic::{Bounded, Fall, Policy, Value};
 use super::{Referenced, Stage, Target};
-use crate::newton::{Curvature, Equilibrated, Spectrum};
+use crate::newton::{Curvature, Spectrum};
 use crate::space::larger;
 use crate::{BoundsExpansion, Controlled, Error, Expansion, Real, Scalar, Space};
 use nalgebra::{SMatrix, SVector};
+use num_traits::Zero;
 
 /// A problem of optimal control.
 pub(super) struct Problem<'a, S: Controlled<D, U, C, Scalar: Real>, const D: usize, const U: usize, const C: usize> {
@@ -235,7 +236,17 @@ impl<S: Controlled<D, U, C, Scalar: Real>, const D: usize, const U: usize, const
         multipliers: &SVector<S::Scalar, C>,
     ) -> Result<BoundsExpansion<S::Scalar, D, U, C>, Error> {
         let (x, u) = (&stage.place, &stage.input);
-        self.constants.at(&stage.reference, |constants| self.system.bounds_expanded(constants, t, x, u, multipliers))
+        let expanded = |constants: &S::Constants| self.system.bounds_expanded(constants, t, x, u, multipliers);
+        let mut bounds = self.constants.at(&stage.reference, expanded)?;
+        without_kinks(&mut bounds.by_place);
+        without_kinks(&mut bounds.by_input);
+        let curvatures = (&bounds.place_curvature, &bounds.mixed_curvature, &bounds.input_curvature);
+        if !(curvatures.0.all_finite() && curvatures.1.all_finite() && curvatures.2.all_finite()) {
+            bounds.place_curvature.fill(S::Scalar::zero());
+            bounds.mixed_curvature.fill(S::Scalar::zero());
+            bounds.input_curvature.fill(S::Scalar::zero());
+        }
+        Ok(bounds)
     }
 }
 
@@ -363,7 +374,7 @@ impl<'a, T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: u
             (stage.next_costate, stage.costate) = (value.costate, before.costate);
             (stage.shift, stage.gain, stage.by_multiplier) = (policy.shift, policy.gain, policy.by_multiplier);
             if settings.is_last {
-                let inverse = Equilibrated::of(&summary.gramian).inverse();
+                let inverse = end.gramian(&summary.gramian).inverse();
                 stage.gain += policy.by_multiplier * (inverse * before.by_multiplier.transpose());
             }
             value = before;

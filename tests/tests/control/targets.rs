@@ -227,6 +227,59 @@ impl From<&Telescope> for Resting {
     }
 }
 
+/// Two unit vectors are equal along one of their axes: its equation follows from the others, and its slope vanishes at the end.
+#[test]
+fn equations_that_follow_from_others_are_no_obstacle() -> Result<(), Error> {
+    let start = (Matrix3::identity(), Vector3::zeros());
+    let (inertia, boresight) = (Matrix3::from_diagonal(&Vector3::new(4.0, 3.0, 2.0)), Vector3::x());
+    for star in [Vector3::y(), Vector3::z(), -Vector3::y(), vector![1e-9, 1.0, 0.0]] {
+        let control = Resting { inertia, boresight }.control(0.5)?.with_end_reference(star)?;
+        let mut plan = [control.stage(&start); N];
+        let optimum = control.solve(&start, Target::Conditions, &mut plan)?;
+        assert!(optimum.gap() < 1e-12 && optimum.iterations() <= 20, "{star}: {optimum:?}");
+    }
+    Ok(())
+}
+
+/// |ω| has no slope at rest, where plans without a guess begin.
+#[test]
+fn a_norm_is_no_obstacle_at_rest() -> Result<(), Error> {
+    let start = (Matrix3::identity(), Vector3::zeros());
+    let control = Slowed { inertia: Matrix3::from_diagonal(&Vector3::new(4.0, 3.0, 2.0)), slow: 0.02 }.control(0.5)?;
+    let mut plan = [control.stage(&start); N];
+    let optimum = control.solve(&start, Target::Conditions, &mut plan)?;
+    assert!(optimum.is_minimum() && (optimum.end().1.z / 2.0 - 0.02).abs() < 1e-12, "{optimum:?}");
+    let undefined = Undefined.control(H)?;
+    let mut plan = [undefined.stage(&Vector2::zeros()); N];
+    let error = undefined.solve(&Vector2::zeros(), Target::Conditions, &mut plan).map(|found| found.price());
+    assert_eq!(error, Err(Error::NotFinite { name: "the target at the end of the guessed plan" }));
+    Ok(())
+}
+
+/// A body that looks to the left, with a small rate.
+#[derive(Clebsch, Clone, Debug)]
+#[clebsch(
+    action     = |F: SO<3>, R: SO<3>| R * F,
+    lagrangian = |omega| omega.dot(&(self.inertia * omega)) / 2,
+    force      = |torque: Vector3| torque,
+    effort     = |h, torque| h * torque.norm_squared() / 2,
+    target     = |R, omega| [R * Vector3::x() == Vector3::y(), omega.norm() <= self.slow],
+)]
+struct Slowed {
+    #[clebsch(symmetric)]
+    inertia: Matrix3<f64>,
+    slow: f64,
+}
+
+/// A condition that is no number at the guess.
+#[derive(Clebsch, Clone, Debug)]
+#[clebsch(
+    dynamics = |h, x: Vector2, u: Vector1| x + h * vector![x.y, u.x],
+    cost     = |h, u| h * u.norm_squared() / 2,
+    target   = |x| [(x.x - 1).sqrt() == 2],
+)]
+struct Undefined;
+
 /// An allowance for the rate at the end makes slews cheaper, until none is felt.
 #[test]
 fn a_slower_end_is_dearer() -> Result<(), Error> {
