@@ -38,8 +38,8 @@ pub(super) struct PlanEnd<T, const D: usize> {
     pub squares: [T; 2],
     /// The distance from the end to the target.
     pub distance: T,
-    /// The numbers that the distance is compared with: the largest entry of end, target and places before. Of several equations, it is the one
-    /// that is the most distant for its size that counts.
+    /// The numbers that the distance is compared with: the largest entry of end, target and places before. Of several conditions the most
+    /// distant one counts, in units of its size.
     pub scale: T,
 }
 
@@ -132,13 +132,17 @@ impl<S: Controlled<D, U, C, Scalar: Real>, const D: usize, const U: usize, const
         let projector = spectrum.map(|value| if value <= least { zero } else { one });
         let inverse = spectrum.map(|value| if value <= least { zero } else { value.recip() });
         let mut lack = inverse * SVector::<_, D>::from_fn(|i, _| residual[i] / lengths[i] * is_asked(i));
-        let square = |from: usize, to: usize| (from..to).fold(zero, |sum, i| sum + residual[i] * residual[i]);
-        let along = (0..S::MOTIONS.min(asked)).fold(zero, |sum, i| sum + lack[i] * residual[i] / lengths[i]);
+        let square = |from: usize, to: usize| {
+            let asked = residual.iter().take(to).skip(from);
+            asked.fold(zero, |sum, entry| sum + *entry * *entry)
+        };
+        let moving = lack.iter().zip(residual.iter()).zip(lengths.iter()).take(S::MOTIONS.min(asked));
+        let along = moving.fold(zero, |sum, ((lack, residual), length)| sum + *lack * *residual / *length);
         let momentum = square(S::MOTIONS, asked);
         let chord = larger(zero, goal.distance_squared(x) - square(S::MOTIONS, D));
         let across = larger(zero, chord - along).sqrt();
         if let Some(factor) = arc_per_chord(larger(zero, along).sqrt(), across) {
-            (0..S::MOTIONS).for_each(|i| lack[i] *= factor);
+            lack.iter_mut().take(S::MOTIONS).for_each(|lack| *lack *= factor);
         }
         PlanEnd {
             lack,

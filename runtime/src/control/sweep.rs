@@ -21,7 +21,6 @@ use crate::newton::{Curvature, Spectrum};
 use crate::space::larger;
 use crate::{BoundsExpansion, Controlled, Error, Expansion, Real, Scalar, Space};
 use nalgebra::{SMatrix, SVector};
-use num_traits::Zero;
 
 /// A problem of optimal control.
 pub(super) struct Problem<'a, S: Controlled<D, U, C, Scalar: Real>, const D: usize, const U: usize, const C: usize> {
@@ -240,13 +239,16 @@ impl<S: Controlled<D, U, C, Scalar: Real>, const D: usize, const U: usize, const
         let mut bounds = self.constants.at(&stage.reference, expanded)?;
         without_kinks(&mut bounds.by_place);
         without_kinks(&mut bounds.by_input);
-        let curvatures = (&bounds.place_curvature, &bounds.mixed_curvature, &bounds.input_curvature);
-        if !(curvatures.0.all_finite() && curvatures.1.all_finite() && curvatures.2.all_finite()) {
-            bounds.place_curvature.fill(S::Scalar::zero());
-            bounds.mixed_curvature.fill(S::Scalar::zero());
-            bounds.input_curvature.fill(S::Scalar::zero());
+        let BoundsExpansion { place_curvature, mixed_curvature, input_curvature, .. } = &bounds;
+        if place_curvature.all_finite() && mixed_curvature.all_finite() && input_curvature.all_finite() {
+            return Ok(bounds);
         }
-        Ok(bounds)
+        Ok(BoundsExpansion {
+            place_curvature: SMatrix::zeros(),
+            mixed_curvature: SMatrix::zeros(),
+            input_curvature: SMatrix::zeros(),
+            ..bounds
+        })
     }
 }
 
