@@ -32,6 +32,12 @@ impl<T: Debug> Case for Drawn<T> {
     }
 }
 
+/// Whether loops that are no property are long too: where the variable `PROPTEST_CASES` asks for 256 cases or more.
+#[allow(dead_code)]
+pub(crate) fn is_long() -> bool {
+    std::env::var("PROPTEST_CASES").is_ok_and(|cases| cases.parse().is_ok_and(|cases: u32| cases >= 256))
+}
+
 /// Draws cases until one fails, and panics with the smallest of those that do.
 #[track_caller]
 pub(crate) fn check<S>(

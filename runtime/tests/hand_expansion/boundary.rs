@@ -1,6 +1,6 @@
 //! Fixed endpoints for a body and a top: attitudes are given, momenta are found.
 
-use crate::{HeavyTop, assert_near, attitude, body, last, top};
+use crate::{HeavyTop, assert_near, attitude, body, is_long, last, top};
 use clebsch::{Boundary, Clebsch, Error, Extremal, Guess, Node, Variational};
 use nalgebra::{Matrix3, Rotation3, Unit, UnitQuaternion, Vector3};
 
@@ -151,7 +151,13 @@ fn random_attitudes_are_reached() -> Result<(), Error> {
         let boundary = stepper.boundary();
         let mut path = [boundary.rest(&Matrix3::identity()); 20];
         let mut worst = 0;
-        for trial in 0..if cfg!(miri) { 1 } else { 1000 } {
+        for trial in 0..if cfg!(miri) {
+            1
+        } else if is_long() {
+            1000
+        } else {
+            30
+        } {
             let start = rotation(random.vector() * 2.0);
             let axis = Unit::new_normalize(random.vector() + Vector3::repeat(1e-9));
             let angle = random.next().abs() * limit * core::f64::consts::PI;
@@ -255,7 +261,13 @@ fn solutions_are_guesses() -> Result<(), Error> {
 #[test]
 fn the_number_of_steps_hardly_matters() -> Result<(), Error> {
     let lengths = [(10, 1e-13), (100, 1e-12), (1000, 1e-11), (10_000, 1e-10)];
-    for (steps, tolerance) in lengths.into_iter().take(if cfg!(miri) { 1 } else { 4 }) {
+    for (steps, tolerance) in lengths.into_iter().take(if cfg!(miri) {
+        1
+    } else if is_long() {
+        4
+    } else {
+        3
+    }) {
         let stepper = principal(1.0).stepper(1.0 / steps as f64)?;
         let boundary = stepper.boundary();
         let mut path: std::vec::Vec<Node<HeavyTop, 3>> = std::vec![boundary.rest(&Matrix3::identity()); steps];
@@ -276,7 +288,7 @@ fn the_number_of_steps_hardly_matters_far_from_the_extremal() -> Result<(), Erro
     let axis = Vector3::new(0.48, 0.6, 0.64);
     for (turns, angle) in [(1.0, 2.4), (-2.0, 2.4), (1.0, 0.9)] {
         let angle: f64 = angle + turns * core::f64::consts::TAU;
-        for steps in [100, 1000, 4000] {
+        for steps in if is_long() { [100, 1000, 4000] } else { [30, 100, 300] } {
             let stepper =
                 HeavyTop { mass_matrix, weight: 0.0, center: Vector3::z() }.stepper(1.0 / f64::from(steps))?;
             let boundary = stepper.boundary();

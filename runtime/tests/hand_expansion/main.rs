@@ -12,6 +12,11 @@ use clebsch::{Clebsch, Error, State, Stepper};
 use heavy_top::HeavyTop;
 use nalgebra::{Matrix3, Rotation3, Vector3};
 
+/// Whether loops are long: where the variable `PROPTEST_CASES` asks for 256 cases or more.
+fn is_long() -> bool {
+    std::env::var("PROPTEST_CASES").is_ok_and(|cases| cases.parse().is_ok_and(|cases: u32| cases >= 256))
+}
+
 /// Steps of a run in which errors would add up; Miri, which interprets, takes few.
 const MANY: usize = if cfg!(miri) { 10 } else { 10_000 };
 

@@ -36,7 +36,7 @@ impl Fixture {
         assert!(
             failed.is_empty(),
             "fixtures of {folder} that differ, see above: {failed:?}\n\
-             if the change is meant: INSTA_UPDATE=always cargo test -p clebsch-tests --test snapshots, and review the diff"
+             if the change is meant: INSTA_UPDATE=always cargo test -p clebsch-laws --test snapshots, and review the diff"
         );
     }
 
@@ -72,9 +72,9 @@ impl Fixture {
     }
 }
 
-/// The folder of this package.
+/// The folder of fixtures and snapshots.
 pub fn root() -> &'static Path {
-    Path::new(env!("CARGO_MANIFEST_DIR"))
+    Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/.."))
 }
 
 /// The names of the fixtures that a folder of `snapshots` speaks about.

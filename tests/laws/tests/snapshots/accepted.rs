@@ -101,7 +101,7 @@ fn no_snapshot_is_left_over() {
 
 #[test]
 fn every_accepted_fixture_is_compiled() {
-    let library = std::fs::read_to_string(root().join("src/lib.rs")).expect("the library of this package");
+    let library = std::fs::read_to_string(root().join("src/lib.rs")).expect("the library of the fixtures");
     let words: Vec<&str> = library.split_whitespace().collect();
     let missing: Vec<_> = Fixture::all("accept").into_iter().map(|fixture| fixture.name).collect();
     let missing: Vec<_> = missing.iter().filter(|name| !words.contains(&name.as_str())).collect();
