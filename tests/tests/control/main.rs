@@ -1,12 +1,5 @@
-//! The choice of inputs, through the macro.
+//! The choice of inputs, through the macro: plans that take long. The others are in the test `control` of `clebsch-laws`.
 
 mod bounds;
-mod closed_forms;
-mod derivatives;
 mod extremes;
-mod kinks;
 mod plans;
-mod references;
-mod right_hand_sides;
-mod targets;
-mod velocities;

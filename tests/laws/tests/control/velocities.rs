@@ -1,6 +1,7 @@
 //! Prices and bounds of the velocity of a step, and prices of the velocity at the end.
 
 use super::derivatives::{Chart, chart_of_bodies, check};
+use super::long;
 use clebsch::{Clebsch, Control, Controlled, Target};
 use clebsch_tests::fixtures::rate_limited_body::RateLimitedBody;
 use clebsch_tests::oracle::random::Random;
@@ -59,7 +60,7 @@ fn satellite(random: &mut Random) -> RateLimitedBody {
 #[test]
 fn derivatives_of_a_body_are_differences() {
     let random = &mut Random::new(504);
-    for _ in 0..4 {
+    for _ in 0..long(4) {
         let x = (random.attitude::<3>(), random.vector::<3>());
         check::<_, 6, 3, 2>(&satellite(random), &chart_of_bodies(), &x, random);
         let wheeled = Wheeled { inertia: random.inertia::<3>(), top: 0.7 };
@@ -133,6 +134,10 @@ fn a_slew_with_limited_rates_is_optimal() -> Result<(), clebsch::Error> {
     let random = &mut Random::new(507);
     let mut limited = 0;
     for _ in 0..4 {
+        // ten steps are enough without the feature `heavy`
+        if limited > 10 && !cfg!(feature = "heavy") {
+            break;
+        }
         let control = satellite(random).control(0.15)?;
         let start = (random.attitude::<3>(), Vector3::zeros());
         let mut plan = [control.stage(&start); 20];

@@ -1,7 +1,6 @@
 //! References: prices and bounds that read data of each step, against the same prices as functions of the time, and against linear algebra.
 
-use super::derivatives;
-use super::plans::place;
+use super::{derivatives, long, place};
 use clebsch::{Clebsch, Control, Controlled, Error, Limits, Referring, Stage, Target};
 use clebsch_tests::fixtures::follower::Follower;
 use clebsch_tests::oracle::random::Random;
@@ -140,7 +139,7 @@ fn apart<const U: usize>(a: &[SVector<f64, U>], b: &[SVector<f64, U>]) -> f64 {
 #[test]
 fn references_that_are_functions_of_the_time_give_the_plans_of_these_functions() -> Result<(), Error> {
     let random = &mut Random::new(877);
-    for _ in 0..20 {
+    for _ in 0..long(20) {
         let (price, clearance, miss_price) =
             (random.between(0.01, 0.05), random.between(0.2, 0.3), random.between(0.0, 2.0));
         let begin = random.between(0.0, 2.0);
@@ -169,7 +168,7 @@ fn later_attempts_read_the_same_references() -> Result<(), Error> {
     let (price, clearance, miss_price) = (1.0, 0.05, 0.0);
     let timed = Timed { price, clearance, miss_price }.control(H)?;
     let referring = Follower { price, clearance, miss_price }.control(H)?.with_end_reference(track(H * N as f64))?;
-    for _ in 0..8 {
+    for _ in 0..long(8) {
         // from a guess that leads elsewhere
         let (start, input) = (rotation(random.number()), random.vector::<2>() * 3.0);
         let target = Target::Place(at(&(random.vector::<2>() * 2.0)) * rotation(random.number() * 3.0));
@@ -185,7 +184,7 @@ fn later_attempts_read_the_same_references() -> Result<(), Error> {
 #[test]
 fn velocities_have_references_too() -> Result<(), Error> {
     let random = &mut Random::new(878);
-    for _ in 0..10 {
+    for _ in 0..long(4) {
         let inertia = Matrix3::from_diagonal(&vector![1.0, 1.5, 2.0]);
         let rate_price = random.between(0.0, 1.0);
         let (begin, start) = (random.between(0.0, 1.0), (rotation(random.between(0.0, 1.0)), random.vector::<3>()));

@@ -324,7 +324,7 @@ fn a_moving_target_is_met_in_the_best_time() -> Result<(), Error> {
 #[test]
 fn a_unicycle_chooses_its_heading() -> Result<(), Error> {
     let random = &mut Random::new(3307);
-    let at = super::plans::place;
+    let at = super::place;
     for _ in 0..6 {
         let goal = random.vector::<2>() * 2.0;
         let control = Unicycle { turning: 0.3, fastest: 3.0 }.control(0.05)?.with_end_reference(goal)?;
