@@ -1,6 +1,6 @@
 //! Tangent maps, and extremals between fixed endpoints.
 
-#[path = "../../tests/boundary/systems.rs"]
+#[path = "../../laws/tests/boundary/systems.rs"]
 mod systems;
 
 use crate::run::uneven;

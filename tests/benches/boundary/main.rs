@@ -6,7 +6,7 @@
 
 mod goals;
 mod hand;
-#[path = "../../tests/boundary/pairs.rs"]
+#[path = "../../laws/tests/boundary/pairs.rs"]
 mod pairs;
 mod plans;
 mod slews;

@@ -120,7 +120,7 @@ fn place_and_portions_do_not_matter() {
 
 #[test]
 fn threads_do_not_matter() {
-    let starts = starts(1000);
+    let starts = starts(if cfg!(feature = "heavy") { 1000 } else { 200 });
     let mut one = stepper::<F64x8>().ensemble(starts.clone()).expect("bodies");
     let mut many = stepper::<F64x8>().ensemble(starts).expect("bodies");
     one.advance(STEPS);

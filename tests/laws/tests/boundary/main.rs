@@ -171,7 +171,8 @@ fn straight_lines() -> Result<(), Error> {
 /// `CLEBSCH_RANDOM=10000` takes as many pairs of each system, and `-- --nocapture` shows their outcome.
 #[test]
 fn random_endpoints() {
-    let count = std::env::var("CLEBSCH_RANDOM").map_or(500, |count| count.parse().expect("a count of pairs"));
+    let count = std::env::var("CLEBSCH_RANDOM")
+        .map_or(if cfg!(feature = "heavy") { 500 } else { 50 }, |count| count.parse().expect("a count of pairs"));
     for line in pairs::lines(count) {
         let pairs::Line { system, away, solved, near, solved_near, no_minimum, iterations, most, errors } = &line;
         println!(

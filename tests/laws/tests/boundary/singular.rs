@@ -38,7 +38,8 @@ struct Well {
 fn what_leads_through_a_singularity_is_no_extremal() {
     let mut random = Random::new(31);
     let (mut found, mut refused) = (0, 0);
-    for k in 0..600 {
+    let count = if cfg!(feature = "heavy") { 600 } else { 150 };
+    for k in 0..count {
         let x: Vector3<f64> = if k % 3 == 0 { Vector3::x() * random.number() } else { random.vector() };
         let (steps, h) = ([2, 4, 8, 10, 20, 50][k % 6], 10_f64.powf(random.between(-3.0, 1.0)));
         let (mass, gravity) = (random.between(0.5, 1.5), 10_f64.powf(random.between(-3.0, 3.0)));
@@ -72,7 +73,7 @@ fn what_leads_through_a_singularity_is_no_extremal() {
         }
     }
     println!("{found} found, {refused} refused");
-    assert!(refused > 300, "{found} found, {refused} refused");
+    assert!(refused > count / 2, "{found} found, {refused} refused");
 }
 
 /// Energies count from anywhere: an offset changes no path, however large it is relative to the action.

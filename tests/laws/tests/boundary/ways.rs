@@ -65,7 +65,7 @@ fn half_circles_to_the_opposite_point() -> Result<(), Error> {
         let h = 0.6 / steps as f64;
         let stepper = Bead.into_stepper(h)?;
         let boundary = stepper.boundary();
-        for _ in 0..20 {
+        for _ in 0..if cfg!(feature = "heavy") { 20 } else { 5 } {
             let start: Vector3<f64> = random.unit();
             let across = start.cross(&random.vector()).normalize();
             // of a path that is neither quite a great circle nor of this length
