@@ -425,7 +425,10 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: usize
                 size += part.abs() * T::from_f64(steps as f64);
             }
         }
-        let pushed = C > 0 && self.stages.iter().any(|stage| stage.limits.multipliers.iter().any(|z| *z > T::zero()));
+        let pushes = |stage: &Stage<S, D, U, C>, i: usize| {
+            stage.limits.multipliers[i] > T::zero() || stage.limits.excess_of_soft(i) > T::zero()
+        };
+        let pushed = self.stages.iter().any(|stage| (0..C).any(|i| pushes(stage, i)));
         let prepared = if pushed { Some((system.prepare(h + apart)?, system.prepare(h - apart)?)) } else { None };
         for (index, stage) in self.stages.iter().enumerate() {
             let t = self.problem.time_after(index);
@@ -435,14 +438,24 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: usize
             let mut part = constants.at(&stage.reference, by_time)?;
             if let Some((longer, shorter)) = &prepared {
                 let later = third * (t.abs() + h);
-                let by_time = (problem.bounds(stage, t + later, x, u)? - problem.bounds(stage, t - later, x, u)?)
-                    / (later + later);
-                let with = |constants: &S::Constants| {
+                let bounds = |constants: &S::Constants, t: T| {
                     constants.at(&stage.reference, |constants| system.bounds(constants, t, x, u))
                 };
-                let by_step = (with(longer)? - with(shorter)?) / (apart + apart);
-                let pushing = (0..C).filter(|i| z[*i] > T::zero());
-                part += pushing.fold(T::zero(), |sum, i| sum + z[i] * (k * by_time[i] + by_step[i]));
+                let prices = |constants: &S::Constants, t: T| {
+                    constants.at(&stage.reference, |constants| system.bound_prices(constants, t))
+                };
+                let by_time = (bounds(constants, t + later)? - bounds(constants, t - later)?) / (later + later);
+                let by_step = (bounds(longer, t)? - bounds(shorter, t)?) / (apart + apart);
+                // the price w of soft bounds may change too, by dw each unit by which they are violated
+                let dearer_by_time = (prices(constants, t + later) - prices(constants, t - later)) / (later + later);
+                let dearer_by_step = (prices(longer, t) - prices(shorter, t)) / (apart + apart);
+                for i in (0..C).filter(|i| pushes(stage, *i)) {
+                    let violated = stage.limits.excess_of_soft(i);
+                    part += z[i] * (k * by_time[i] + by_step[i]);
+                    if violated > T::zero() {
+                        part += violated * (k * dearer_by_time[i] + dearer_by_step[i]);
+                    }
+                }
             }
             slope += part;
             size += part.abs();

@@ -191,6 +191,11 @@ impl<T: Real, const C: usize> Barriers<T, C> {
         soft.fold(T::zero(), |sum, soft| sum + soft.price * larger(soft.value, T::zero()))
     }
 
+    /// By how much a soft bound is violated, 0 for others.
+    pub fn excess_of_soft(&self, i: usize) -> T {
+        self.soft(i).map_or(T::zero(), |soft| larger(soft.value, T::zero()))
+    }
+
     /// Σ w |a| of bounds that are moved so far, the price that they may come to.
     fn price_of_motion(&self, moved: &SVector<T, C>) -> T {
         let of = |i: usize| self.soft(i).map(|soft| soft.price * (soft.value + moved[i]).abs());

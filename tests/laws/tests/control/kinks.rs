@@ -7,14 +7,15 @@ use nalgebra::{Matrix3, Vector2, Vector3};
 const H: f64 = 0.1;
 const N: usize = 30;
 
-/// A mass whose fuel is |u|.
+/// A mass whose fuel is |u|, and whose time has a price.
 #[derive(Clebsch, Clone, Debug)]
 #[clebsch(
     dynamics = |h, x: Vector2, u: Vector1| x + h * vector![x.y, u.x],
-    cost     = |h, u| h * (self.fuel * u.x.abs() + self.effort * u.norm_squared() / 2),
+    cost     = |h, u| h * (self.hurry + self.fuel * u.x.abs() + self.effort * u.norm_squared() / 2),
     bounds   = |u| [-self.strongest <= u.x, u.x <= self.strongest],
 )]
 struct Fuelled {
+    hurry: f64,
     fuel: f64,
     effort: f64,
     strongest: f64,
@@ -24,10 +25,11 @@ struct Fuelled {
 #[derive(Clebsch, Clone, Debug)]
 #[clebsch(
     dynamics = |h, x: Vector2, u: Vector2| x + h * vector![x.y, u.x - u.y],
-    cost     = |h, u| h * (self.fuel * (u.x + u.y) + self.effort * (u.x - u.y).powi(2) / 2),
+    cost     = |h, u| h * (self.hurry + self.fuel * (u.x + u.y) + self.effort * (u.x - u.y).powi(2) / 2),
     bounds   = |u| [0 <= u.x, u.x <= self.strongest, 0 <= u.y, u.y <= self.strongest],
 )]
 struct Thrusters {
+    hurry: f64,
     fuel: f64,
     effort: f64,
     strongest: f64,
@@ -100,10 +102,10 @@ fn fuel_is_that_of_thrusters() -> Result<(), Error> {
     for k in 0..super::long(20) {
         let (fuel, effort) = (random.between(0.2, 2.0), if k % 2 == 0 { 0.0 } else { random.between(0.01, 1.0) });
         let (start, goal) = (random.vector::<2>(), random.vector::<2>());
-        let control = Fuelled { fuel, effort, strongest: 4.0 }.control(H)?;
+        let control = Fuelled { hurry: 0.0, fuel, effort, strongest: 4.0 }.control(H)?;
         let mut plan = [control.stage(&start); N];
         let optimum = control.solve(&start, Target::Place(goal), &mut plan)?;
-        let split = Thrusters { fuel, effort, strongest: 4.0 }.control(H)?;
+        let split = Thrusters { hurry: 0.0, fuel, effort, strongest: 4.0 }.control(H)?;
         let mut other = [split.stage(&start); N];
         let expected = split.solve(&start, Target::Place(goal), &mut other)?.price();
         let found = optimum.price();
@@ -186,7 +188,7 @@ fn a_dear_soft_bound_is_a_hard_one() -> Result<(), Error> {
 
 #[test]
 fn a_warm_start_with_kinks_goes_on() -> Result<(), Error> {
-    let control = Fuelled { fuel: 1.0, effort: 0.1, strongest: 4.0 }.control(H)?;
+    let control = Fuelled { hurry: 0.0, fuel: 1.0, effort: 0.1, strongest: 4.0 }.control(H)?;
     let (start, goal) = (Vector2::zeros(), Target::Place(Vector2::x()));
     let mut plan = [control.stage(&start); N];
     let expected = control.solve(&start, goal, &mut plan)?.price();
@@ -211,17 +213,39 @@ fn a_warm_start_with_kinks_goes_on() -> Result<(), Error> {
 
 #[test]
 fn a_kink_with_a_negative_price_is_refused() -> Result<(), Error> {
-    let control = Fuelled { fuel: -1.0, effort: 1.0, strongest: 4.0 }.control(H)?;
+    let control = Fuelled { hurry: 0.0, fuel: -1.0, effort: 1.0, strongest: 4.0 }.control(H)?;
     let start = Vector2::zeros();
     let error = control.solve(&start, Target::Free, &mut [control.stage(&start); 3]).map(|found| found.price());
     assert_eq!(error, Err(Error::NegativePrice { term: "u.x.abs()", price: -2.0 * H }));
     // without a price there is no kink
-    let control = Fuelled { fuel: 0.0, effort: 1.0, strongest: 4.0 }.control(H)?;
+    let control = Fuelled { hurry: 0.0, fuel: 0.0, effort: 1.0, strongest: 4.0 }.control(H)?;
     let optimum =
         control.solve(&start, Target::Place(Vector2::x()), &mut [control.stage(&start); N]).map(|found| found.price());
-    let split = Thrusters { fuel: 0.0, effort: 1.0, strongest: 4.0 }.control(H)?;
+    let split = Thrusters { hurry: 0.0, fuel: 0.0, effort: 1.0, strongest: 4.0 }.control(H)?;
     let expected =
         split.solve(&start, Target::Place(Vector2::x()), &mut [split.stage(&start); N]).map(|found| found.price());
     assert!((optimum? - expected?).abs() < 1e-6);
+    Ok(())
+}
+
+/// The price h w of a kink changes with the step. The steps of either declaration are those of least price, and the price is the same.
+#[test]
+fn the_best_time_counts_fuel() -> Result<(), Error> {
+    let random = &mut Random::new(4407);
+    for _ in 0..4 {
+        let (hurry, fuel) = (random.between(0.5, 2.0), random.between(0.2, 2.0));
+        let goal = Target::Place(Vector2::new(random.between(0.5, 2.0), 0.0));
+        let start = Vector2::zeros();
+        let control = Fuelled { hurry, fuel, effort: 0.3, strongest: 4.0 }.control(H)?;
+        let mut plan = [control.stage(&start); N];
+        let found = control.solve_free_time(&start, goal, 0.01..=1.0, &mut plan)?;
+        let (step, price) = (found.step_size(), found.price());
+        let split = Thrusters { hurry, fuel, effort: 0.3, strongest: 4.0 }.control(H)?;
+        let mut other = [split.stage(&start); N];
+        let expected = split.solve_free_time(&start, goal, 0.01..=1.0, &mut other)?;
+        assert!(step > 0.011 && step < 0.99, "{step}");
+        assert!((step - expected.step_size()).abs() < 1e-5 * step, "{step} {}", expected.step_size());
+        assert!((price - expected.price()).abs() < 1e-8 * price, "{price} {}", expected.price());
+    }
     Ok(())
 }
