@@ -15,6 +15,7 @@ mod optimum;
 mod quadratic;
 mod reference;
 mod search;
+mod slacks;
 mod sweep;
 
 pub use optimum::{Ended, Optimum, Stage};

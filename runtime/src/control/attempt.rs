@@ -42,7 +42,7 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: usize
         let way = core::mem::replace(&mut self.way, Way::Kept);
         let gave_way = matches!(way, Way::Given(_));
         if let Way::Given(amplitudes) = way {
-            self.stages.iter_mut().for_each(Stage::forget);
+            self.forget();
             if (0..LIFTS).any(|variation| self.lift(variation, &amplitudes)) {
                 solved = self.newton(false);
             }
@@ -58,7 +58,7 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: usize
                 Err(error) if may_be_found(&error) => error,
                 _ => break,
             };
-            self.stages.iter_mut().for_each(Stage::forget);
+            self.forget();
             solved = match self.vary(variation, &Amplitudes::FAR) {
                 Ok(()) => self.newton(is_priced).map_err(|next| match (says_nothing, gave_way && !is_priced) {
                     (true, _) => next,
@@ -70,7 +70,7 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: usize
             says_nothing = false;
         }
         if solved.is_err() {
-            self.stages.iter_mut().for_each(Stage::forget);
+            self.forget();
         }
         solved
     }
@@ -90,7 +90,7 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: usize
             reached
         });
         if reached.is_err() {
-            self.stages.iter_mut().for_each(Stage::forget);
+            self.forget();
         }
         reached
     }
@@ -143,7 +143,7 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: usize
     /// The distance to the target where a pattern is added.
     fn distance(&self, amplitudes: &SVector<T, U>, turns: T) -> Option<T> {
         let problem = &self.problem;
-        let mut x = *problem.start;
+        let mut x = self.origin();
         for (index, stage) in self.stages.iter().enumerate() {
             let input = stage.input + pattern(amplitudes, turns, index, self.stages.len());
             x = problem.system.follow(problem.constants, problem.time_after(index), &x, &input).ok()?;

@@ -14,12 +14,12 @@
 //! Sources: Bock and Plitt, *A multiple shooting algorithm for direct solution of optimal control problems* (1984). Wächter and Biegler, *On
 //! the implementation of an interior-point filter line-search algorithm* (2006), for the filter.
 
-use super::Stage;
 use super::attempt::Amplitudes;
-use super::barrier::{FIRST, Proposed};
+use super::barrier::FIRST;
 use super::iterate::Iterate;
 use super::search::Descent;
-use super::sweep::{Plan, Problem};
+use super::slacks::Proposed;
+use super::sweep::{Plan, Problem, Swept};
 use crate::newton::Curvature;
 use crate::space::{larger, plus};
 use crate::{Controlled, Error, Real};
@@ -133,7 +133,7 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: usize
         self.is_lifted = false;
         let is_near = matches!(lifted, Ok(true));
         if !is_near {
-            self.stages.iter_mut().for_each(Stage::forget);
+            self.forget();
         }
         is_near
     }
@@ -156,8 +156,8 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: usize
 
     /// Rolls out the inputs with the feedback of the last sweep, which keeps the plan near its places.
     fn land(&mut self) -> Result<(), Error> {
-        let Problem { system, constants, start, .. } = self.problem;
-        let mut x = *start;
+        let Problem { system, constants, .. } = self.problem;
+        let mut x = self.origin();
         for (index, stage) in self.stages.iter_mut().enumerate() {
             stage.input += stage.gain * system.displacement(&stage.place, &x);
             stage.place = x;
@@ -175,14 +175,7 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: usize
         let mut now = Iterate::new(SVector::zeros(), barrier, end.distance);
         let (mut filter, mut at, mut units, mut stuck) = (Filter::new(zero), None, SVector::zeros(), 0);
         for _ in 0..SWEEPS {
-            self.sweeps += 1;
-            let mut end = self.end();
-            let mut summary = self.eliminate(&end, &now.settings)?;
-            if self.release(&mut summary, &mut end, &mut now.settings) {
-                now.rank = 0;
-                continue;
-            }
-            let gramian = end.gramian(&summary.gramian);
+            let Some(Swept { summary, end, gramian }) = self.sweep(&mut now)? else { continue };
             let descent = Descent { summary: &summary, end: &end, settings: now.settings, inverse: gramian.inverse() };
             let (change, decrement) = descent.correction(one);
             if now.settings.curvature.is_mirrored {
@@ -212,10 +205,7 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: usize
             };
             filter.add(measures);
             self.accept(fraction, now.settings.barrier, proposal.last);
-            now.settings.multipliers += change * fraction;
-            if self.push(&mut now.settings.multipliers) {
-                now.rank = 0;
-            }
+            self.add_multipliers(&mut now, &(change * fraction));
             at = Some(proposal);
             stuck = if fraction < T::from_ratio(SHORT.0, SHORT.1) { stuck + 1 } else { 0 };
             if stuck > PATIENCE {
@@ -316,10 +306,11 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: usize
 
     /// The units of gaps: one by the largest change from the start to any place, for each component, 0 where nothing moves.
     fn units(&self) -> SVector<T, D> {
-        let Problem { system, start, .. } = self.problem;
+        let Problem { system, .. } = self.problem;
+        let start = self.origin();
         let places = self.stages.iter().map(|stage| &stage.place).chain([&self.last]);
         let largest = places.fold(SVector::<T, D>::zeros(), |largest, place| {
-            let change = system.displacement(start, place);
+            let change = system.displacement(&start, place);
             SVector::from_fn(|i, _| larger(largest[i], change[i].abs()))
         });
         largest.map(|size| if size > T::zero() && size.is_finite() { size.recip() } else { T::zero() })

@@ -4,7 +4,7 @@ use super::attempt::Amplitudes;
 use super::end::PlanEnd;
 use super::iterate::{Iterate, Verdict};
 use super::search::Descent;
-use super::sweep::{Plan, PlanSummary, Problem, Settings, Way};
+use super::sweep::{Plan, PlanSummary, Problem, Settings, Swept, Way};
 use super::{Ended, Optimum, Target, barrier};
 use crate::newton::Curvature;
 use crate::parameters::check_finite;
@@ -38,14 +38,7 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: usize
             if self.sweeps >= self.most && (has_corrected || self.most == 0) {
                 return self.interrupted(&now, Ended::AtLimit);
             }
-            self.sweeps += 1;
-            let mut end = self.end();
-            let mut summary = self.eliminate(&end, &now.settings)?;
-            if self.release(&mut summary, &mut end, &mut now.settings) {
-                now.rank = 0;
-                continue;
-            }
-            let gramian = end.gramian(&summary.gramian);
+            let Some(Swept { summary, end, gramian }) = self.sweep(&mut now)? else { continue };
             let descent = Descent { summary: &summary, end: &end, settings: now.settings, inverse: gramian.inverse() };
             let (change, decrement) = descent.correction(T::one());
             check_finite("the price of the plan", &summary.price)?;

@@ -1,8 +1,8 @@
 //! The answer to a problem of optimal control, and the storage that the caller provides.
 
 use super::Referenced;
-use super::barrier::Barriers;
 use super::reference::ungiven;
+use super::slacks::Barriers;
 use crate::fields::{copied, debug, getters};
 use crate::{Controlled, Error, Real, Space};
 use nalgebra::{SMatrix, SVector};

@@ -10,9 +10,9 @@
 //!
 //! Source: Moré and Sorensen, *On the use of directions of negative curvature in a modified Newton method* (1979), for saddles.
 
-use super::barrier::Proposed;
 use super::end::PlanEnd;
 use super::iterate::Iterate;
+use super::slacks::Proposed;
 use super::sweep::{Plan, PlanSummary, Problem, Settings};
 use crate::parameters::check_finite;
 use crate::space::larger;
@@ -149,10 +149,7 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: usize
         last: S::Place,
     ) -> T {
         self.accept(fraction, descent.settings.barrier, last);
-        now.settings.multipliers += change * fraction;
-        if self.push(&mut now.settings.multipliers) {
-            now.rank = 0;
-        }
+        self.add_multipliers(now, &(change * fraction));
         now.closes = fraction * part;
         fraction
     }
@@ -185,8 +182,8 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: usize
 
     /// The places that the inputs lead to.
     pub fn follow(&mut self) -> Result<(), Error> {
-        let Problem { system, constants, start, .. } = self.problem;
-        let mut x = *start;
+        let Problem { system, constants, .. } = self.problem;
+        let mut x = self.origin();
         for (index, stage) in self.stages.iter_mut().enumerate() {
             stage.place = x;
             x = system.follow(constants, self.problem.time_after(index), &x, &stage.input)?;
@@ -203,11 +200,11 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: usize
         change: &SVector<T, D>,
     ) -> Result<Rolled<S::Place, T>, Error> {
         let problem = &self.problem;
-        let Problem { system, constants, start, .. } = *problem;
+        let Problem { system, constants, .. } = *problem;
         let barrier = descent.settings.barrier;
         // Σℓ + φ
         let (mut price, mut slacks) = (T::zero(), Proposed::none());
-        let mut x = *start;
+        let mut x = self.origin();
         for (index, stage) in self.stages.iter_mut().enumerate() {
             let t = self.problem.time_after(index);
             let mut input = stage.input + (stage.shift + stage.by_multiplier * change) * fraction;

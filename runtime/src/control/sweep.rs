@@ -13,7 +13,8 @@
 //! * for the bounds Rao, Wright and Rawlings, *Application of interior-point methods to model predictive control* (1998).
 
 use super::attempt::Amplitudes;
-use super::end::{PlanEnd, without_kinks};
+use super::end::{Gramian, PlanEnd, without_kinks};
+use super::iterate::Iterate;
 use super::lift::Gap;
 use super::quadratic::{Bounded, Fall, Policy, Value};
 use super::{Referenced, Stage, Target};
@@ -63,6 +64,13 @@ pub(super) struct Plan<'a, S: Controlled<D, U, C, Scalar: Real>, const D: usize,
     pub way: Way,
     /// Whether places are unknowns too, with gaps between steps.
     pub is_lifted: bool,
+}
+
+/// A backward sweep, with the end that it began from.
+pub(super) struct Swept<T, const D: usize, const U: usize> {
+    pub summary: PlanSummary<T, D, U>,
+    pub end: PlanEnd<T, D>,
+    pub gramian: Gramian<T, D>,
 }
 
 /// The settings of a backward sweep.
@@ -259,7 +267,40 @@ impl<'a, T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: u
     pub fn new(problem: Problem<'a, S, D, U, C>, stages: &'a mut [Stage<S, D, U, C>]) -> Self {
         let last = *problem.start;
         let (bounds, pushing) = (T::zero(), [false; D]);
+        stages.iter_mut().take(1).for_each(|stage| stage.place = last);
         Self { problem, stages, last, bounds, pushing, sweeps: 0, most: u32::MAX, way: Way::Kept, is_lifted: false }
+    }
+
+    /// x_0
+    pub fn origin(&self) -> S::Place {
+        self.stages.first().map_or(*self.problem.start, |stage| stage.place)
+    }
+
+    /// Goes back to the guess, without multipliers.
+    pub fn forget(&mut self) {
+        self.stages.iter_mut().for_each(Stage::forget);
+        self.stages.iter_mut().take(1).for_each(|stage| stage.place = *self.problem.start);
+    }
+
+    /// Sweeps from the end. `None` where the sweep has to be made again, as without an inequality of the end.
+    pub fn sweep(&mut self, now: &mut Iterate<T, D>) -> Result<Option<Swept<T, D, U>>, Error> {
+        self.sweeps += 1;
+        let mut end = self.end();
+        let mut summary = self.eliminate(&end, &now.settings)?;
+        if self.release(&mut summary, &mut end, &mut now.settings) {
+            now.rank = 0;
+            return Ok(None);
+        }
+        let gramian = end.gramian(&summary.gramian);
+        Ok(Some(Swept { summary, end, gramian }))
+    }
+
+    /// Adds the correction of the multipliers ν.
+    pub fn add_multipliers(&mut self, now: &mut Iterate<T, D>, change: &SVector<T, D>) {
+        now.settings.multipliers += change;
+        if self.push(&mut now.settings.multipliers) {
+            now.rank = 0;
+        }
     }
 
     /// Adds the curvature of ν·g of the conditions of the end to its value. Where the end then curves the price down, it goes without that
