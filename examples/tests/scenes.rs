@@ -49,7 +49,8 @@ const SCENES: [(&str, &str); 19] = [
 ];
 
 /// Scenes whose runs by default take a second or more without optimisation: `other_flags_hold_all_their_claims` makes shorter ones.
-const LONG: [&str; 28] = [
+const LONG: [&str; 29] = [
+    "attitude_estimation",
     "spacecraft",
     "spin_chain",
     "rigid_body_4d",
@@ -157,7 +158,7 @@ fn motions_are_written_as_pages() {
 
 /// Scenes of plans, which short runs do not suit, and those of constraints and fields, which have no steps of order 1.
 /// They are a name, flags, and the columns of the CSV file.
-const PLANS: [(&str, &[&str], &str); 16] = [
+const PLANS: [(&str, &[&str], &str); 17] = [
     (
         "slew",
         &["--least", "effort"],
@@ -177,6 +178,7 @@ const PLANS: [(&str, &[&str], &str); 16] = [
     ("skyrmion", &[], "step,time,q1,q2,q3,e1,e2,e3"),
     ("double_pendulum", &[], "step,time,x1,y1,z1,x2,y2,z2,a1,a2,a3,b1,b2,b3"),
     ("quadrotor", &[], "step,time,R11,R12,R13,R21,R22,R23,R31,R32,R33,x1,x2,x3,v1,v2,v3,pi1,pi2,pi3,u1,u2,u3,u4"),
+    ("attitude_estimation", &[], "step,time,attitude,b1,b2,b3,a1,a2,a3,s1,s2,s3"),
     ("mpc", &[], "step,time,x1,x2,x3,r1,r2,r3,o1,o2,o3,lean,u1,u2,u3,u4"),
 ];
 
@@ -273,6 +275,7 @@ fn other_flags_hold_all_their_claims() {
         ("rattleback", &["--steps", "20"]),
         ("double_pendulum", &["--steps", "8"]),
         ("chain", &["--links", "5", "--steps", "8"]),
+        ("attitude_estimation", &["--steps", "24"]),
     ]);
 }
 
@@ -336,6 +339,7 @@ fn long_runs_hold_all_their_claims() {
         ("plate_ball", &["--turn", "0,0,1,90"]),
         ("plate_ball", &["--radius", "1", "--goal", "2,1", "--steps", "50", "--step-size", "0.1"]),
         ("quadrotor", &["--step-size", "0.01", "--steps", "120"]),
+        ("attitude_estimation", &["--seed", "2", "--window", "90", "--stride", "3"]),
         ("mpc", &["--gust", "0.02", "--seed", "2"]),
         ("mpc", &["--steps", "20", "--horizon", "20"]),
     ]);
@@ -450,6 +454,8 @@ fn mistakes_are_explained() {
         ("quadrotor", &["--thrust", "0.05"], "hovering takes 0.0687 N of each rotor"),
         ("quadrotor", &["--to", "0,0,0", "--yaw", "0"], "another place to hover at is needed"),
         ("quadrotor", &["--mass", "-1"], "`-1` is not above zero"),
+        ("attitude_estimation", &["--order", "1"], "estimates are made with steps of order 2"),
+        ("attitude_estimation", &["--stride", "200"], "no more steps than those of --window"),
         ("mpc", &["--order", "1"], "plans are made with steps of order 2"),
         ("mpc", &["--horizon", "0"], "at least 1 is needed"),
         ("mpc", &["--gust", "-1"], "`-1` is not above zero"),

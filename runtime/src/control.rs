@@ -3,8 +3,9 @@
 //! ```text
 //! minimise Σ ℓ(t_k, h, x_k, u_k) + φ(t_N, x_N)   subject to   x_{k+1} = f(t_k, h, x_k, u_k),   a(t_k, x_k, u_k) ≤ 0,   x_N = target
 //! ```
-//! The unknowns are the inputs. Newton's method is a Riccati sweep backward, with exact second derivatives on the manifold, and a roll-out forward.
+//! The unknowns are the inputs, and the start where that is unknown. Newton's method is a Riccati sweep backward, with exact second derivatives on the manifold, and a roll-out forward.
 
+mod arrival;
 mod attempt;
 mod barrier;
 mod end;
@@ -16,10 +17,12 @@ mod quadratic;
 mod reference;
 mod search;
 mod slacks;
+mod start;
 mod sweep;
 
 pub use optimum::{Ended, Optimum, Stage};
 pub use reference::{Referenced, Referring};
+pub use start::{Known, Prior, Start};
 
 use crate::fields::getters;
 use crate::newton::{Bracket, Trial};
@@ -51,13 +54,41 @@ use sweep::{Plan, Problem};
 /// assert!((optimum.price() - 6.0).abs() < 0.1); // 6 m²/s³ for the continuous cart
 /// # Ok::<(), clebsch::Error>(())
 /// ```
+///
+/// Plans start at a [`Known`] place, or near a [`Prior`]: [`with_prior`](Self::with_prior).
 #[derive(Clone, Debug)]
-pub struct Control<S: Controlled<D, U, C, Scalar: Real>, const D: usize, const U: usize, const C: usize> {
+pub struct Control<S: Controlled<D, U, C, Scalar: Real>, const D: usize, const U: usize, const C: usize, B = Known> {
     pub(crate) system: S,
     pub(crate) step_size: S::Scalar,
     pub(crate) constants: S::Constants,
     pub(crate) time: S::Scalar,
+    pub(crate) beginning: B,
 }
+
+/// A control whose plans have an unknown start. Made by [`Control::with_prior`].
+///
+/// ```
+/// use clebsch::{Estimator, Prior};
+/// # use clebsch::{Clebsch, Controlled};
+/// # use nalgebra::{Vector1, Vector2};
+/// # #[derive(Clebsch, Clone, Debug)]
+/// # #[clebsch(
+/// #     dynamics = |h, x: Vector2, u: Vector1| x + h * vector![x.y, u.x],
+/// #     cost     = |h, u| h * u.norm_squared() / 2,
+/// # )]
+/// # struct Cart {}
+/// /// Where a cart is, from measurements.
+/// struct Tracker {
+///     estimator: Estimator<Cart, 2, 1, 0>,
+/// }
+///
+/// let estimator = Cart {}.control(0.1)?.with_prior(Prior::unknown(Vector2::zeros()))?;
+/// let tracker = Tracker { estimator };
+/// assert_eq!(tracker.estimator.prior().place(), &Vector2::zeros());
+/// # Ok::<(), clebsch::Error>(())
+/// ```
+pub type Estimator<S, const D: usize, const U: usize, const C: usize> =
+    Control<S, D, U, C, Prior<<S as Controlled<D, U, C>>::Place, <S as Controlled<D, U, C>>::Scalar, D>>;
 
 /// Where a plan is to end.
 ///
@@ -127,7 +158,9 @@ impl<X> Target<X> {
     }
 }
 
-impl<S: Controlled<D, U, C, Scalar: Real>, const D: usize, const U: usize, const C: usize> Control<S, D, U, C> {
+impl<S: Controlled<D, U, C, Scalar: Real>, B: Start<S, D, U, C>, const D: usize, const U: usize, const C: usize>
+    Control<S, D, U, C, B>
+{
     /// The same with plans that start at the time `t` instead of 0.
     ///
     /// # Errors
@@ -213,6 +246,18 @@ impl<S: Controlled<D, U, C, Scalar: Real>, const D: usize, const U: usize, const
         Ok(Self { constants: self.constants.with_end_reference(reference), ..self })
     }
 
+    /// The same with plans that start near a prior place, at the price φ₀ of their start. [`solve`](Self::solve) then takes a guess of the
+    /// start, and finds it together with the inputs. The plan has it in its first [`stage`](Stage::place).
+    ///
+    /// # Errors
+    /// [`Error::NotFinite`], [`Error::NotSymmetric`], [`Error::NegativeInformation`], and those of a place.
+    pub fn with_prior(self, prior: Prior<S::Place, S::Scalar, D>) -> Result<Estimator<S, D, U, C>, Error> {
+        self.system.check_place(prior.place())?;
+        prior.check()?;
+        let Self { system, step_size, constants, time, .. } = self;
+        Ok(Control { system, step_size, constants, time, beginning: prior })
+    }
+
     /// One step at the start time: f(t₀, h, x, u).
     ///
     /// # Errors
@@ -226,7 +271,7 @@ impl<S: Controlled<D, U, C, Scalar: Real>, const D: usize, const U: usize, const
         stage.input + stage.gain * self.system.displacement(&stage.place, x)
     }
 
-    /// The plan of least price from `start` to `target`, as near to the guess as Newton's method finds it.
+    /// The plan of least price from `start` to `target`, as near to the guess as Newton's method finds it. With a [`Prior`] `start` is a guess too.
     ///
     /// The number of steps is that of `plan`. The inputs, costates and multipliers that its stages hold are the guess: none of
     /// [`stage`](Self::stage), an earlier solution, or inputs from elsewhere. They need neither lead to the target nor keep the bounds.
@@ -362,12 +407,11 @@ impl<S: Controlled<D, U, C, Scalar: Real>, const D: usize, const U: usize, const
         self.check(start, &target, plan)?;
         let accuracy = S::Scalar::from_f64(64.0) * S::Scalar::EPSILON;
         let system = &self.system;
-        let lengths = Problem::lengths(system, &target);
+        let lengths = self.problem(start, &target, 0).lengths;
         let steps = plan.len();
         let trial = |h| {
             let constants = system.prepare(h)?.with_end_reference(self.constants.end_reference());
-            let problem =
-                Problem { system, constants: &constants, h, time: self.time, steps, start, target: &target, lengths };
+            let problem = Problem { constants: &constants, h, lengths, ..self.problem(start, &target, steps) };
             let mut plan = Plan::new(problem, plan);
             let answer = plan.attempt()?;
             let (slope, size) = plan.slope()?;
@@ -382,10 +426,10 @@ impl<S: Controlled<D, U, C, Scalar: Real>, const D: usize, const U: usize, const
         start: &'a S::Place,
         target: &'a Target<S::Place>,
         steps: usize,
-    ) -> Problem<'a, S, D, U, C> {
-        let Self { system, step_size: h, constants, time } = self;
-        let lengths = Problem::lengths(system, target);
-        Problem { system, constants, h: *h, time: *time, steps, start, target, lengths }
+    ) -> Problem<'a, S, B, D, U, C> {
+        let Self { system, step_size: h, constants, time, beginning } = self;
+        let lengths = end::lengths(system, target);
+        Problem { system, constants, h: *h, time: *time, steps, start, beginning, target, lengths }
     }
 
     /// Start, target and guess are finite and where places are.
@@ -406,7 +450,9 @@ impl<S: Controlled<D, U, C, Scalar: Real>, const D: usize, const U: usize, const
     }
 }
 
-impl<T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: usize, const C: usize> Plan<'_, S, D, U, C> {
+impl<T: Real, S: Controlled<D, U, C, Scalar = T>, B: Start<S, D, U, C>, const D: usize, const U: usize, const C: usize>
+    Plan<'_, S, B, D, U, C>
+{
     /// dV/dh of a solution, and the sum of the sizes of its terms.
     fn slope(&self) -> Result<(T, T), Error> {
         let problem = &self.problem;

@@ -1,7 +1,7 @@
 //! The trait of systems whose inputs are chosen, which `#[derive(Clebsch)]` implements: one step, its price, its
 //! bounds, and their derivatives.
 
-use crate::{Control, Error, Real, Referenced, Scalar, Space};
+use crate::{Control, Error, Known, Real, Referenced, Scalar, Space};
 use nalgebra::{SMatrix, SVector};
 use num_traits::Zero;
 
@@ -90,7 +90,7 @@ pub trait Controlled<const D: usize, const U: usize, const C: usize>: Sized {
             return Err(Error::StepSize { value: h.to_f64() });
         }
         let constants = self.prepare(h)?;
-        Ok(Control { system: self, step_size: h, constants, time: Self::Scalar::zero() })
+        Ok(Control { system: self, step_size: h, constants, time: Self::Scalar::zero(), beginning: Known })
     }
 
     /// x⁺ = f(t, h, x, u)

@@ -463,6 +463,19 @@ errors! {
             price: f64,
         } =>
             "the factor of `{term}` in the price is {price:.3e}: it has to be positive, or 0, for the price to have a minimum";
+        /// An estimate is to go on by more steps than its plan has.
+        PlanTooShort {
+            /// The number of steps of the plan.
+            steps: usize,
+            /// The number that was asked for.
+            wanted: usize,
+        } => "the plan has {steps} steps, fewer than the {wanted} by which the estimate is to go on";
+        /// The information of a prior has a negative eigenvalue.
+        NegativeInformation {
+            /// The least eigenvalue.
+            eigenvalue: f64,
+        } =>
+            "the information of the prior has the eigenvalue {eigenvalue:.3e}: it is the inverse of a covariance, and has no negative one";
         /// Price or bounds read a reference that was not given.
         NoReference {
             /// The step whose reference is missing, counted from 0. It is `steps` for the reference of the end.

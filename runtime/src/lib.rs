@@ -60,6 +60,7 @@
 //! | go from here to there in a given time | [`Stepper::boundary`], with `emit = [boundary]`; [`Extremal`] |
 //! | give each step an input of its forces | [`Stepper::step_with`], [`Trajectory::forced_by`] |
 //! | choose the inputs at the least price, within bounds | [`Controlled::control`], with `controls`, `dynamics` or `effort`; [`Control::solve`], [`Optimum`] and its [`Stage`]s |
+//! | estimate a motion from measurements, and its covariance | [`Control::with_prior`], [`Control::slide`], [`Prior`] |
 //! | choose them anew at each step, in bounded time | [`Control::solve_within`], [`Control::shift`] |
 //! | solve an implicit equation of one's own | [`implicit`] |
 //! | integrate in another number type | [`Scalar`], and [`Space`] for collections of scalars; [`Real`] for a scalar that has an order |
@@ -216,7 +217,9 @@ pub use clebsch_macros::Clebsch;
 pub use columns::{Column, Columns, Form, Names};
 pub use conserved::{Conserved, Conserves};
 pub use constraint::{Constrained, Reacting};
-pub use control::{Control, Ended, Limits, Optimum, Referenced, Referring, Stage, Target};
+pub use control::{
+    Control, Ended, Estimator, Known, Limits, Optimum, Prior, Referenced, Referring, Stage, Start, Target,
+};
 pub use controlled::{Arrival, BoundsExpansion, Controlled, EndpointExpansion, Expansion, TargetExpansion};
 #[cfg(feature = "double-double")]
 pub use double_double::DoubleDouble;

@@ -36,7 +36,8 @@ const DIRECTIONS: [(&str, &str); 6] = [
 const LANES: [&str; 2] = ["F64x4", "F64x8"];
 
 /// Dimensions of problems of optimal control: of places, of inputs, and the number of bounds.
-const DIMENSIONS: [(&str, &str); 13] = [
+const DIMENSIONS: [(&str, &str); 14] = [
+    ("attitude_estimation.Satellite", "6, 6, 0"),
     ("follower", "3, 2, 1"),
     ("frugal_car", "3, 2, 4"),
     ("telescope", "6, 3, 0"),
@@ -51,6 +52,9 @@ const DIMENSIONS: [(&str, &str); 13] = [
     ("unicycle.Forward", "3, 2, 3"),
     ("unicycle.Free", "3, 2, 0"),
 ];
+
+/// Systems that are tried with an unknown start too: inputs of a group, a state, and a map.
+const ESTIMATED: [&str; 3] = ["attitude_estimation.Satellite", "rate_limited_body", "regulator"];
 
 /// Studies have their systems in every order and discretization, and the pictures of the book have theirs; they are those of fixtures.
 /// The bodies of an engine need the standard library.
@@ -154,6 +158,9 @@ fn roots<'a>(name: &str, systems: impl IntoIterator<Item = &'a System>) -> Strin
                 let dimensions = DIMENSIONS.iter().find(|(system, _)| *system == name);
                 let (_, dimensions) = dimensions.unwrap_or_else(|| panic!("add {name} to DIMENSIONS in build.rs"));
                 export("planning", &format!(", {dimensions}"));
+                if ESTIMATED.contains(&name) {
+                    export("estimating", &format!(", {dimensions}"));
+                }
             }
         }
     }

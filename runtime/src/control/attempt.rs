@@ -9,6 +9,7 @@
 //! programming* (2000). Bertsekas, *Constrained Optimization and Lagrange Multiplier Methods* (1982), chapter 2.
 
 use super::iterate::Iterate;
+use super::start::Start;
 use super::sweep::{Plan, PlanSummary, Way};
 use super::{Ended, Optimum, Stage, Target};
 use crate::{Controlled, Error, Real, Space};
@@ -30,7 +31,9 @@ impl Amplitudes {
     pub const FAR: Amplitudes = Amplitudes(16.0, 3);
 }
 
-impl<T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: usize, const C: usize> Plan<'_, S, D, U, C> {
+impl<T: Real, S: Controlled<D, U, C, Scalar = T>, B: Start<S, D, U, C>, const D: usize, const U: usize, const C: usize>
+    Plan<'_, S, B, D, U, C>
+{
     /// The critical plan near the guess that the stages hold; without their multipliers where those mislead, and from further away where
     /// there is none. If all attempts fail, the error is that of the one that came nearest, and the stages hold the inputs of the guess.
     pub fn attempt<'p>(&mut self) -> Result<Optimum<'p, S, D, U, C>, Error> {

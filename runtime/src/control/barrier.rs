@@ -13,6 +13,7 @@
 use super::Stage;
 use super::quadratic::Slopes;
 use super::slacks::{Condensed, is_none};
+use super::start::Start;
 use super::sweep::{Plan, Settings};
 use crate::space::larger;
 use crate::{BoundsExpansion, Controlled, Error, Expansion, Real, Space};
@@ -70,7 +71,9 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: usize
     }
 }
 
-impl<T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: usize, const C: usize> Plan<'_, S, D, U, C> {
+impl<T: Real, S: Controlled<D, U, C, Scalar = T>, B: Start<S, D, U, C>, const D: usize, const U: usize, const C: usize>
+    Plan<'_, S, B, D, U, C>
+{
     /// The barrier of a plan that has multipliers and satisfies its bounds: the mean of z·s. Otherwise `None`, and bounds
     /// are relaxed.
     ///
@@ -177,7 +180,7 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: usize
         mut visit: impl FnMut(&mut Stage<S, D, U, C>, SVector<T, C>),
     ) -> Result<(), Error> {
         let problem = &self.problem;
-        let mut displacement = SVector::<T, D>::from_element(T::zero());
+        let mut displacement = B::change(&self.correction, change).unwrap_or(SVector::from_element(T::zero()));
         for (index, stage) in self.stages.iter_mut().enumerate().filter(|_| C > 0) {
             let t = self.problem.time_after(index);
             let step = problem.expand(stage, t, &stage.next_costate)?;

@@ -2,6 +2,7 @@
 //! on it.
 
 use super::Target;
+use super::start::Start;
 use super::sweep::{Plan, PlanSummary, Problem, Settings};
 use crate::newton::{Equilibrated, Spectrum, arc_per_chord, is_reached};
 use crate::space::larger;
@@ -43,14 +44,22 @@ pub(super) struct PlanEnd<T, const D: usize> {
     pub scale: T,
 }
 
-impl<S: Controlled<D, U, C, Scalar: Real>, const D: usize, const U: usize, const C: usize> Problem<'_, S, D, U, C> {
-    /// The lengths |∂x/∂δ_i| of small changes at the target, 1 where there is none.
-    pub fn lengths(system: &S, target: &Target<S::Place>) -> SVector<S::Scalar, D> {
-        let slope = target.place().map_or(SMatrix::zeros(), |goal| system.arrival(goal, goal).slope);
-        // Written so that NaN gives 1.
-        slope.diagonal().map(|x| if x.abs().sqrt() > S::Scalar::zero() { x.abs().sqrt() } else { S::Scalar::one() })
-    }
+/// The lengths |∂x/∂δ_i| of small changes at the target, 1 where there is none.
+pub(super) fn lengths<S, const D: usize, const U: usize, const C: usize>(
+    system: &S,
+    target: &Target<S::Place>,
+) -> SVector<S::Scalar, D>
+where
+    S: Controlled<D, U, C, Scalar: Real>,
+{
+    let slope = target.place().map_or(SMatrix::zeros(), |goal| system.arrival(goal, goal).slope);
+    // Written so that NaN gives 1.
+    slope.diagonal().map(|x| if x.abs().sqrt() > S::Scalar::zero() { x.abs().sqrt() } else { S::Scalar::one() })
+}
 
+impl<S: Controlled<D, U, C, Scalar: Real>, B: Start<S, D, U, C>, const D: usize, const U: usize, const C: usize>
+    Problem<'_, S, B, D, U, C>
+{
     /// The conditions of the end at `x` that `target` declares, where they are the target, with the curvature of ν·g.
     pub fn conditions(
         &self,
@@ -184,7 +193,9 @@ impl<T: Real, const D: usize> TargetExpansion<T, D> {
 /// Inequalities of the end, by the strategy of active sets. They push where their multipliers are positive.
 ///
 /// Source: Hintermüller, Ito and Kunisch, *The primal-dual active set strategy as a semismooth Newton method* (2003).
-impl<T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: usize, const C: usize> Plan<'_, S, D, U, C> {
+impl<T: Real, S: Controlled<D, U, C, Scalar = T>, B: Start<S, D, U, C>, const D: usize, const U: usize, const C: usize>
+    Plan<'_, S, B, D, U, C>
+{
     /// Whether a condition of the end is an inequality.
     fn is_inequality(&self, i: usize) -> bool {
         matches!(self.problem.target, Target::Conditions) && i >= S::EQUATIONS && i < S::TARGET.len()

@@ -270,14 +270,20 @@ impl<T: Real, const D: usize> Iterate<T, D> {
         self.damping == T::zero() && !self.settings.is_straight && !self.is_straightened
     }
 
-    /// The decision after a sweep with a correction of this size; `unit` of it is round-off.
-    pub fn verdict(&mut self, end: &PlanEnd<T, D>, size: T, unit: T, last_barrier: T) -> Verdict {
+    /// The decision after a sweep with a correction of this size; `unit` of it is round-off, and all of it where it has vanished.
+    pub fn verdict(
+        &mut self,
+        end: &PlanEnd<T, D>,
+        (size, unit, has_vanished): (T, T, bool),
+        last_barrier: T,
+    ) -> Verdict {
         let seen = T::EPSILON.sqrt();
         let stagnates = self.before.is_some_and(|before| before <= seen && size > before * T::from_ratio(1, 8));
         self.stagnations = if stagnates { self.stagnations + 1 } else { 0 };
         self.calm = if size <= seen && self.damping <= T::one() { self.calm + 1 } else { 0 };
         let is_decided = end.is_closed() || self.stagnations > 2 || !end.is_reached();
-        let is_flat = size <= unit && self.damping == T::zero() || size <= seen && stagnates && self.is_exact();
+        let is_flat =
+            size <= unit && (self.damping == T::zero() || has_vanished) || size <= seen && stagnates && self.is_exact();
         // Where not all of the curvature is counted, corrections shrink by and by.
         let patience = if self.is_exact() { CALM } else { 10 * CALM };
         let is_critical = is_flat && is_decided || self.calm > patience;

@@ -19,6 +19,7 @@ use super::barrier::FIRST;
 use super::iterate::Iterate;
 use super::search::Descent;
 use super::slacks::Proposed;
+use super::start::Start;
 use super::sweep::{Plan, Problem, Swept};
 use crate::newton::Curvature;
 use crate::space::{larger, plus};
@@ -119,7 +120,9 @@ impl<T: Real> Filter<T> {
     }
 }
 
-impl<T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: usize, const C: usize> Plan<'_, S, D, U, C> {
+impl<T: Real, S: Controlled<D, U, C, Scalar = T>, B: Start<S, D, U, C>, const D: usize, const U: usize, const C: usize>
+    Plan<'_, S, B, D, U, C>
+{
     /// Goes from the inputs that the stages hold, or a variation of them, to near a critical plan, with its multipliers. `false` where that
     /// fails. The stages then hold the inputs of the guess.
     pub fn lift(&mut self, variation: u32, amplitudes: &Amplitudes) -> bool {
@@ -288,7 +291,7 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: usize
     fn make_linear(&mut self, change: &SVector<T, D>) -> Result<SVector<T, D>, Error> {
         let Problem { system, constants, .. } = self.problem;
         let part = T::EPSILON.sqrt();
-        let mut motion = SVector::<T, D>::from_element(T::zero());
+        let mut motion = B::change(&self.correction, change).unwrap_or(SVector::from_element(T::zero()));
         let mut stages = self.stages.iter_mut().enumerate().peekable();
         while let Some((index, stage)) = stages.next() {
             let t = self.problem.time_after(index);
@@ -340,6 +343,9 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: usize
                 let bounds = problem.bounds(stage, t, &x, &input)?;
                 stage.limits.propose(&bounds, (fraction, zero), |i| S::BOUNDS[i], &mut slacks)?;
                 logarithms += stage.limits.logarithms();
+            }
+            if index == 0 {
+                price += problem.beginning.price(system, &x);
             }
             price += problem.price(stage, t, &x, &input)?;
             reached = Some(system.follow(constants, t, &x, &input)?);

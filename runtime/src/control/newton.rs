@@ -4,6 +4,7 @@ use super::attempt::Amplitudes;
 use super::end::PlanEnd;
 use super::iterate::{Iterate, Verdict};
 use super::search::Descent;
+use super::start::Start;
 use super::sweep::{Plan, PlanSummary, Problem, Settings, Swept, Way};
 use super::{Ended, Optimum, Target, barrier};
 use crate::newton::Curvature;
@@ -24,7 +25,15 @@ const DEAR: f64 = 1e4;
 /// Steps in a row that may be next to nothing.
 const STALLS: u32 = 8;
 
-impl<T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: usize, const C: usize> Plan<'_, S, D, U, C> {
+/// Whether a decrease of the price by so much is round-off of places and inputs, for the span of a price that is round-off itself.
+fn is_below_round_off<T: Real>(decrement: T, span: T) -> bool {
+    let part = T::from_f64(64.0) * T::EPSILON;
+    span > T::zero() && decrement.abs() <= part * part * span
+}
+
+impl<T: Real, S: Controlled<D, U, C, Scalar = T>, B: Start<S, D, U, C>, const D: usize, const U: usize, const C: usize>
+    Plan<'_, S, B, D, U, C>
+{
     /// The critical plan near the guess, a minimum where one is found, after at most [`SWEEPS`] more sweeps; its stages are not in it yet.
     /// Corrections close the gap to the target; where `is_priced`, it is priced, and closed where little of it is left.
     pub fn newton<'p>(&mut self, is_priced: bool) -> Result<Optimum<'p, S, D, U, C>, Error> {
@@ -66,11 +75,13 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: usize
             }
             let bounds = self.bounds;
             let unit = if bounds > zero { T::EPSILON.powf(T::from_ratio(3, 5)) } else { exact };
-            size = if decrement == zero { zero } else { (decrement.abs() / magnitude).sqrt() };
+            let span = self.span(&summary)?;
+            let has_vanished = is_below_round_off(decrement, span);
+            size = if decrement == zero || has_vanished { zero } else { (decrement.abs() / magnitude).sqrt() };
             if now.leaps(size) {
                 continue;
             }
-            match now.verdict(&end, size, unit, barrier::last(bounds, size_of_price)) {
+            match now.verdict(&end, (size, unit, has_vanished), barrier::last(bounds, size_of_price)) {
                 Verdict::Done | Verdict::Tighten
                     if now.may_be_at_saddle(summary.negative + summary.straightened, size) =>
                 {
@@ -119,7 +130,7 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: usize
                 }
                 Verdict::Correct | Verdict::Escape | Verdict::Repeat => {}
             }
-            let is_trusted = now.is_exact() && size * size <= T::EPSILON.sqrt();
+            let is_trusted = (now.is_exact() || span > zero) && size * size <= T::EPSILON.sqrt();
             let made = self.descend(&mut now, &descent, magnitude, is_trusted);
             if self.way == Way::Open && descent.reaches() {
                 // after the first correction the guess could not reach the target: only its new motion can
@@ -224,11 +235,18 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: usize
         let is_stationary = summary.residual.is_finite() && (summary.residual <= unit * summary.terms || is_slight);
         // Without a price only the barrier is left in a slope, and that is round-off.
         let is_free = summary.magnitude == T::zero();
-        if !is_stationary && !is_free {
+        if !is_stationary && !is_free && !is_below_round_off(self.decrement(&summary), self.span(&summary)?) {
             let (residual, momentum) = (summary.residual.to_f64(), summary.terms.to_f64());
             return Err(Error::NotStationary { residual, momentum });
         }
         Ok(self.reached(now, &summary, Ended::Converged))
+    }
+
+    /// Twice the decrease of the model by a correction, after a last sweep.
+    #[cold]
+    fn decrement(&self, summary: &PlanSummary<T, D, U>) -> T {
+        let change = self.end().gramian(&summary.gramian).inverse() * summary.lack;
+        summary.descent + change.dot(&summary.lack)
     }
 
     /// The plan as it is where a search ends before, with the gains of a last sweep.

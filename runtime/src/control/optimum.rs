@@ -195,13 +195,13 @@ pub struct Optimum<'p, S: Controlled<D, U, C, Scalar: Real>, const D: usize, con
 
 impl<'p, S: Controlled<D, U, C, Scalar: Real>, const D: usize, const U: usize, const C: usize> Optimum<'p, S, D, U, C> {
     getters! {
-        /// The price Σ ℓ + φ.
+        /// The price Σ ℓ + φ, with φ₀ of a [`Prior`](crate::Prior).
         copy price: S::Scalar;
         /// The step size h.
         copy step_size: S::Scalar;
         /// The number of linearisations that were made, but for the last, which is for gains and the index.
         copy iterations: u32;
-        /// The largest entry of ∂ℓ/∂u + Bᵀp + ∂a/∂uᵀz that round-off has left.
+        /// The largest entry of ∂ℓ/∂u + Bᵀp + ∂a/∂uᵀz that round-off has left, and of ∂φ₀/∂x + p₀ where the start is unknown.
         copy residual: S::Scalar;
         /// The distance from the end to the target, as the root of the sum of squares of all entries; 0 for
         /// [`Target::Free`](crate::Target). For [`Target::Conditions`](crate::Target) entries are a − b of equations, and of inequalities that push or are violated.

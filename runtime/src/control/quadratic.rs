@@ -13,6 +13,11 @@ use nalgebra::{SMatrix, SVector};
 /// Units in the last place that rounding leaves of a residual.
 const ROUNDING: f64 = 1024.0;
 
+/// The round-off of a residual as a part of |H| |x|, by √ε, as residuals are compared with √ε of their terms.
+pub(super) fn rounding<T: Real>() -> T {
+    T::from_f64(ROUNDING) * T::EPSILON.sqrt()
+}
+
 /// The slopes of a function of place and input.
 pub(super) type Slopes<T, const D: usize, const U: usize> = (SVector<T, D>, SVector<T, U>);
 
@@ -27,7 +32,7 @@ pub(super) struct Bounded<T, const D: usize, const U: usize> {
 }
 
 /// The least price from a place on, to second order in δ and δν.
-pub(super) struct Value<T, const D: usize> {
+pub struct Value<T, const D: usize> {
     /// p = ∂V/∂x
     pub costate: SVector<T, D>,
     /// P = ∂²V/∂x²
@@ -35,7 +40,7 @@ pub(super) struct Value<T, const D: usize> {
     /// Ψ = ∂²V/∂x∂ν
     pub by_multiplier: SMatrix<T, D, D>,
     /// The slope of the violation of bounds, along the place.
-    violation: SVector<T, D>,
+    pub violation: SVector<T, D>,
 }
 
 /// δu = k + K δ + G δν, which makes the quadratic model of a step and of all that follow least.
@@ -56,7 +61,7 @@ pub(super) struct Policy<T, const D: usize, const U: usize> {
 
 impl<T: Real, const D: usize> Value<T, D> {
     /// φ + ν·(Eδ − e) + ½ (Eδ − e)·R(Eδ − e), or φ + ½ w d² where the squared distance d² to the target has the price w.
-    pub fn of_end(endpoint: &EndpointExpansion<T, D>, end: &PlanEnd<T, D>, settings: &Settings<T, D>) -> Self {
+    pub(super) fn of_end(endpoint: &EndpointExpansion<T, D>, end: &PlanEnd<T, D>, settings: &Settings<T, D>) -> Self {
         let (force, stiffness) = match settings.gap_price {
             Some(price) => (-price.component_mul(&end.pull), SMatrix::from_fn(|i, j| price[i] * end.metric[(i, j)])),
             None => {
@@ -74,8 +79,14 @@ impl<T: Real, const D: usize> Value<T, D> {
 }
 
 impl<T: Real, const D: usize> Value<T, D> {
+    /// ½ δ·Pδ
+    pub(super) fn of_hessian(hessian: &SMatrix<T, D, D>) -> Self {
+        let (zero, zeros) = (SVector::from_element(T::zero()), SMatrix::from_element(T::zero()));
+        Self { costate: zero, hessian: *hessian, by_multiplier: zeros, violation: zero }
+    }
+
     /// The value at c + M δ becomes that at δ. Returns Ψᵀc, the part of c in V_ν.
-    pub fn cross(&mut self, Gap { change, transport }: &Gap<T, D>) -> SVector<T, D> {
+    pub(super) fn cross(&mut self, Gap { change, transport }: &Gap<T, D>) -> SVector<T, D> {
         let lack = self.by_multiplier.tr_mul(change);
         self.costate = transport.tr_mul(&(self.costate + self.hessian * change));
         self.hessian = transport.tr_mul(&(self.hessian * transport));
@@ -127,10 +138,7 @@ impl<T: Real, const D: usize, const U: usize> Policy<T, D, U> {
         };
         let violation = slopes.1 + b.tr_mul(&next.violation);
         let pivot = Pivot::of(&input, &natural, curvature);
-        let (negative, fall) = match &pivot {
-            Pivot::Triangular(_) => (0, None),
-            Pivot::Spectral(_, negative, fall) => (*negative, *fall),
-        };
+        let (negative, fall) = (pivot.negative(), pivot.fall());
         let shift = pivot.against(&by_input);
         let gain = pivot.against(&mixed);
         let hessian = place + mixed.tr_mul(&gain);
@@ -166,7 +174,7 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: usize
         pushes: Option<SVector<T, U>>,
     ) -> SVector<T, U> {
         let place = self.place.max_abs();
-        let part = T::from_f64(ROUNDING) * T::EPSILON.sqrt();
+        let part = rounding::<T>();
         SVector::from_fn(|i, _| {
             let carried = |sum, j: usize| sum + (step.by_input[(j, i)] * costate[j]).abs();
             let by_place = |sum, j: usize| sum + step.mixed_curvature[(i, j)].abs() * place;
@@ -191,7 +199,7 @@ pub(super) struct Fall<T, const U: usize> {
 }
 
 /// A Hessian, ready to be inverted.
-enum Pivot<T, const U: usize> {
+pub(super) enum Pivot<T, const U: usize> {
     Triangular(Ldl<T, U>),
     /// The inverse itself, with the number of negative eigenvalues and the direction of the most negative one.
     Spectral(SMatrix<T, U, U>, usize, Option<Fall<T, U>>),
@@ -200,7 +208,7 @@ enum Pivot<T, const U: usize> {
 impl<T: Real, const U: usize> Pivot<T, U> {
     /// Of a symmetric matrix; only its lower triangle is read. The price itself curves by `natural` along each input.
     #[inline]
-    fn of(h: &SMatrix<T, U, U>, natural: &SVector<T, U>, curvature: Curvature<T>) -> Self {
+    pub fn of(h: &SMatrix<T, U, U>, natural: &SVector<T, U>, curvature: Curvature<T>) -> Self {
         let mut h = *h;
         let Curvature { damping, steadiness, .. } = curvature;
         if larger(damping, steadiness) > T::zero() {
@@ -212,9 +220,25 @@ impl<T: Real, const U: usize> Pivot<T, U> {
         Ldl::positive(&rows(&h)).map_or_else(|| Self::spectral(&h, curvature), Self::Triangular)
     }
 
+    /// The number of negative eigenvalues.
+    pub fn negative(&self) -> usize {
+        match self {
+            Self::Triangular(_) => 0,
+            Self::Spectral(_, negative, _) => *negative,
+        }
+    }
+
+    /// The direction of the most negative one.
+    fn fall(&self) -> Option<Fall<T, U>> {
+        match self {
+            Self::Triangular(_) => None,
+            Self::Spectral(_, _, fall) => *fall,
+        }
+    }
+
     /// −H⁻¹B
     #[inline]
-    fn against<const K: usize>(&self, b: &SMatrix<T, U, K>) -> SMatrix<T, U, K> {
+    pub fn against<const K: usize>(&self, b: &SMatrix<T, U, K>) -> SMatrix<T, U, K> {
         match self {
             Self::Triangular(factors) => {
                 let mut w = rows(&-b);

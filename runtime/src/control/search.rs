@@ -10,9 +10,11 @@
 //!
 //! Source: Moré and Sorensen, *On the use of directions of negative curvature in a modified Newton method* (1979), for saddles.
 
+use super::Target;
 use super::end::PlanEnd;
 use super::iterate::Iterate;
 use super::slacks::Proposed;
+use super::start::Start;
 use super::sweep::{Plan, PlanSummary, Problem, Settings};
 use crate::parameters::check_finite;
 use crate::space::larger;
@@ -79,7 +81,9 @@ impl<T: Real, const D: usize, const U: usize> Descent<'_, T, D, U> {
     }
 }
 
-impl<T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: usize, const C: usize> Plan<'_, S, D, U, C> {
+impl<T: Real, S: Controlled<D, U, C, Scalar = T>, B: Start<S, D, U, C>, const D: usize, const U: usize, const C: usize>
+    Plan<'_, S, B, D, U, C>
+{
     /// Makes a part of the correction. Returns its fraction and how many roll-outs were refused, other than by slacks;
     /// `None` where no part that is large enough helps. Prices have the size `magnitude`, and a part ε of it is
     /// round-off. A full step that is trusted needs no proof. Where slacks allow only a part, as much of the gap is
@@ -96,6 +100,8 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: usize
         let half = T::from_ratio(1, 2);
         let (mut fraction, mut part, mut refused) = (one, one, 0);
         let is_closed = descent.settings.gap_price.is_none();
+        // a shorter correction leaves a part of the gap
+        let is_aimed = is_closed && !matches!(self.problem.target, Target::Free);
         let is_relaxed = self.is_relaxed();
         // the best fraction so far, with its part of the gap and its gain
         let mut best: Option<(T, T, T)> = None;
@@ -125,7 +131,7 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: usize
                     }
                     let by_model = decrement * fraction * (one - fraction * half);
                     let is_good = rolled.difference <= -by_model * T::from_ratio(GOOD.0, GOOD.1);
-                    if is_good || !is_lower || is_relaxed || is_trusted || is_closed {
+                    if is_good || !is_lower || is_relaxed || is_trusted || is_aimed {
                         return Some((self.take(now, descent, (fraction, part, &change), rolled.last), refused));
                     }
                     best = Some((fraction, part, rolled.difference));
@@ -160,6 +166,7 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: usize
         let one = T::one();
         let Some(fall) = descent.summary.fall else { return false };
         let mut size = (magnitude * T::from_ratio(1, 1_000) / fall.curvature.abs()).sqrt();
+        self.correction = B::none();
         self.stages.iter_mut().for_each(|stage| stage.shift = SVector::zeros());
         for _ in 0..HALVINGS {
             for part in [size, -size] {
@@ -202,13 +209,15 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: usize
         let problem = &self.problem;
         let Problem { system, constants, .. } = *problem;
         let barrier = descent.settings.barrier;
-        // Σℓ + φ
-        let (mut price, mut slacks) = (T::zero(), Proposed::none());
-        let mut x = self.origin();
+        // φ₀ + Σℓ + φ
+        let mut slacks = Proposed::none();
+        let start_change = B::change(&self.correction, change);
+        let mut x = start_change.map_or(self.origin(), |by| system.moved(&self.origin(), &(by * fraction)));
+        let mut price = problem.beginning.price(system, &x);
         for (index, stage) in self.stages.iter_mut().enumerate() {
             let t = self.problem.time_after(index);
             let mut input = stage.input + (stage.shift + stage.by_multiplier * change) * fraction;
-            if index > 0 {
+            if index > 0 || start_change.is_some() {
                 input += stage.gain * system.displacement(&stage.place, &x);
             }
             if C > 0 {

@@ -17,6 +17,7 @@ use super::end::{Gramian, PlanEnd, without_kinks};
 use super::iterate::Iterate;
 use super::lift::Gap;
 use super::quadratic::{Bounded, Fall, Policy, Value};
+use super::start::Start;
 use super::{Referenced, Stage, Target};
 use crate::newton::{Curvature, Spectrum};
 use crate::space::larger;
@@ -24,14 +25,16 @@ use crate::{BoundsExpansion, Controlled, Error, Expansion, Real, Scalar, Space};
 use nalgebra::{SMatrix, SVector};
 
 /// A problem of optimal control.
-pub(super) struct Problem<'a, S: Controlled<D, U, C, Scalar: Real>, const D: usize, const U: usize, const C: usize> {
+pub(super) struct Problem<'a, S: Controlled<D, U, C, Scalar: Real>, B, const D: usize, const U: usize, const C: usize> {
     pub system: &'a S,
     pub constants: &'a S::Constants,
     pub h: S::Scalar,
     /// The time of the start, and the number of steps.
     pub time: S::Scalar,
     pub steps: usize,
+    /// The start, or its guess where it is unknown.
     pub start: &'a S::Place,
+    pub beginning: &'a B,
     pub target: &'a Target<S::Place>,
     /// The units of changes of the end.
     pub lengths: SVector<S::Scalar, D>,
@@ -49,9 +52,18 @@ pub(super) enum Way {
 }
 
 /// A plan, on the way from a guess to one of least price.
-pub(super) struct Plan<'a, S: Controlled<D, U, C, Scalar: Real>, const D: usize, const U: usize, const C: usize> {
-    pub problem: Problem<'a, S, D, U, C>,
+pub(super) struct Plan<
+    'a,
+    S: Controlled<D, U, C, Scalar: Real>,
+    B: Start<S, D, U, C>,
+    const D: usize,
+    const U: usize,
+    const C: usize,
+> {
+    pub problem: Problem<'a, S, B, D, U, C>,
     pub stages: &'a mut [Stage<S, D, U, C>],
+    /// The correction of the start.
+    pub correction: B::Correction,
     /// x_N
     pub last: S::Place,
     /// The number of bounds of all stages, without those that are none.
@@ -75,7 +87,7 @@ pub(super) struct Swept<T, const D: usize, const U: usize> {
 
 /// The settings of a backward sweep.
 #[derive(Clone, Copy)]
-pub(super) struct Settings<T, const D: usize> {
+pub struct Settings<T, const D: usize> {
     /// ν and R of the target.
     pub multipliers: SVector<T, D>,
     pub weight: SMatrix<T, D, D>,
@@ -83,45 +95,63 @@ pub(super) struct Settings<T, const D: usize> {
     pub gap_price: Option<SVector<T, D>>,
     /// The price μ of e-fold smaller slacks.
     pub barrier: T,
-    pub curvature: Curvature<T>,
+    pub(super) curvature: Curvature<T>,
     /// Whether the curvature of all steps is left out, which leaves that of price and bounds.
     pub is_straight: bool,
     /// Whether gains are those of plans that reach the target, for the caller, in place of those that the roll-out needs.
     pub is_last: bool,
 }
 
+/// Σ |∂²ℓ/∂x_i²| |x_i|²
+fn span<T: Real, const M: usize>(curvature: &SMatrix<T, M, M>, sizes: &SVector<T, M>) -> T {
+    let curvatures = curvature.diagonal();
+    curvatures.iter().zip(sizes.iter()).fold(T::zero(), |sum, (curvature, size)| sum + curvature.abs() * *size * *size)
+}
+
 /// A symmetric matrix without its negative eigenvalues.
 #[cold]
-fn positive<T: Real, const M: usize>(matrix: &SMatrix<T, M, M>) -> SMatrix<T, M, M> {
+pub(super) fn positive<T: Real, const M: usize>(matrix: &SMatrix<T, M, M>) -> SMatrix<T, M, M> {
     Spectrum::of(matrix).map(|value| larger(value, T::zero()))
 }
 
-/// A step without the curvature of its price along directions of places in which the price curves down, and with that of inputs turned over.
-/// Far from a solution a price of places curves down on a group: a sum of squares Σ r² has the part r r″.
+/// A step whose price curves up along all changes of place and input. Far from a solution a price of places curves down on a group: a sum of
+/// squares Σ r² has the part r r″. Curvature along inputs is turned over where it is negative. That along places is left out where it is
+/// negative for the inputs that suit each place best. So a price of the sum of place and input stays one.
 #[cold]
-fn convex<X: Copy, T: Real, const D: usize, const U: usize>(step: &Expansion<X, T, D, U>) -> Expansion<X, T, D, U> {
+pub(super) fn convex<X: Copy, T: Real, const D: usize, const U: usize>(
+    step: &Expansion<X, T, D, U>,
+) -> Expansion<X, T, D, U> {
+    let spectrum = Spectrum::of(&step.input_curvature);
+    let least = T::EPSILON * spectrum.largest();
+    let priced = |value: T| value.abs() > least;
+    // inputs that have no price by themselves go without one that depends on the place
+    let mixed = spectrum.map(|value| if priced(value) { T::one() } else { T::zero() }) * step.mixed_curvature;
+    let inverse = spectrum.map(|value| if priced(value) { value.abs().recip() } else { T::zero() });
+    let by_inputs = mixed.tr_mul(&(inverse * mixed));
     Expansion {
-        place_curvature: positive(&step.place_curvature),
+        place_curvature: positive(&(step.place_curvature - by_inputs)) + by_inputs,
         // an input without any curvature would have no limit
-        input_curvature: Spectrum::of(&step.input_curvature).map(|value| value.abs()),
-        mixed_curvature: SMatrix::zeros(),
+        input_curvature: spectrum.map(|value| value.abs()),
+        mixed_curvature: mixed,
         ..*step
     }
 }
 
 impl<T: Real, const D: usize> Settings<T, D> {
     /// Whether steps, then bounds, and then prices go without their curvature where that leaves no minimum.
-    fn is_guarded(&self) -> bool {
+    pub fn is_guarded(&self) -> bool {
         self.curvature.is_mirrored && !self.is_last
     }
 }
 
 /// The results of a backward sweep for a plan.
-pub(super) struct PlanSummary<T, const D: usize, const U: usize> {
-    /// Σℓ + φ
+pub struct PlanSummary<T, const D: usize, const U: usize> {
+    /// φ₀ + Σℓ + φ
     pub price: T,
-    /// Σ|ℓ| + |φ|
+    /// |φ₀| + Σ|ℓ| + |φ|
     pub magnitude: T,
+    /// No less than [`Plan::span`].
+    pub most_span: T,
     /// −Σ Q_u·k
     pub descent: T,
     /// The largest entry of Q_u.
@@ -140,14 +170,14 @@ pub(super) struct PlanSummary<T, const D: usize, const U: usize> {
     /// Whether a bound depends on places.
     pub bounds_places: bool,
     /// The direction of the most negative one.
-    pub fall: Option<Fall<T, U>>,
+    pub(super) fall: Option<Fall<T, U>>,
     /// By how far each input moves the end where it is 1 throughout, at most.
     pub reach: SVector<T, U>,
     /// The costate at the end.
     pub costate: SVector<T, D>,
     /// V = Σ a/s of the bounds that are violated, and g·H⁻¹g with its slope g.
     violation: T,
-    yielding: T,
+    pub yielding: T,
 }
 
 impl<T: Real, const D: usize, const U: usize> PlanSummary<T, D, U> {
@@ -181,7 +211,9 @@ impl<T: Real, const D: usize, const U: usize> PlanSummary<T, D, U> {
     }
 }
 
-impl<S: Controlled<D, U, C, Scalar: Real>, const D: usize, const U: usize, const C: usize> Problem<'_, S, D, U, C> {
+impl<S: Controlled<D, U, C, Scalar: Real>, B: Start<S, D, U, C>, const D: usize, const U: usize, const C: usize>
+    Problem<'_, S, B, D, U, C>
+{
     /// The time t₀ + kh.
     #[inline]
     pub fn time_after(&self, steps: usize) -> S::Scalar {
@@ -260,15 +292,33 @@ impl<S: Controlled<D, U, C, Scalar: Real>, const D: usize, const U: usize, const
     }
 }
 
-impl<'a, T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: usize, const C: usize>
-    Plan<'a, S, D, U, C>
+impl<
+    'a,
+    T: Real,
+    S: Controlled<D, U, C, Scalar = T>,
+    B: Start<S, D, U, C>,
+    const D: usize,
+    const U: usize,
+    const C: usize,
+> Plan<'a, S, B, D, U, C>
 {
     /// The guess that the stages hold.
-    pub fn new(problem: Problem<'a, S, D, U, C>, stages: &'a mut [Stage<S, D, U, C>]) -> Self {
+    pub fn new(problem: Problem<'a, S, B, D, U, C>, stages: &'a mut [Stage<S, D, U, C>]) -> Self {
         let last = *problem.start;
         let (bounds, pushing) = (T::zero(), [false; D]);
         stages.iter_mut().take(1).for_each(|stage| stage.place = last);
-        Self { problem, stages, last, bounds, pushing, sweeps: 0, most: u32::MAX, way: Way::Kept, is_lifted: false }
+        Self {
+            problem,
+            stages,
+            correction: B::none(),
+            last,
+            bounds,
+            pushing,
+            sweeps: 0,
+            most: u32::MAX,
+            way: Way::Kept,
+            is_lifted: false,
+        }
     }
 
     /// x_0
@@ -325,6 +375,44 @@ impl<'a, T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: u
         is_bent
     }
 
+    /// Σ |∂²ℓ/∂x²| |x|² + |∂²ℓ/∂u²| |u|² of diagonals, where that makes the price round-off, else 0. It is the price if places and inputs were
+    /// as far from their best ones as they are large. Data without noise have a price that vanishes next to it. No roll-out then tells
+    /// which plan has the least.
+    #[inline]
+    pub fn span(&self, summary: &PlanSummary<T, D, U>) -> Result<T, Error> {
+        let is_vanishing = |span: T| summary.magnitude <= T::from_f64(16.0) * T::EPSILON * span;
+        let span = if is_vanishing(summary.most_span) { self.exact_span()? } else { T::zero() };
+        Ok(if is_vanishing(span) { span } else { T::zero() })
+    }
+
+    /// The same, whatever the price is.
+    #[cold]
+    #[inline(never)]
+    fn exact_span(&self) -> Result<T, Error> {
+        let zero = T::zero();
+        let Problem { system, constants, .. } = self.problem;
+        // how far a motion of each kind is from one by the entries that it moves
+        let sizes = |x: &S::Place| {
+            let mut sizes = SVector::<T, D>::from_element(zero);
+            for (i, size) in sizes.iter_mut().enumerate() {
+                let unit = SVector::from_fn(|j, _| if i == j { T::one() } else { zero });
+                let velocity = system.infinitesimal_motion(x, &unit);
+                let length = velocity.max_abs();
+                if length > zero {
+                    *size = x.zip_map(&velocity, |a, b| a * b).max_abs() / (length * length);
+                }
+            }
+            sizes
+        };
+        let end = system.endpoint_expanded(constants, self.problem.end_time(), &self.last);
+        let mut all = span(&end.curvature, &sizes(&self.last));
+        for (index, stage) in self.stages.iter().enumerate() {
+            let step = self.problem.expand(stage, self.problem.time_after(index), &SVector::zeros())?;
+            all += span(&step.place_curvature, &sizes(&stage.place)) + span(&step.input_curvature, &stage.input);
+        }
+        Ok(all)
+    }
+
     /// Linearises and eliminates: fills costates, gains and shifts of the stages.
     pub fn eliminate(&mut self, end: &PlanEnd<T, D>, settings: &Settings<T, D>) -> Result<PlanSummary<T, D, U>, Error> {
         let problem = &self.problem;
@@ -337,6 +425,7 @@ impl<'a, T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: u
         let mut summary = PlanSummary {
             price: endpoint.price,
             magnitude: endpoint.price.abs(),
+            most_span: span(&endpoint.curvature, &SVector::from_element(self.last.max_abs())),
             descent: zero,
             residual: zero,
             terms: zero,
@@ -377,6 +466,8 @@ impl<'a, T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: u
                 Ok::<_, Error>((policy, before, violated))
             };
             let mut step = expand(&value, settings.is_straight)?;
+            summary.most_span += span(&step.place_curvature, &SVector::from_element(stage.place.max_abs()));
+            summary.most_span += span(&step.input_curvature, &stage.input);
             if self.is_lifted {
                 summary.lack += value.cross(&Gap::of(system, &following, &step.next));
                 following = stage.place;
@@ -422,6 +513,8 @@ impl<'a, T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: u
             }
             value = before;
         }
+        let first = self.origin();
+        self.correction = problem.beginning.eliminate(system, &first, &value, settings, &mut summary);
         summary.bounds_places = bounds_places;
         summary.is_mostly_straight = 2 * summary.straightened > steps;
         if let Some(fall) = &mut summary.fall {

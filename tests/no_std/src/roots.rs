@@ -357,6 +357,41 @@ macro_rules! connecting {
     };
 }
 
+/// Plans with a start that is unknown.
+#[macro_export]
+macro_rules! estimating {
+    ($name:literal, $type:ty, $d:literal, $u:literal, $c:literal) => {
+        const _: () = {
+            use clebsch::{Control, Controlled, Limits, Prior, Stage, Target};
+            use nalgebra::SMatrix;
+
+            type S = $type;
+            type T = <S as Controlled<$d, $u, $c>>::Scalar;
+            type X = <S as Controlled<$d, $u, $c>>::Place;
+            type Stages = [Stage<S, $d, $u, $c>; $crate::roots::STEPS];
+            type Estimator = clebsch::Estimator<S, $d, $u, $c>;
+
+            $crate::export!("prior", $name, |control: &Control<S, $d, $u, $c>,
+                                             prior: &Prior<X, T, $d>,
+                                             made: &mut Option<Estimator>| {
+                *made = Some(control.clone().with_prior(*prior)?);
+            });
+            $crate::export!("estimate", $name, |control: &Estimator, guess: &X, plan: &mut Stages, end: &mut X| {
+                *end = *control.solve(guess, Target::Free, plan)?.end();
+            });
+            $crate::export!(
+                "slide",
+                $name,
+                |control: &mut Estimator, plan: &mut Stages, end: &mut X, information: &mut SMatrix<T, $d, $d>| {
+                    control.slide(plan, 1)?;
+                    *end = *control.solve_within(end, Target::Free, Limits { sweeps: 1 }, plan)?.end();
+                    *information = control.end_information(plan)?;
+                }
+            );
+        };
+    };
+}
+
 /// Plans of least price.
 #[macro_export]
 macro_rules! planning {

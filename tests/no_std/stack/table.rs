@@ -5,14 +5,24 @@ use std::fmt::{self, Display, Formatter};
 
 /// The columns, and the operations whose largest stands in them. Operations in none of them are in the last.
 const COLUMNS: [(&str, &[&str]); 7] = [
-    ("stepper", &["stepper", "control"]),
+    ("stepper", &["stepper", "control", "prior"]),
     ("state", &["state", "staggered", "timed", "cotangent", "project", "resume"]),
     ("step", &["step", "step_with", "step_each", "follow"]),
     ("advance", &["advance", "trajectory"]),
     ("tangent", &["step_tangent", "step_sensitivity"]),
     (
         "plan",
-        &["plan", "plan_within", "plan_free_time", "connect", "connect_free", "connect_free_time", "connect_several"],
+        &[
+            "plan",
+            "plan_within",
+            "plan_free_time",
+            "estimate",
+            "slide",
+            "connect",
+            "connect_free",
+            "connect_free_time",
+            "connect_several",
+        ],
     ),
     ("other", &[]),
 ];

@@ -6,6 +6,7 @@
 
 mod closed_forms;
 mod derivatives;
+mod estimates;
 mod kinks;
 mod references;
 mod right_hand_sides;

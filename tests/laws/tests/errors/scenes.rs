@@ -2,7 +2,7 @@
 
 use crate::Scene;
 use clebsch::{
-    Alike, Clebsch, Controlled, Error, F64x4, Field, Guess, Mesh, Relaxation, Scalar, SiteStorage, State, Target,
+    Alike, Clebsch, Controlled, Error, F64x4, Field, Guess, Mesh, Prior, Relaxation, Scalar, SiteStorage, State, Target,
 };
 use clebsch_tests::fixtures::chaplygin_sleigh::ChaplyginSleigh;
 use clebsch_tests::fixtures::collocated_top::CollocatedTop;
@@ -463,6 +463,10 @@ fn plans() -> Vec<Scene> {
     let frugal =
         FrugalCar { turning: -1.0, off: 1.0, fine: 1.0, fast: 1.0, fastest: 2.0, miss_price: 1.0, goal: Vector2::x() };
     let frugal = frugal.control(0.1).expect("a car");
+    let prior = |information| {
+        Regulator { mass: 1.3, stiffness: 2.0, price: 0.5 }.control(0.1)?.with_prior(Prior::new(start, information))
+    };
+    let mut guessed = prior(Matrix2::identity()).expect("a prior");
     let steered = |top: f64| {
         let body = SteeredBody { inertia: Matrix3::identity(), damping: 0.1, top };
         let control = body.control(0.1).expect("a body");
@@ -496,6 +500,14 @@ fn plans() -> Vec<Scene> {
         scene(
             refused(regulator.solve(&start, Target::Conditions, &mut one)),
             &["the declaration has no `target`", "write `target = |q| [a == b]`", "or pass `Target::Place`"],
+        ),
+        scene(
+            refused(prior(Matrix2::new(1.0, 0.0, 0.0, -2.0))),
+            &["the information of the prior has the eigenvalue -2.000e0", "the inverse of a covariance"],
+        ),
+        scene(
+            refused(guessed.slide(&mut one, 3)),
+            &["the plan has 1 steps, fewer than the 3", "by which the estimate is to go on"],
         ),
         scene(
             refused(follower.solve(&Matrix3::identity(), Target::Free, &mut followed)),

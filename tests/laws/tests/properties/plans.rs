@@ -3,7 +3,8 @@
 use crate::arbitrary::{attitude, cases, matrix, vector};
 use crate::runner::proptest;
 use clebsch::{
-    __private as private, Control, Controlled, Ended, Error, Limits, Optimum, Referenced, Referring, Space, Target,
+    __private as private, Control, Controlled, Ended, Error, Limits, Optimum, Prior, Referenced, Referring, Space,
+    Target,
 };
 use clebsch_tests::fixtures::follower::Follower;
 use clebsch_tests::fixtures::frugal_car::FrugalCar;
@@ -228,6 +229,50 @@ proptest! {
         let moved = start + delta;
         let other = control.solve(&moved, Target::Free, &mut plan)?;
         assert_near(other.stages()[0].input(), &control.feedback(&first, &moved), 1e-12, "feedback");
+    }
+
+    /// A start with a prior is an input before the first, and its slopes cancel. The information of the end is the curvature of the price of plans that end elsewhere.
+    #[test]
+    fn regulators_start_anywhere(
+        system in regulators(),
+        mean in vector::<2>(1.0),
+        slope in vector::<2>(0.5),
+        (variances, mixed) in (vector::<2>(1.0), -0.4_f64..0.4),
+        (steps, delta) in (1_usize..STEPS, vector::<2>(0.5)),
+    ) {
+        let information = Matrix2::new(1.5 + variances.x, mixed, mixed, 1.5 + variances.y);
+        let prior = Prior::new(mean, information).with_slope(slope);
+        prop_assert_eq!((prior.place(), prior.slope(), prior.information()), (&mean, &slope, &information));
+        assert_near(&(prior.covariance().expect("all is known") * information), &Matrix2::identity(), 1e-12, "ΛΛ⁻¹");
+        prop_assert!(Prior::<_, f64, 2>::unknown(mean).covariance().is_none());
+        let mut control = system.control(H)?.with_prior(prior)?;
+        prop_assert_eq!(control.prior(), &prior);
+        let mut plan = [control.stage(&mean); STEPS];
+        let optimum = control.solve(&Vector2::zeros(), Target::Free, &mut plan)?;
+        prop_assert!(optimum.is_minimum() && optimum.iterations() <= 3);
+        let (end, price) = (*optimum.end(), optimum.price());
+        let start = *plan[0].place();
+        let sum = plan.iter().try_fold(0.0, |sum, stage| {
+            control.system().price(&control.system().prepare(H)?, 0.0, stage.place(), stage.input()).map(|price| sum + price)
+        })?;
+        let of_start = slope.dot(&(start - mean)) + (start - mean).dot(&(information * (start - mean))) / 2.0;
+        prop_assert!((price - sum - of_start).abs() < 1e-12);
+        assert_near(&(plan[0].costate() + slope + information * (start - mean)), &Vector2::zeros(), 1e-11, "the start");
+        // the least price of plans to another end grows by the information of the end
+        let known = control.end_information(&plan)?;
+        let mut other = plan;
+        let dearer = control.solve(&start, Target::Place(end + delta), &mut other)?.price() - price;
+        prop_assert!((dearer - delta.dot(&(known * delta)) / 2.0).abs() < 1e-9 * (1.0 + dearer), "{} {}", dearer, known);
+        // later plans say the same
+        let arrival = control.arrival_cost(&plan, steps)?;
+        prop_assert_eq!(arrival.place(), plan[steps].place());
+        assert_near(&(arrival.slope() + plan[steps].costate()), &Vector2::zeros(), 1e-12, "the slope of arrival");
+        let mut later = plan;
+        control.slide(&mut later, steps)?;
+        prop_assert_eq!(control.prior(), &arrival);
+        let again = control.solve(&Vector2::zeros(), Target::Free, &mut later[..STEPS - steps])?;
+        assert_near(again.end(), &end, 1e-10, "the end");
+        (steps..STEPS).for_each(|k| assert_near(later[k - steps].input(), plan[k].input(), 1e-10, "the input"));
     }
 
     /// Unicycles that park within their bounds, from inputs that lead there: no plan of theirs is dearer.

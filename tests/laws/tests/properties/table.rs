@@ -210,6 +210,10 @@ pub const PROPERTIES: &[(&str, &[Property])] = &[
             "Control::refer", "Control::with_end_reference", "Stage::with_reference", "Stage::reference",
             "Referenced::at", "Referenced::with_end_reference", "Referenced::end_reference", "Referring::new",
         ]),
+        ("regulators_start_anywhere", &[
+            "Prior::new", "Prior::unknown", "Prior::with_slope", "Prior::place", "Prior::slope", "Prior::information", "Prior::covariance",
+            "Control::with_prior", "Control::prior", "Control::arrival_cost", "Control::end_information", "Control::slide",
+        ]),
         ("plans_start_at_their_time", &["Control::starting_at"]),
         ("free_times_are_critical",   &["Control::solve_free_time"]),
         ("maps_are_followed",         &["Controlled::follow", "Controlled::expand"]),
