@@ -8,6 +8,7 @@ use nalgebra::{SMatrix, SVector};
 
 /// The part of a slack that one step may take.
 pub(super) const TO_BOUNDARY: f64 = 0.995;
+
 /// Whether a bound with this slack is none.
 pub(super) fn is_none<T: Real>(slack: T) -> bool {
     slack > T::zero() && !slack.is_finite()

@@ -346,9 +346,9 @@ fn errors_of_sliding_estimates_have_the_covariance_that_they_say() -> Result<(),
         }
     }
     let mean = squares / count;
-    // six degrees of freedom: four standard deviations of the mean of so many cases
+    // Six degrees of freedom, within four standard deviations of the mean of so many cases.
     assert!((mean - 6.0).abs() < 4.0 * f64::sqrt(12.0 / count), "{mean} of {count}");
-    // in units of the covariance a window differs by little from all that was ever seen
+    // In units of the covariance, a window says the same as a plan of all steps.
     assert!(apart < 1e-9, "{apart}");
     Ok(())
 }
