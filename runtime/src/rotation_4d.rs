@@ -126,23 +126,26 @@ fn invariants<T: Scalar>(&[a, b, c, d]: &[T; 4]) -> [T; 4] {
     [a_b + c_d, ab + cd + a_b * c_d, ab * c_d + cd * a_b, ab * cd]
 }
 
+/// A value for each plane, from its axes.
+fn by_plane<T: Scalar>(value: impl Fn(usize, usize) -> T) -> SVector<T, 6> {
+    SVector::from(PLANES.map(|(i, j)| value(i, j)))
+}
+
+/// The same from the other two axes. Those are the axes of the last plane but for it.
+fn by_others<T: Scalar>(value: impl Fn(usize, usize) -> T) -> SVector<T, 6> {
+    let mut values = by_plane(value);
+    values.as_mut_slice().reverse();
+    values
+}
+
 impl<T: Scalar> Planes<T> {
     fn of(moments: &[T; 4], squares: &[T; 4]) -> Self {
         let half = T::from_ratio(1, 2);
-        // the other two axes of a plane are those of the last plane but for it
-        let others = |index: usize| PLANES[5 - index];
-        let by_plane = |value: &dyn Fn(usize, usize) -> T| SVector::from(PLANES.map(|(i, j)| value(i, j)));
-        let by_others = |value: &dyn Fn(usize, usize) -> T| {
-            SVector::from_fn(|index, _| {
-                let (p, q) = others(index % 6);
-                value(p, q)
-            })
-        };
         Self {
-            start: by_plane(&|i, j| -half / (at(moments, i) + at(moments, j))),
-            sums: by_others(&|p, q| at(squares, p) + at(squares, q)),
-            products: by_others(&|p, q| at(squares, p) * at(squares, q)),
-            share: by_plane(&|i, j| T::select(at(moments, i).below(at(moments, j)), T::zero(), T::one())),
+            start: by_plane(|i, j| -half / (at(moments, i) + at(moments, j))),
+            sums: by_others(|p, q| at(squares, p) + at(squares, q)),
+            products: by_others(|p, q| at(squares, p) * at(squares, q)),
+            share: by_plane(|i, j| T::select(at(moments, i).below(at(moments, j)), T::zero(), T::one())),
         }
     }
 }

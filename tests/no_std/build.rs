@@ -53,8 +53,11 @@ const DIMENSIONS: [(&str, &str); 14] = [
     ("unicycle.Free", "3, 2, 0"),
 ];
 
-/// Systems that are tried with an unknown start too: inputs of a group, a state, and a map.
-const ESTIMATED: [&str; 3] = ["attitude_estimation.Satellite", "rate_limited_body", "regulator"];
+/// The scene of the largest plan, which is linked without the others too.
+const LARGEST: &str = "mpc";
+
+/// Systems that are tried with an unknown start too: a map, inputs of a group, and a state. Without scenes the first is the only one.
+const ESTIMATED: [&str; 3] = ["regulator", "attitude_estimation.Satellite", "rate_limited_body"];
 
 /// Studies have their systems in every order and discretization, and the pictures of the book have theirs; they are those of fixtures.
 /// The bodies of an engine need the standard library.
@@ -74,6 +77,11 @@ fn main() {
     text += "}\n";
     let out = PathBuf::from(env::var_os("OUT_DIR").expect("cargo sets it"));
     fs::write(out.join("systems.rs"), text).expect("the folder of the build can be written");
+}
+
+/// Whether all scenes are linked.
+fn has_scenes() -> bool {
+    env::var_os("CARGO_FEATURE_SCENES").is_some()
 }
 
 /// The files of Rust in a folder and below, in the order of their names.
@@ -113,7 +121,7 @@ fn fixture(path: &Path) -> String {
 /// The declarations alone, without the other code of the scene.
 fn scene(root: &Path, path: &Path) -> String {
     let inside = path.strip_prefix(root.join("examples")).expect("it is there");
-    if STUDIES.iter().any(|study| inside.starts_with(study)) {
+    if !(has_scenes() || inside.starts_with(LARGEST)) || STUDIES.iter().any(|study| inside.starts_with(study)) {
         return String::new();
     }
     let declared = declared(read(path).1);
@@ -158,7 +166,7 @@ fn roots<'a>(name: &str, systems: impl IntoIterator<Item = &'a System>) -> Strin
                 let dimensions = DIMENSIONS.iter().find(|(system, _)| *system == name);
                 let (_, dimensions) = dimensions.unwrap_or_else(|| panic!("add {name} to DIMENSIONS in build.rs"));
                 export("planning", &format!(", {dimensions}"));
-                if ESTIMATED.contains(&name) {
+                if ESTIMATED.iter().take(if has_scenes() { ESTIMATED.len() } else { 1 }).any(|system| *system == name) {
                     export("estimating", &format!(", {dimensions}"));
                 }
             }
