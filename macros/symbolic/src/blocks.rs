@@ -45,8 +45,14 @@ impl<'g> Expr<'g> {
                 a.hadamard(b)
             }
             ExprNode::Of(Operation::Block(r, c), inner) => graph.expr(*inner).block(r + row, c + column, shape),
-            ExprNode::Of(Operation::DiagonalMatrix, _) if shape.is_scalar() && row != column => graph.zero(shape),
-            ExprNode::Of(Operation::DiagonalMatrix, inner) if shape.is_scalar() => graph.expr(*inner).entry(row, 0),
+            ExprNode::Of(Operation::DiagonalMatrix, inner) => {
+                let diagonal = common((row, shape.rows), (column, shape.columns));
+                if diagonal.is_empty() {
+                    return graph.zero(shape);
+                }
+                let entries = graph.expr(*inner).block(diagonal.start, 0, Shape::vector(diagonal.len()));
+                entries.diagonal_matrix().embed(shape, diagonal.start - row, diagonal.start - column)
+            }
             ExprNode::Of(Operation::Embed(r, c), inner) => {
                 let inner = graph.expr(*inner);
                 let rows = common((row, shape.rows), (*r, inner.shape().rows));

@@ -187,6 +187,9 @@ impl<'g> Expr<'g> {
     /// The diagonal matrix of a vector.
     pub fn diagonal_matrix(self) -> Expr<'g> {
         let shape = Shape::square(self.shape().rows);
+        if shape.is_scalar() {
+            return self;
+        }
         self.linear(shape, |plain| match &*plain.node() {
             ExprNode::Literal(entries) => {
                 plain.graph.sparse_literal(shape, entries.iter().enumerate().map(|(i, entry)| (i, i, entry.clone())))

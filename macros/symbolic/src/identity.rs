@@ -173,7 +173,7 @@ impl<'g> Point<'g> {
         let shape = symbol.shape();
         let random = |i: usize, j: usize| Residue::mixed(&[4, self.seed, symbol.id.0 as u64, i as u64, j as u64]);
         match symbol.property() {
-            Property::General => Matrix::from_fn(shape, |(i, j)| random(i, j)),
+            Property::General | Property::Increment(_) => Matrix::from_fn(shape, |(i, j)| random(i, j)),
             Property::Symmetric => Matrix::from_fn(shape, |(i, j)| random(i.min(j), i.max(j))),
             Property::Diagonal => Matrix::from_fn(shape, |(i, j)| if i == j { random(i, i) } else { zero() }),
             Property::Skew => Matrix::from_fn(shape, |(i, j)| random(i, j).add(negative(random(j, i)))),

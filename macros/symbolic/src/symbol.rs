@@ -102,6 +102,8 @@ pub enum Property {
     Projector(usize),
     /// An element of a group that is not SO(n).
     Element(Group),
+    /// F − I for an element F of a group.
+    Increment(Group),
 }
 
 impl Property {

@@ -126,8 +126,20 @@ fn are_near(a: Expr<'_>, b: Expr<'_>) -> bool {
     a.len() == b.len() && a.iter().zip(&b).all(|(a, b)| (a - b).abs() < 1e-15)
 }
 
+/// Elements have the entries of the identity where this is promised, and nowhere else if the group is not a declared one.
+fn fixed_entries(graph: &Graph, group: Group) {
+    let (f, one, shape) = (element(graph, group, "F", 0), group.identity(graph), group.element_shape());
+    for (i, j) in shape.positions().filter(|_| shape.is_square() && shape.rows > 1) {
+        let is_fixed = identity::equal(&[f.entry(i, j)], &[one.entry(i, j)]);
+        let is_promised = group.has_entry_of_identity(i, j);
+        let is_declared = matches!(group, Group::Declared(_));
+        assert!(is_promised == is_fixed || is_declared && !is_promised, "{}: {i}, {j}", group.name(graph));
+    }
+}
+
 fn laws(graph: &Graph, group: Group) {
     group_laws(graph, group);
+    fixed_entries(graph, group);
     algebra_laws(graph, group);
     coadjoint_laws(graph, group);
     chart_laws(graph, group);

@@ -49,3 +49,23 @@ fn zeros_are_not_multiplied() {
     let text = block.blockwise().expand().to_string();
     assert_eq!(text, "y·M[3, 0..3] + 2·(I − x^)⁻¹·M[0..3, 0..3] − 2·M[0..3, 0..3]");
 }
+
+/// Blocks of a diagonal matrix have its entries, and are zero off the diagonal.
+#[test]
+fn blocks_of_diagonal_matrices() {
+    let graph = Graph::new();
+    let v = symbol(&graph, "v", Shape::vector(4));
+    let matrix = v.diagonal_matrix();
+    for (rows, columns) in Shape::square(4).positions().map(|(i, j)| (i + 1, j + 1)) {
+        for (row, column) in Shape::new(5 - rows, 5 - columns).positions() {
+            let block = matrix.block(row, column, Shape::new(rows, columns));
+            for (i, j) in block.shape().positions() {
+                let zero = graph.integer(0);
+                let expected = if row + i == column + j { v.entry(row + i, 0) } else { zero };
+                assert!(identity::equal(&[block.entry(i, j)], &[expected]), "{block} at {i}, {j}");
+            }
+        }
+    }
+    assert_eq!(matrix.block(0, 0, Shape::square(3)).to_string(), "diag(v[0..3])");
+    assert!(matrix.block(0, 2, Shape::square(2)).is_zero());
+}

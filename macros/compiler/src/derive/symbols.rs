@@ -121,17 +121,22 @@ impl<'g> Symbols<'g> {
 
     pub(super) fn new(model: &System<'g>, discretization: Option<Discretization>) -> Symbols<'g> {
         let (graph, taken) = (model.graph, taken(model));
-        let numbered = |letters: &[&'static str], role: fn(usize) -> Role, shapes: &[Shape]| -> Vec<Expr<'g>> {
-            let letter = fresh(letters, &taken);
-            let symbol = |(index, shape): (usize, &Shape)| {
-                graph.symbol(&subscripted(letter, index, shapes.len()), *shape, role(index), Property::General)
+        let promised =
+            |letters: &[&'static str], role: fn(usize) -> Role, values: &[(Shape, Property)]| -> Vec<Expr<'g>> {
+                let letter = fresh(letters, &taken);
+                let symbol = |(index, (shape, property)): (usize, &(Shape, Property))| {
+                    graph.symbol(&subscripted(letter, index, values.len()), *shape, role(index), *property)
+                };
+                values.iter().enumerate().map(symbol).into_list()
             };
-            shapes.iter().enumerate().map(symbol).into_list()
+        let numbered = |letters: &[&'static str], role: fn(usize) -> Role, shapes: &[Shape]| {
+            promised(letters, role, &shapes.each(|shape| (*shape, Property::General)))
         };
         let leaves: Vec<Shape> = model.configurations.each(|leaf| leaf.shape);
         let groups = || model.factors.iter().map(|factor| factor.group);
         let vectors: Vec<Shape> = groups().map(|group| Shape::vector(group.dimension())).into_list();
         let matrices: Vec<Shape> = groups().map(|group| group.element_shape()).into_list();
+        let increments: Vec<_> = groups().map(|group| (group.element_shape(), Property::Increment(group))).into_list();
         Symbols {
             covectors: numbered(&["p", "α", "β"], Role::Covector, &leaves),
             algebra: numbered(&["ξ", "η", "ζ"], Role::Algebra, &vectors),
@@ -145,8 +150,8 @@ impl<'g> Symbols<'g> {
             charts: model.factors.each(|factor| chart(model, factor, discretization)),
             blocks: blocks(model, [fresh(&["x", "c", "z"], &taken), fresh(&["δ", "ε", "γ"], &taken)]),
             logarithms: indexed(model.factors.len(), |k| logarithm(model, k)),
-            increments: numbered(&["D", "Δ", "B"], Role::Increment, &matrices),
-            following: numbered(&["D⁺"], Role::Following, &matrices),
+            increments: promised(&["D", "Δ", "B"], Role::Increment, &increments),
+            following: promised(&["D⁺"], Role::Following, &increments),
             images: images(model),
             momentum_matrices: numbered(&["M", "N", "P"], Role::MomentumMatrix, &matrices),
         }

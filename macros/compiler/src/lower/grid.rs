@@ -107,6 +107,7 @@ impl<'g> Scalars {
         let zero = self.zero();
         Grid::from_fn(symbol.shape, |(i, j)| match symbol.property {
             Property::Diagonal if i != j => zero,
+            Property::Increment(group) if group.has_entry_of_identity(i, j) => zero,
             property if property.is_symmetric() => self.input(Input::of(symbol, i.min(j), i.max(j))),
             _ => self.input(Input::of(symbol, i, j)),
         })

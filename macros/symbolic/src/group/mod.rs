@@ -136,6 +136,15 @@ impl Group {
         by_determinant || matches!(self, SpecialEuclidean(_) | Heisenberg(_))
     }
 
+    /// Whether all elements have the entry of the identity here.
+    pub fn has_entry_of_identity(self, i: usize, j: usize) -> bool {
+        match self {
+            // (1 xᵀ z; 0 I y; 0 0 1)
+            Group::Heisenberg(n) => i >= j || i > 0 && j <= n,
+            _ => self.linear_part() == Some(i),
+        }
+    }
+
     /// The size of the linear part of a group of matrices (A b; 0 1).
     pub fn linear_part(self) -> Option<usize> {
         match self {

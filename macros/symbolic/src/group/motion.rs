@@ -168,6 +168,13 @@ impl Group {
                 let adjoint = left_matrix(f) * right_matrix(conjugate(f));
                 self.components(adjoint.transpose() * self.momentum_matrix(mu))
             }
+            // Ad_F (ω, v) = (R ω, R v + d × R ω) for F = (R d; 0 1)
+            Group::SpecialEuclidean(3) => {
+                let turned_back = f.block(0, 0, Shape::square(3)).transpose();
+                let [angular, linear] = [0, 3].map(|start| mu.block(start, 0, Shape::vector(3)));
+                let lever = linear.cross(f.block(0, 3, Shape::vector(3)));
+                f.graph().below(&[turned_back * (angular + lever), turned_back * linear])
+            }
             _ => {
                 let inverse = self.inverse(f);
                 self.components(f.transpose() * self.momentum_matrix(mu) * inverse.transpose())
