@@ -54,6 +54,13 @@ pub trait Lattice<S: FieldSite>: Clone {
         RUN
     }
 
+    /// The number of sites in a row, if forces on a row read no rows but those next to it. The first and the last row are neighbours.
+    /// Forces on a part of the sites then cost no more than their part. `None` as provided.
+    #[doc(hidden)]
+    fn rows_of_neighbours(&self, _are_alike: bool) -> Option<usize> {
+        None
+    }
+
     /// How many sites of the declaration a site stands for: its potential is multiplied by it. 1 as provided.
     #[doc(hidden)]
     fn share(&self, _site: usize) -> T<S> {

@@ -54,7 +54,7 @@ use tridiagonal::Tridiagonal;
 /// ```
 #[derive(Clone, Debug)]
 pub struct MidpointStepper<S: Clebsch + Clone, P: Population = Alike> {
-    field: FieldStepper<S, Grid<T<S>, 1>, P>,
+    pub(super) field: FieldStepper<S, Grid<T<S>, 1>, P>,
 }
 
 /// The state of a field with implicit steps. It is also a [`FieldState`], and has the storage of the solver behind it.
@@ -152,7 +152,18 @@ where
         Points: AsRef<[Q<S>]> + AsMut<[Q<S>]>,
         Momenta: AsRef<[Mu<S>]> + AsMut<[Mu<S>]>,
     {
-        let sites = self.field.state(configuration, momentum)?;
+        Ok(self.with_work(self.field.state(configuration, momentum)?))
+    }
+
+    /// The state of these sites, with the storage of the solver. Nothing in it matters to the next step.
+    pub(super) fn with_work<Points, Momenta>(
+        &self,
+        sites: FieldState<Points, Momenta, S::Time>,
+    ) -> MidpointState<S, Points, Momenta, M>
+    where
+        Points: AsRef<[Q<S>]> + AsMut<[Q<S>]>,
+        Momenta: AsRef<[Mu<S>]> + AsMut<[Mu<S>]>,
+    {
         let count = self.field.lattice().sites();
         let zeros = || alloc::vec![SVector::from_element(T::<S>::zero()); count];
         let is_ring = self.field.lattice().all_sides()[0] == Sides::Periodic;
@@ -165,7 +176,7 @@ where
             matrix: Tridiagonal::new(count, is_ring),
             iterations: 0,
         };
-        Ok(MidpointState { sites, work })
+        MidpointState { sites, work }
     }
 
     /// One step, in place.

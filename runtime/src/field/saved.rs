@@ -1,5 +1,8 @@
 //! States of fields that are written and read back, with the feature `serde`.
 
+#[cfg(feature = "alloc")]
+mod allocated;
+
 use super::{FieldSite, FieldState, FieldStepper, Lattice, Population};
 use crate::parameters::check_finite;
 use crate::parts::{Mu, Q};

@@ -297,11 +297,50 @@ impl<S: FieldSite + Clone, G: Lattice<S>, P: Population> FieldStepper<S, G, P> {
         Points: AsRef<[Q<S>]> + AsMut<[Q<S>]>,
         Momenta: AsRef<[Mu<S>]> + AsMut<[Mu<S>]>,
     {
-        let drift = |part: Part<T<S>>, sites: Sites<'_, S>| {
-            let (first, own) = self.own(sites);
-            self.drift(part, first, own, None)
+        let block = self.lattice.rows_of_neighbours(P::ARE_ALIKE).map(|row| BLOCK.div_ceil(row.max(1)) * row);
+        self.tried(state, steps, |at, part, (q, mu)| match (part, block) {
+            (Some(part), Some(block)) if block > 0 && q.len() > 3 * block => self.pass(at, part, block, (q, mu)),
+            _ => self.kick_then_drift(at, part, (q, mu), None),
+        })
+    }
+
+    /// A kick of all sites and their drift in one pass through memory, block after block. A block drifts once its neighbours have their
+    /// kicks, which read its configurations.
+    fn pass(&self, at: (T<S>, T<S>), part: Part<T<S>>, block: usize, (q, mu): Sites<'_, S>) -> Result<(), SiteError> {
+        let sites = q.len();
+        let range = |number: usize| number * block..((number + 1) * block).min(sites);
+        let drift = |number: usize, (q, mu): Sites<'_, S>| {
+            let range = range(number);
+            let moved = (q.get_mut(range.clone()).unwrap_or_default(), mu.get_mut(range.clone()).unwrap_or_default());
+            self.drift(part, range.start, moved, None)
         };
-        self.tried(state, steps, |at, q, mu| self.kick_own(at, q, mu), drift)
+        let last = sites.div_ceil(block) - 1;
+        for number in 0..=last {
+            let range = range(number);
+            self.kick(at, q, (range.start, mu.get_mut(range).unwrap_or_default()));
+            if number > 1
+                && let Err(error) = drift(number - 1, (&mut *q, &mut *mu))
+            {
+                // of several sites the first one is named
+                return drift(0, (q, mu)).and(Err(error));
+            }
+        }
+        drift(0, (&mut *q, &mut *mu))?;
+        drift(last, (q, mu))
+    }
+
+    /// A kick of the sites that are moved here, and then their drift where there is one.
+    fn kick_then_drift(
+        &self,
+        at: (T<S>, T<S>),
+        part: Option<Part<T<S>>>,
+        (q, mu): Sites<'_, S>,
+        inputs: Option<&[U<S>]>,
+    ) -> Result<(), SiteError> {
+        self.kick_own(at, q, mu);
+        let Some(part) = part else { return Ok(()) };
+        let (first, own) = self.own((q, mu));
+        self.drift(part, first, own, inputs)
     }
 
     /// [`advance`](Self::advance) of a part of a field, whose neighbours are moved elsewhere: see [`Slab`](crate::Slab).
@@ -349,12 +388,10 @@ impl<S: FieldSite + Clone, G: Lattice<S>, P: Population> FieldStepper<S, G, P> {
         Points: AsRef<[Q<S>]> + AsMut<[Q<S>]>,
         Momenta: AsRef<[Mu<S>]> + AsMut<[Mu<S>]>,
     {
-        let drift = |part: Part<T<S>>, (q, mu): Sites<'_, S>| {
-            let (first, own) = self.own((&mut *q, mu));
-            let result = self.drift(part, first, own, None);
-            exchange(q, result)
-        };
-        self.tried(state, steps, |at, q, mu| self.kick_own(at, q, mu), drift)
+        self.tried(state, steps, |at, part, (q, mu)| {
+            let result = self.kick_then_drift(at, part, (&mut *q, mu), None);
+            if part.is_some() { exchange(q, result) } else { result }
+        })
     }
 
     /// The sites that are moved here, from a number on.
@@ -384,11 +421,7 @@ impl<S: FieldSite + Clone, G: Lattice<S>, P: Population> FieldStepper<S, G, P> {
         Momenta: AsRef<[Mu<S>]> + AsMut<[Mu<S>]>,
     {
         self.check_inputs(inputs)?;
-        let drift = |part: Part<T<S>>, sites: Sites<'_, S>| {
-            let (first, own) = self.own(sites);
-            self.drift(part, first, own, Some(inputs))
-        };
-        self.tried(state, 1, |at, q, mu| self.kick_own(at, q, mu), drift)
+        self.tried(state, 1, |at, part, sites| self.kick_then_drift(at, part, sites, Some(inputs)))
     }
 
     /// One step, in place, with a visit of the configurations before each kick of this weight.
@@ -401,24 +434,18 @@ impl<S: FieldSite + Clone, G: Lattice<S>, P: Population> FieldStepper<S, G, P> {
         Points: AsRef<[Q<S>]> + AsMut<[Q<S>]>,
         Momenta: AsRef<[Mu<S>]> + AsMut<[Mu<S>]>,
     {
-        let kick = |(t, weight): (T<S>, T<S>), q: &[Q<S>], mu: &mut [Mu<S>]| {
-            visit(weight, q);
-            self.kick_own((t, weight), q, mu);
-        };
-        let drift = |part: Part<T<S>>, sites: Sites<'_, S>| {
-            let (first, own) = self.own(sites);
-            self.drift(part, first, own, None)
-        };
-        self.tried(state, 1, kick, drift)
+        self.tried(state, 1, |at, part, (q, mu)| {
+            visit(at.1, q);
+            self.kick_then_drift(at, part, (q, mu), None)
+        })
     }
 
-    /// Steps made of kicks and drifts of all sites, and a note in the state where one fails.
+    /// Steps made of passes: a kick of all sites, with the drift after it but for the last one. A pass that fails is noted in the state.
     pub(super) fn tried<Points, Momenta>(
         &self,
         state: &mut FieldState<Points, Momenta, S::Time>,
         steps: u64,
-        kick: impl FnMut((T<S>, T<S>), &[Q<S>], &mut [Mu<S>]),
-        drift: impl FnMut(Part<T<S>>, Sites<'_, S>) -> Result<(), SiteError>,
+        pass: impl FnMut((T<S>, T<S>), Option<Part<T<S>>>, Sites<'_, S>) -> Result<(), SiteError>,
     ) -> Result<(), SiteError>
     where
         Points: AsRef<[Q<S>]> + AsMut<[Q<S>]>,
@@ -427,7 +454,7 @@ impl<S: FieldSite + Clone, G: Lattice<S>, P: Population> FieldStepper<S, G, P> {
         if let Some(error) = state.failed {
             return Err(error);
         }
-        let result = self.advanced(state, steps, kick, drift);
+        let result = self.advanced(state, steps, pass);
         state.failed = result.err();
         result
     }
@@ -436,8 +463,7 @@ impl<S: FieldSite + Clone, G: Lattice<S>, P: Population> FieldStepper<S, G, P> {
         &self,
         state: &mut FieldState<Points, Momenta, S::Time>,
         steps: u64,
-        mut kick: impl FnMut((T<S>, T<S>), &[Q<S>], &mut [Mu<S>]),
-        mut drift: impl FnMut(Part<T<S>>, Sites<'_, S>) -> Result<(), SiteError>,
+        mut pass: impl FnMut((T<S>, T<S>), Option<Part<T<S>>>, Sites<'_, S>) -> Result<(), SiteError>,
     ) -> Result<(), SiteError>
     where
         Points: AsRef<[Q<S>]> + AsMut<[Q<S>]>,
@@ -448,7 +474,8 @@ impl<S: FieldSite + Clone, G: Lattice<S>, P: Population> FieldStepper<S, G, P> {
         let half = T::<S>::from_f64(0.5);
         let Some(first) = self.stage(0).map(|stage| stage.h).filter(|_| steps > 0) else { return Ok(()) };
         self.check_lengths(q, mu)?;
-        kick((time.now(), half * first), q, mu);
+        // the kick that is next
+        let mut at = (time.now(), half * first);
         for step in 1..=steps {
             let after = time.after_step(self.step_size());
             if !after.now().is_finite() {
@@ -456,7 +483,7 @@ impl<S: FieldSite + Clone, G: Lattice<S>, P: Population> FieldStepper<S, G, P> {
             }
             let mut part = Part { number: 0, t: time.now() };
             while let Some(stage) = self.stage(part.number) {
-                drift(part, (q, mu))?;
+                pass(at, Some(part), (&mut *q, &mut *mu))?;
                 part.number += 1;
                 // the kick at the end of this part of a step and that at the start of the next are one
                 let next = match self.stage(part.number) {
@@ -469,11 +496,12 @@ impl<S: FieldSite + Clone, G: Lattice<S>, P: Population> FieldStepper<S, G, P> {
                         if step < steps { first } else { Zero::zero() }
                     }
                 };
-                kick((part.t, half * (stage.h + next)), q, mu);
+                at = (part.t, half * (stage.h + next));
             }
             *time = after;
             *made = made.saturating_add(1);
         }
+        pass(at, None, (&mut *q, &mut *mu))?;
         // the last kick pushes all sites
         self.clear_fixed(mu);
         check_finite_sites(0, (q, mu), mu)
@@ -706,6 +734,9 @@ fn failed<S: FieldSite>(
 /// The sites that are moved before they are checked.
 const FEW: usize = 64;
 
+/// The least number of sites in a block that drifts while it is near.
+const BLOCK: usize = 512;
+
 /// All numbers of the sites from one on are finite where those of `checked` are: their configurations after they have moved, or
 /// their momenta. A momentum that is not finite leaves no configuration finite.
 #[inline]
@@ -782,6 +813,9 @@ where
             let errors = shares.map(|(number, sites)| self.drift(part, first + number * SHARE, sites, None).err());
             errors.reduce(|| None, Option::or).map_or(Ok(()), Err)
         };
-        self.tried(state, steps, kick, drift)
+        self.tried(state, steps, |at, part, (q, mu)| {
+            kick(at, q, mu);
+            part.map_or(Ok(()), |part| drift(part, (q, mu)))
+        })
     }
 }

@@ -241,6 +241,10 @@ impl<S: Field<D>, const D: usize> Lattice<S> for Grid<T<S>, D> {
         self.row()
     }
 
+    fn rows_of_neighbours(&self, are_alike: bool) -> Option<usize> {
+        (S::GATHERS && are_alike || D == 1).then(|| self.row())
+    }
+
     fn energy<'s>(&self, site: impl Fn(usize) -> &'s S + Copy, q: &[Q<S>], starts: Range<usize>) -> T<S>
     where
         S: 's,

@@ -14,6 +14,7 @@ use clebsch::{Clebsch, Field, FieldState, SiteError};
 use clebsch_tests::fixtures::wave_map::WaveMap;
 use nalgebra::{Matrix4, SVector, Vector1, Vector3, Vector4, Vector6};
 use rayon::ThreadPoolBuilder;
+use rayon::prelude::*;
 use rod::{ByHand, Section};
 use std::cell::RefCell;
 use std::hint::black_box;
@@ -306,6 +307,7 @@ fn numpy(must_run: bool) -> Result<(), SiteError> {
 }
 
 /// Waves on one and on two threads, and a loop without memory, which tells how much of two processors there is. 1 is all of them.
+/// A copy of as many numbers tells how much more memory gives to two threads.
 fn threads() -> Result<(), SiteError> {
     println!("\n{:<24} {:>8} {:>10} {:>10} {:>8}", "ns a step and site", "sites", "1 thread", "2 threads", "of 2");
     let [one, two] = [1, 2].map(|count| ThreadPoolBuilder::new().num_threads(count).build().expect("threads"));
@@ -340,9 +342,28 @@ fn threads() -> Result<(), SiteError> {
             Box::new(run) as Run<'_>
         });
         print("waves of unit vectors", n * n, &runs);
+        let copies = [&one, &two].map(|pool| {
+            let copied = RefCell::new((vec![1.0_f64; 6 * n * n], vec![0.0_f64; 6 * n * n]));
+            let run = move |times: u64| {
+                let (from, to) = &mut *copied.borrow_mut();
+                pool.install(|| {
+                    for _ in 0..times {
+                        to.par_chunks_mut(SHARE)
+                            .zip(from.par_chunks(SHARE))
+                            .for_each(|(to, from)| to.copy_from_slice(from));
+                        black_box(&mut *to);
+                    }
+                });
+            };
+            Box::new(run) as Run<'_>
+        });
+        print("a copy of their state", n * n, &copies);
     }
     Ok(())
 }
+
+/// The numbers that a thread copies at a time.
+const SHARE: usize = 24_576;
 
 /// The rounds of a loop in registers.
 const SPINS: usize = 100_000;

@@ -6,6 +6,8 @@ use std::time::Instant;
 const REPETITIONS: usize = 21;
 /// The length of a block, seconds.
 const BLOCK: f64 = 0.004;
+/// The least number of steps in a block. The first one has a kick that later steps share, and the last one checks the state.
+const STEPS: u64 = 16;
 
 /// The time of a step, ns.
 #[derive(Copy, Clone, Debug)]
@@ -31,13 +33,13 @@ pub fn interleaved(contestants: &[Run<'_>]) -> Vec<Time> {
     times.into_iter().map(Time::of).collect()
 }
 
-/// The number of steps that fills a block.
+/// The number of steps in a block.
 fn block(run: &Run<'_>) -> u64 {
     let mut steps = 1;
     loop {
         let taken = seconds(run, steps);
         if taken > BLOCK / 2.0 {
-            return (steps as f64 * BLOCK / taken) as u64 + 1;
+            return ((steps as f64 * BLOCK / taken) as u64 + 1).max(STEPS);
         }
         steps *= 2;
     }

@@ -1,14 +1,12 @@
 //! Steps of a connection: of the elements of edges and the momenta of sites.
 
 use super::identity;
-use crate::field::stepper::{Part, Sites};
 use crate::field::{Alike, CellComplex, ConnectedField, Domain, FieldState, FieldStepper, MovingField, Population};
 use crate::fields::getters;
 use crate::parts::{Mu, Q, RestOf, T};
 use crate::stepper::check_on_orbit;
 use crate::{Clebsch, Error, SiteError, Space};
 use alloc::vec::Vec;
-use core::cell::Cell;
 
 /// A connection on a lattice with a step size. Made by [`Domain::connection`].
 ///
@@ -64,11 +62,17 @@ pub struct ConnectionStepper<S: Clebsch + Clone, G, P: Population = Alike> {
 /// assert_eq!((state.elements().len(), state.momentum().len(), state.steps()), (4, 4, 1));
 /// # Ok::<(), clebsch::SiteError>(())
 /// ```
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug)]
 pub struct ConnectionState<S: Clebsch> {
-    elements: Vec<Q<S>>,
-    /// The motions F of all sites in the last part of a step, with their momenta.
-    sites: FieldState<Vec<Q<S>>, Vec<Mu<S>>, S::Time>,
+    pub(in crate::field) elements: Vec<Q<S>>,
+    /// The momenta of all sites. In a part of a step the configurations are the motions F.
+    pub(in crate::field) sites: FieldState<Vec<Q<S>>, Vec<Mu<S>>, S::Time>,
+}
+
+impl<S: Clebsch<Time: PartialEq>> PartialEq for ConnectionState<S> {
+    fn eq(&self, other: &Self) -> bool {
+        self.elements == other.elements && self.sites == other.sites
+    }
 }
 
 impl<S: Clebsch> ConnectionState<S> {
@@ -154,19 +158,19 @@ where
     pub fn advance(&self, state: &mut ConnectionState<S>, steps: u64) -> Result<(), SiteError> {
         let ConnectionState { elements, sites } = state;
         // sites move from the identity, so that their configurations are their motions
-        let have_moved = Cell::new(false);
-        let kick = |(_, weight): (T<S>, T<S>), motions: &[Q<S>], mu: &mut [Mu<S>]| {
-            if have_moved.replace(false) {
+        let mut have_moved = false;
+        let result = self.stepper.tried(sites, steps, |(_, weight), part, (motions, mu)| {
+            if have_moved {
                 self.carry(elements, motions);
             }
             self.kick(elements, weight, mu);
-        };
-        let drift = |part: Part<T<S>>, (motions, mu): Sites<'_, S>| {
+            have_moved = part.is_some();
+            let Some(part) = part else { return Ok(()) };
             motions.fill(identity::<S>());
-            have_moved.set(true);
             self.stepper.drift(part, 0, (motions, mu), None)
-        };
-        self.stepper.tried(sites, steps, kick, drift)
+        });
+        sites.configuration.fill(identity::<S>());
+        result
     }
 
     /// The elements of edges whose ends have moved.

@@ -372,6 +372,53 @@ proptest! {
         }
         near(by_edges.energy(&edges).expect("an energy"), by_sites.energy(&sites).expect("an energy"), 1e-10);
         prop_assert_eq!(edges.steps(), 5);
+        // a state that was written and read goes on with the same bits
+        let text = serde_json::to_string(&edges).expect("numbers");
+        let read = |text: &str| serde_json::from_str::<SavedField<Vec<Matrix3<f64>>, Vec<Vector3<f64>>>>(text).expect("numbers");
+        let mut resumed = by_edges.resume(read(&text)).expect("a state");
+        prop_assert_eq!(&resumed, &edges);
+        by_edges.advance(&mut edges, 3).expect("steps");
+        by_edges.advance(&mut resumed, 3).expect("steps");
+        prop_assert_eq!(&resumed, &edges);
+        let (number, _) = by_edges.domain().edge_between(0, 1).expect("an edge");
+        let mut changed: serde_json::Value = serde_json::from_str(&text).expect("text");
+        changed["configuration"][number][0] = serde_json::Value::from(3.0);
+        prop_assert!(by_edges.resume(read(&changed.to_string())).is_err());
+    }
+
+    /// A kick and a drift in one pass through blocks of rows have the bits of one after the other, and the same errors.
+    #[test]
+    fn blocks_of_rows_have_the_bits_of_all_sites(
+        sides in [side(), side()], row in 1_usize..60, more in 0_usize..700, axis in vector::<3>(1.0), fast in prop::option::of(any::<prop::sample::Index>()),
+    ) {
+        let rows = (1600 + more).div_ceil(row);
+        let wave = |site: usize, speed: f64| (site as f64 * speed).sin();
+        let q: Vec<_> = (0..rows * row).map(|site| turned(&Vector3::x(), &(axis * wave(site, 0.7)))).collect();
+        let mut mu: Vec<_> = q.iter().enumerate().map(|(site, q)| q.cross(&axis) * wave(site, 0.3)).collect();
+        if let Some(fast) = fast {
+            // an angle that no step turns by
+            let site = fast.index(mu.len());
+            mu[site] = q[site].cross(&Vector3::new(0.0, 0.6, 0.8)) * 1e3;
+        }
+        let stepper = spins().grid([rows, row]).sides(sides).stepper(0.05).expect("a stepper");
+        let mut state = stepper.state(q, mu).expect("a state");
+        let mut expected = state.clone();
+        let result = stepper.advance(&mut state, 3);
+        prop_assert_eq!(result, stepper.par_advance(&mut expected, 3));
+        prop_assert!(result.is_err() || state == expected);
+        prop_assert_eq!(Lattice::<Spins>::rows_of_neighbours(stepper.lattice(), true), Some(row));
+        prop_assert_eq!(Lattice::<Spins>::rows_of_neighbours(stepper.lattice(), false), None);
+        // and along a line, whose edges push one after the other
+        let (bodies, count) = (Row { mass: 0.4, weight: 0.2 }, 1600 + more);
+        let stepper = bodies.grid([count]).spacing([0.5]).sides([sides[0]]).stepper(0.01).expect("a stepper");
+        let place = |site: usize| (Rotation3::new(axis * wave(site, 0.7)).into_inner(), Vector2::new(wave(site, 0.2), 0.3));
+        let momentum = |site: usize| SVector::<f64, 5>::from_fn(|i, _| 0.1 * wave(site + i, 0.9));
+        let mut state = stepper.state((0..count).map(place).collect::<Vec<_>>(), (0..count).map(momentum).collect::<Vec<_>>()).expect("a state");
+        let mut expected = state.clone();
+        prop_assert_eq!(Lattice::<Row>::rows_of_neighbours(stepper.lattice(), false), Some(1));
+        stepper.advance(&mut state, 2).expect("steps");
+        stepper.par_advance(&mut expected, 2).expect("steps");
+        prop_assert!(state == expected);
     }
 
     #[test]
@@ -731,6 +778,14 @@ proptest! {
         forth.advance(&mut state, 2).expect("a step");
         forth.step(&mut state).expect("a step");
         prop_assert!((1..20).contains(&state.iterations()));
+        type Saved = SavedField<Vec<(Matrix3<f64>, Vector2<f64>)>, Vec<SVector<f64, 5>>, Clock<f64>>;
+        let text = serde_json::to_string(&state).expect("numbers");
+        let mut resumed = forth.resume(serde_json::from_str::<Saved>(&text).expect("numbers")).expect("a state");
+        let mut gone_on = state.clone();
+        for state in [&mut gone_on, &mut resumed] {
+            forth.step(state).expect("a step");
+        }
+        prop_assert_eq!(&*resumed, &*gone_on);
         let mut pushed = state.clone();
         forth.step_with(&mut pushed, &pushes).expect("a step");
         prop_assert!(pushed.momentum() != state.momentum());
