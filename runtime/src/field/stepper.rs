@@ -773,9 +773,12 @@ fn are_finite<T: Scalar, V: Space<T>>(values: &[V]) -> bool {
     sums.iter().all(Space::all_finite)
 }
 
-/// The sites that one thread takes at a time.
+/// The sites that one thread takes at a time: few, so that no thread waits long for the last share of another.
 #[cfg(feature = "rayon")]
-const SHARE: usize = 4096;
+const SHARE: usize = 1024;
+/// The same where forces on a part of the sites cost more than their part.
+#[cfg(feature = "rayon")]
+const LARGE_SHARE: usize = 4096;
 
 #[cfg(feature = "rayon")]
 impl<S: FieldSite + Clone, G: Lattice<S>, P: Population> FieldStepper<S, G, P>
@@ -801,16 +804,18 @@ where
         Momenta: AsRef<[Mu<S>]> + AsMut<[Mu<S>]>,
     {
         use rayon::prelude::*;
+        let costs_its_part = self.lattice.rows_of_neighbours(P::ARE_ALIKE).is_some();
+        let share = if costs_its_part { SHARE } else { LARGE_SHARE };
         let kick = |at: (T<S>, T<S>), q: &[Q<S>], mu: &mut [Mu<S>]| {
             let own = self.lattice.own();
             let first = own.start;
-            let shares = mu.get_mut(own).unwrap_or_default().par_chunks_mut(SHARE).enumerate();
-            shares.for_each(|(number, mu)| self.kick(at, q, (first + number * SHARE, mu)));
+            let shares = mu.get_mut(own).unwrap_or_default().par_chunks_mut(share).enumerate();
+            shares.for_each(|(number, mu)| self.kick(at, q, (first + number * share, mu)));
         };
         let drift = |part: Part<T<S>>, sites: Sites<'_, S>| {
             let (first, (q, mu)) = self.own(sites);
-            let shares = q.par_chunks_mut(SHARE).zip(mu.par_chunks_mut(SHARE)).enumerate();
-            let errors = shares.map(|(number, sites)| self.drift(part, first + number * SHARE, sites, None).err());
+            let shares = q.par_chunks_mut(share).zip(mu.par_chunks_mut(share)).enumerate();
+            let errors = shares.map(|(number, sites)| self.drift(part, first + number * share, sites, None).err());
             errors.reduce(|| None, Option::or).map_or(Ok(()), Err)
         };
         self.tried(state, steps, |at, part, (q, mu)| {
