@@ -8,7 +8,7 @@ use std::ops::Range;
 
 use crate::memory::Images;
 use crate::node::{ExprNode, Id, Operation, Term};
-use crate::{Expr, IntoList, Shape, both, integer};
+use crate::{Expr, IntoList, Property, Shape, both, integer};
 
 impl<'g> Expr<'g> {
     /// The entry in row i and column j, counted from zero.
@@ -45,6 +45,12 @@ impl<'g> Expr<'g> {
                 a.hadamard(b)
             }
             ExprNode::Of(Operation::Block(r, c), inner) => graph.expr(*inner).block(r + row, c + column, shape),
+            ExprNode::Symbol(symbol)
+                if symbol.property == Property::Diagonal
+                    && common((row, shape.rows), (column, shape.columns)).is_empty() =>
+            {
+                graph.zero(shape)
+            }
             ExprNode::Of(Operation::DiagonalMatrix, inner) => {
                 let diagonal = common((row, shape.rows), (column, shape.columns));
                 if diagonal.is_empty() {

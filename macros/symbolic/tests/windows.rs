@@ -69,3 +69,17 @@ fn blocks_of_diagonal_matrices() {
     assert_eq!(matrix.block(0, 0, Shape::square(3)).to_string(), "diag(v[0..3])");
     assert!(matrix.block(0, 2, Shape::square(2)).is_zero());
 }
+
+/// A matrix that is promised to be diagonal has blocks of zeros off its diagonal, and others that are its own.
+#[test]
+fn blocks_of_promised_diagonal_matrices() {
+    let graph = Graph::new();
+    let matrix = graph.symbol("M", Shape::square(4), Role::Parameter(0), Property::Diagonal);
+    for (rows, columns) in Shape::square(4).positions().map(|(i, j)| (i + 1, j + 1)) {
+        for (row, column) in Shape::new(5 - rows, 5 - columns).positions() {
+            let block = matrix.block(row, column, Shape::new(rows, columns));
+            let meets = (row..row + rows).any(|i| (column..column + columns).contains(&i));
+            assert_eq!(block.is_zero(), !meets, "{block} from {row}, {column}");
+        }
+    }
+}

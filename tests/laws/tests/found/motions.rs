@@ -12,7 +12,7 @@ use clebsch_tests::oracle::near::assert_near;
 use clebsch_tests::oracle::random::Random;
 use clebsch_tests::oracle::rotation::{components, vee};
 use clebsch_tests::stepping::Stepping;
-use nalgebra::{Matrix3, Matrix4, Vector3, Vector6};
+use nalgebra::{Matrix3, Matrix4, Vector3, Vector4, Vector6};
 
 use crate::{H, NEAR, assert_conserved, assert_reversible, assert_says, assert_says_nowhere};
 
@@ -75,6 +75,57 @@ fn spatial_body() {
     assert_near(&kick, &both(center.cross(&force), force), NEAR, "the weight, at the centre of mass");
     assert_conserved(body.clone(), q, random.vector(), FALLING);
     assert_reversible(&body, q, random.vector());
+}
+
+/// A body with its principal axes, by the diagonal of its mass matrix.
+#[derive(Clebsch, Clone, Debug)]
+#[clebsch(
+    action = |F: SE<3>, q: SE<3>| q * F,
+    cost   = |h, F| ((F - I) * Matrix4::from_diagonal(self.moments) * (F - I).transpose()).trace() / (2 * h),
+)]
+struct PrincipalBody {
+    /// Second moments and mass.
+    moments: Vector4<f64>,
+}
+
+/// A body whose mass matrix is promised to be diagonal.
+#[derive(Clebsch, Clone, Debug)]
+#[clebsch(
+    action = |F: SE<3>, q: SE<3>| q * F,
+    cost   = |h, F| ((F - I) * self.mass_matrix * (F - I).transpose()).trace() / (2 * h),
+)]
+struct DiagonalBody {
+    #[clebsch(diagonal)]
+    mass_matrix: Matrix4<f64>,
+}
+
+#[test]
+fn principal_bodies_in_space() {
+    let random = &mut Random::new(226);
+    assert_says::<PrincipalBody>(&["one scalar unknown"]);
+    assert_says::<DiagonalBody>(&["one scalar unknown"]);
+    for _ in 0..20 {
+        let moments = random.inertia::<3>().diagonal().push(1.4);
+        let mass_matrix = Matrix4::from_diagonal(&moments);
+        let general = SpatialBody { mass_matrix, gravity: 0.0 }.stepper(H).expect("a body");
+        let principal = PrincipalBody { moments }.stepper(H).expect("a body");
+        let promised = DiagonalBody { mass_matrix }.stepper(H).expect("a body");
+        let (q, mu) = (motion(&random.attitude(), &random.vector()), random.vector::<6>());
+        let expected = general.step(&general.state(q, mu).expect("a state")).expect("a step");
+        let steps = [
+            principal
+                .step(&principal.state(q, mu).expect("a state"))
+                .map(|next| (*next.configuration(), next.momentum())),
+            promised
+                .step(&promised.state(q, mu).expect("a state"))
+                .map(|next| (*next.configuration(), next.momentum())),
+        ];
+        for step in steps {
+            let (place, momentum) = step.expect("a step");
+            assert_near(&place, expected.configuration(), NEAR, "the place of the same body");
+            assert_near(&momentum, &expected.momentum(), NEAR, "the momentum of the same body");
+        }
+    }
 }
 
 #[test]
