@@ -1,7 +1,7 @@
 //! Optimal control: the inputs that lead from one place to another, or to none in particular, at the least price and within bounds.
 //!
 //! ```text
-//! minimise Σ ℓ(t_k, h, x_k, u_k) + φ(t_N, x_N)   subject to   x_{k+1} = f(t_k, h, x_k, u_k),   a(t_k, x_k, u_k) ≤ 0,   x_N = target
+//! minimise Σ ℓ(t_k, h, x_k, u_k) + φ(t_N, x_N)   subject to   x_{k+1} = f(t_k, h, x_k, u_k),   a(t_k, x_k, u_k) ≤ 0 or = 0,   x_N = target
 //! ```
 //! The unknowns are the inputs, and the start where that is unknown. Newton's method is a Riccati sweep backward, with exact second derivatives on the manifold, and a roll-out forward.
 
@@ -472,10 +472,7 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, B: Start<S, D, U, C>, const D:
                 size += part.abs() * T::from_f64(steps as f64);
             }
         }
-        let pushes = |stage: &Stage<S, D, U, C>, i: usize| {
-            stage.limits.multipliers[i] > T::zero() || stage.limits.excess_of_soft(i) > T::zero()
-        };
-        let pushed = self.stages.iter().any(|stage| (0..C).any(|i| pushes(stage, i)));
+        let pushed = self.stages.iter().any(|stage| (0..C).any(|i| stage.limits.pushes(i)));
         let prepared = if pushed { Some((system.prepare(h + apart)?, system.prepare(h - apart)?)) } else { None };
         for (index, stage) in self.stages.iter().enumerate() {
             let t = self.problem.time_after(index);
@@ -496,7 +493,7 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, B: Start<S, D, U, C>, const D:
                 // the price w of soft bounds may change too, by dw each unit by which they are violated
                 let dearer_by_time = (prices(constants, t + later) - prices(constants, t - later)) / (later + later);
                 let dearer_by_step = (prices(longer, t) - prices(shorter, t)) / (apart + apart);
-                for i in (0..C).filter(|i| pushes(stage, *i)) {
+                for i in (0..C).filter(|i| stage.limits.pushes(*i)) {
                     let violated = stage.limits.excess_of_soft(i);
                     part += z[i] * (k * by_time[i] + by_step[i]);
                     if violated > T::zero() {

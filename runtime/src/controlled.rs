@@ -6,7 +6,7 @@ use nalgebra::{SMatrix, SVector};
 use num_traits::Zero;
 
 /// A system whose inputs are chosen. The step is x⁺ = f(t, h, x, u) at the price ℓ(t, h, x, u). The bounds are a(t, h,
-/// x, u) ≤ 0, and the end has the price φ(t, x).
+/// x, u) ≤ 0, or = 0 for the first ones, and the end has the price φ(t, x).
 ///
 /// D is the dimension of places x, U that of inputs u, C the number of bounds. `#[derive(Clebsch)]` implements it for a
 /// struct with `controls` or `dynamics`, where x is the configuration. With `effort`, x is a state (q, N) and f the
@@ -53,6 +53,8 @@ pub trait Controlled<const D: usize, const U: usize, const C: usize>: Sized {
     const NAME: &'static str;
     /// The bounds as they were written.
     const BOUNDS: [&'static str; C];
+    /// The number of equations among the bounds, the first ones: these ask for a = 0.
+    const EQUAL_BOUNDS: usize = 0;
     /// The number of components, the first ones, that move the configuration; the others, if any, change the momentum.
     const MOTIONS: usize;
     /// The conditions that `target` declares for the end, as they were written: equations, and inequalities after them. There are at most D.
@@ -144,7 +146,7 @@ pub trait Controlled<const D: usize, const U: usize, const C: usize>: Sized {
         costate: &SVector<Self::Scalar, D>,
     ) -> Result<Self::Scalar, Error>;
 
-    /// a(t, h, x, u). No entry is positive if the bounds are satisfied.
+    /// a(t, h, x, u). No entry is positive if the bounds are satisfied, and those of equations vanish.
     ///
     /// # Errors
     /// Those of a step, where bounds take its velocity.
@@ -254,7 +256,7 @@ pub struct Expansion<X, T, const D: usize, const U: usize> {
     pub input_curvature: SMatrix<T, U, U>,
 }
 
-/// Bounds a ≤ 0 with their derivatives.
+/// Bounds a ≤ 0, or a = 0, with their derivatives.
 ///
 /// ```
 /// # use clebsch::{Clebsch, Controlled};

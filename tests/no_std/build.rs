@@ -36,7 +36,7 @@ const DIRECTIONS: [(&str, &str); 6] = [
 const LANES: [&str; 2] = ["F64x4", "F64x8"];
 
 /// Dimensions of problems of optimal control: of places, of inputs, and the number of bounds.
-const DIMENSIONS: [(&str, &str); 14] = [
+const DIMENSIONS: [(&str, &str); 15] = [
     ("attitude_estimation.Satellite", "6, 6, 0"),
     ("follower", "3, 2, 1"),
     ("frugal_car", "3, 2, 4"),
@@ -45,6 +45,7 @@ const DIMENSIONS: [(&str, &str); 14] = [
     ("rate_limited_body", "6, 3, 2"),
     ("steered_body", "6, 3, 2"),
     ("unicycle", "3, 2, 3"),
+    ("wheeled_car", "3, 3, 3"),
     ("mpc.Follower", "12, 4, 9"),
     ("plate_ball.Ball", "5, 2, 0"),
     ("quadrotor.Quadrotor", "12, 4, 8"),

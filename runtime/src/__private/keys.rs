@@ -68,9 +68,9 @@ pub mod dynamics {
 /// Example: `effort = |h, torque| h * torque.norm_squared() / 2`
 pub mod effort {}
 
-/// Inequalities between scalars, with `<=` or `>=`, that hold in every step of a plan. A field that only bounds read may be infinite: plans are then those without that bound.
+/// Inequalities of scalars, with `<=` or `>=`, and equations of scalars or vectors, with `==`, that hold in every step of a plan. A field that only inequalities read may be infinite: plans are then those without them.
 ///
-/// Example: `bounds = |u| [u.x <= 1, -1 <= u.x]`
+/// Example: `bounds = |u| [u.x <= 1, u.x + u.y == 0]`
 pub mod bounds {}
 
 /// The price of the end of a plan, or of a path of least action with a free end. It is added to the prices of all steps.

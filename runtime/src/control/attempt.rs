@@ -105,7 +105,7 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, B: Start<S, D, U, C>, const D:
             self.follow()?;
             let end = self.end();
             // multipliers and slacks are forgotten: the reach of inputs is that without bounds
-            self.bounds = T::zero();
+            (self.bounds, self.has_equations) = (T::zero(), false);
             let summary = self.eliminate(&end, &Iterate::new(SVector::zeros(), None, end.distance).settings)?;
             self.stir(&summary, end.lack.max_abs(), variation, amplitudes);
         }

@@ -11,8 +11,9 @@
 //! (2021), for slacks in roll-outs.
 
 use super::Stage;
+use super::iterate::Iterate;
 use super::quadratic::Slopes;
-use super::slacks::{Condensed, is_none};
+use super::slacks::{Condensed, Kind, Strictness, Values, is_none};
 use super::start::Start;
 use super::sweep::{Plan, Settings};
 use crate::space::larger;
@@ -31,6 +32,23 @@ const PART: (i64, i64) = (1, 100);
 /// The same for a bound that is 0 in all stages, as a part of its first change. Corrections without bounds go further
 /// than those within.
 const PART_OF_CHANGE: (i64, i64) = (1, 10);
+
+/// ρ̂ of equations at first: a violation by their size in all steps costs as much as the plan does, and more. Stiffer ones do not let a car
+/// slide sideways on its way to a plan, so that it winds.
+const FIRST_RIGID: f64 = 3.0;
+/// The growth of ρ̂ with each correction that is made in full.
+pub(super) const STIFFER: f64 = 30.0;
+/// ρ̂ at last: a violation is as dear as a multiplier's part 10⁻⁷, and rounding is a part 10⁻⁹ of it.
+pub(super) const RIGID: f64 = 1e7;
+/// ρ̂ where multipliers creep.
+pub(super) const MOST_RIGID: f64 = 1e11;
+
+/// Units in the last place of the terms of an equation that are round-off of inputs and places.
+const EQUAL: f64 = 1024.0;
+
+fn largest<'a, T: Real>(entries: impl Iterator<Item = &'a T>) -> T {
+    entries.fold(T::zero(), |most, entry| larger(most, entry.abs()))
+}
 
 /// The last μ, for so many bounds and a price of this size.
 pub(super) fn last<T: Real>(bounds: T, price: T) -> T {
@@ -57,7 +75,7 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: usize
         let limits = &self.limits;
         limits.clear_absent(&mut bounds.by_place);
         limits.clear_absent(&mut bounds.by_input);
-        let Condensed { force, stiffness } = limits.condensed(settings.barrier);
+        let Condensed { force, stiffness } = limits.condensed(settings.strictness);
         let force = if settings.is_last { limits.multipliers } else { force };
         let by_place = SMatrix::<T, C, D>::from_fn(|i, j| stiffness[i] * bounds.by_place[(i, j)]);
         let by_input = SMatrix::<T, C, U>::from_fn(|i, j| stiffness[i] * bounds.by_input[(i, j)]);
@@ -74,33 +92,65 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: usize
 impl<T: Real, S: Controlled<D, U, C, Scalar = T>, B: Start<S, D, U, C>, const D: usize, const U: usize, const C: usize>
     Plan<'_, S, B, D, U, C>
 {
-    /// The barrier of a plan that has multipliers and satisfies its bounds: the mean of z·s. Otherwise `None`, and bounds
-    /// are relaxed.
+    /// The barrier of a plan that has multipliers and satisfies its bounds: the mean of z·s. Its equations are as stiff as they get.
+    /// Otherwise `None`, and bounds are relaxed.
     ///
     /// The least slack is a hundredth of the size of the bound, the largest |a|. A bound that is 0 in all stages has no
     /// size yet. [`size`](Self::size) finds it.
-    pub fn resume_or_relax(&mut self) -> Result<Option<T>, Error> {
+    pub fn resume_or_relax(&mut self) -> Result<Option<Strictness<T>>, Error> {
         let zero = T::zero();
         let mut bounds: usize = 0;
         for (index, stage) in self.stages.iter_mut().enumerate() {
             let t = self.problem.time_after(index);
             let values = self.problem.bounds(stage, t, &stage.place, &stage.input)?;
             let prices = self.problem.bound_prices(stage, t);
-            bounds += stage.limits.take_values(values, prices, |i| S::BOUNDS[i])?;
+            let (names, equations) = (S::BOUNDS, S::EQUAL_BOUNDS);
+            bounds += stage.limits.take_values(Values { values, prices, names, equations })?;
         }
         self.bounds = T::from_f64(bounds as f64);
-        if bounds == 0 {
-            return Ok(Some(zero));
+        self.has_equations = S::EQUAL_BOUNDS > 0;
+        if !self.is_bounded() {
+            return Ok(Some(Strictness::none()));
         }
         let sum = self.stages.iter().fold(zero, |sum, stage| sum + stage.limits.complementarity());
         // none is left where all kinks are reached
-        if sum > zero && self.stages.iter().all(|stage| stage.limits.is_warm()) {
-            return Ok(Some(sum / self.bounds));
+        let is_inside = bounds == 0 || sum > zero;
+        if is_inside && self.stages.iter().all(|stage| stage.limits.is_warm()) {
+            let barrier = if bounds == 0 { zero } else { sum / self.bounds };
+            let rigidity = if self.has_equations { T::from_f64(RIGID) } else { zero };
+            return Ok(Some(Strictness { barrier, rigidity, price: self.price_of_step()? }));
         }
         let sizes = self.sizes();
         self.relax(|i| Some(if sizes[i] > zero { sizes[i] * T::from_ratio(PART.0, PART.1) } else { T::one() }));
+        self.stages.iter_mut().for_each(|stage| stage.limits.size_equations(|i| sizes[i]));
         self.begin(zero);
         Ok(None)
+    }
+
+    /// Σ|ℓ|/N where equations need it, or 1 where steps have no price.
+    fn price_of_step(&self) -> Result<T, Error> {
+        let mut price = T::zero();
+        for (index, stage) in self.stages.iter().enumerate().filter(|_| self.has_equations) {
+            price += self.problem.price(stage, self.problem.time_after(index), &stage.place, &stage.input)?.abs();
+        }
+        Ok(if price > T::zero() { price / self.steps() } else { T::one() })
+    }
+
+    /// The number of steps.
+    pub fn steps(&self) -> T {
+        T::from_f64(self.stages.len() as f64)
+    }
+
+    /// The first barrier and the first stiffness of equations, for a plan of this price, with multipliers. The barrier is wider by a factor.
+    pub fn begin_bounds(&mut self, now: &mut Iterate<T, D>, price: T, wider: f64) {
+        if self.bounds > T::zero() {
+            now.settings.strictness.barrier = T::from_f64(wider * FIRST) * price / self.bounds;
+        }
+        if self.has_equations {
+            let strictness = &mut now.settings.strictness;
+            (strictness.rigidity, strictness.price) = (T::from_f64(FIRST_RIGID), price / self.steps());
+        }
+        self.begin(now.settings.strictness.barrier);
     }
 
     /// The largest |a| of each bound, in all stages.
@@ -115,21 +165,21 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, B: Start<S, D, U, C>, const D:
         self.stages.iter_mut().for_each(|stage| stage.limits.relax(&least));
     }
 
-    /// Relaxes the bounds that are 0 in all stages, each by its own size. That is its first change, by a correction
+    /// Gives sizes to equations: the largest |a|, or the first change, if that is larger. Relaxes the bounds that are 0 in all stages, each by its own size. That is its first change, by a correction
     /// without bounds. If nothing changes it, its size is the smallest of the others. Too small a slack shortens steps,
     /// and too large a slack switches the bound off.
     #[cold]
     pub fn size(&mut self, change: &SVector<T, D>) -> Result<(), Error> {
         let zero = T::zero();
         let sizes = self.sizes();
-        if sizes.iter().all(|size| *size > zero) {
+        if !self.has_equations && sizes.iter().all(|size| *size > zero) {
             return Ok(());
         }
         let mut moved = SVector::<T, C>::from_element(zero);
-        self.follow_correction(change, |stage, by| {
-            moved = SVector::from_fn(|i, _| match by[i].abs() {
-                by if by.is_finite() && !is_none(stage.limits.slack[i]) => larger(moved[i], by),
-                _ => moved[i],
+        self.follow_correction(change, |stage, by, most| {
+            moved = SVector::from_fn(|i, _| {
+                let by = stage.limits.size_of_motion(i, by[i], most[i]);
+                if by.is_finite() && !is_none(stage.limits.slack[i]) { larger(moved[i], by) } else { moved[i] }
             });
         })?;
         self.size_by(&sizes, &moved);
@@ -152,6 +202,9 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, B: Start<S, D, U, C>, const D:
             (_, true) => Some(part(moved[i], PART_OF_CHANGE)),
             _ => least.map(|least| part(least, PART)),
         });
+        let size = |i: usize| larger(sizes[i], moved[i]);
+        let known = |size: T| if size > zero { size } else { least.unwrap_or(T::one()) };
+        self.stages.iter_mut().for_each(|stage| stage.limits.size_equations(|i| known(size(i))));
     }
 
     /// Multipliers μ/s for the slacks.
@@ -169,25 +222,43 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, B: Start<S, D, U, C>, const D:
     }
 
     /// Multipliers of the bounds from the next correction.
-    pub fn settle(&mut self, change: &SVector<T, D>, barrier: T) -> Result<(), Error> {
-        self.follow_correction(change, |stage, moved| stage.limits.settle(&moved, barrier))
+    pub fn settle(&mut self, change: &SVector<T, D>, strictness: Strictness<T>) -> Result<(), Error> {
+        self.follow_correction(change, |stage, moved, _| stage.limits.settle(&moved, strictness))
     }
 
-    /// Visits each stage with how far a full correction moves its bounds, to first order.
+    /// Multipliers of the equations after a fraction of the correction, from the plan before it.
+    #[inline]
+    pub fn equate(&mut self, change: &SVector<T, D>, fraction: T, strictness: Strictness<T>) -> Result<(), Error> {
+        if !self.has_equations {
+            return Ok(());
+        }
+        self.follow_correction(change, |stage, moved, _| stage.limits.equate(&moved, fraction, strictness))
+    }
+
+    /// Visits each stage with how far a full correction moves its bounds, to first order. With it comes how far a motion of that size moves
+    /// them at most.
     fn follow_correction(
         &mut self,
         change: &SVector<T, D>,
-        mut visit: impl FnMut(&mut Stage<S, D, U, C>, SVector<T, C>),
+        mut visit: impl FnMut(&mut Stage<S, D, U, C>, SVector<T, C>, SVector<T, C>),
     ) -> Result<(), Error> {
         let problem = &self.problem;
         let mut displacement = B::change(&self.correction, change).unwrap_or(SVector::from_element(T::zero()));
         for (index, stage) in self.stages.iter_mut().enumerate().filter(|_| C > 0) {
             let t = self.problem.time_after(index);
-            let step = problem.expand(stage, t, &stage.next_costate)?;
             let bounds = problem.bounds_expanded(stage, t, &stage.limits.multipliers)?;
+            if self.is_lifted {
+                // the correction is made linear
+                visit(stage, bounds.by_place * stage.motion + bounds.by_input * stage.shift, SVector::zeros());
+                continue;
+            }
+            let step = problem.expand(stage, t, &stage.next_costate)?;
             let input = stage.shift + stage.by_multiplier * change + stage.gain * displacement;
-            let moved = bounds.by_place * displacement + bounds.by_input * input;
-            visit(stage, moved);
+            let (far, wide) = (displacement.max_abs(), input.max_abs());
+            let most = SVector::from_fn(|i, _| {
+                largest(bounds.by_place.row(i).iter()) * far + largest(bounds.by_input.row(i).iter()) * wide
+            });
+            visit(stage, bounds.by_place * displacement + bounds.by_input * input, most);
             displacement = step.by_place * displacement + step.by_input * input;
         }
         Ok(())
@@ -197,13 +268,13 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, B: Start<S, D, U, C>, const D:
     #[cold]
     pub fn price_of_kinks(&mut self, change: &SVector<T, D>) -> Result<T, Error> {
         let mut sum = T::zero();
-        self.follow_correction(change, |stage, moved| sum += stage.limits.price_of_motion(&moved))?;
+        self.follow_correction(change, |stage, moved, _| sum += stage.limits.price_of_motion(&moved))?;
         Ok(sum)
     }
 
     /// Whether any bound is soft.
     pub fn has_kinks(&self) -> bool {
-        self.stages.iter().any(|stage| stage.limits.price.iter().any(|price| price.is_finite()))
+        self.stages.iter().any(|stage| stage.limits.has_kinks())
     }
 
     /// Σ w max(a, 0) of all stages.
@@ -216,13 +287,13 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, B: Start<S, D, U, C>, const D:
         self.stages.iter().any(|stage| stage.limits.is_relaxed())
     }
 
-    /// Whether a relaxed bound is violated by more than round-off of its own terms. These are |∂a/∂x| |x| and
-    /// |∂a/∂u| |u| of the present plan.
+    /// Whether a relaxed bound or an equation is violated by more than round-off of its own terms. These are |∂a/∂x| |x| and
+    /// |∂a/∂u| |u| of the present plan, and for an equation the size of a.
     pub fn is_violated(&self) -> bool {
         let zero = T::zero();
-        let round_off = T::from_f64(16.0) * T::EPSILON;
+        let [round_off, equal] = [16.0, EQUAL].map(|units| T::from_f64(units) * T::EPSILON);
         self.stages.iter().enumerate().any(|(index, stage)| {
-            if !stage.limits.is_relaxed() {
+            if !stage.limits.is_relaxed() && !stage.limits.has_equations() {
                 return false;
             }
             let (t, x, u) = (self.problem.time_after(index), &stage.place, &stage.input);
@@ -233,7 +304,11 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, B: Start<S, D, U, C>, const D:
             !(0..C).all(|i| {
                 let by_place = (0..D).fold(zero, |sum, j| sum + bounds.by_place[(i, j)].abs() * place);
                 let terms = (0..U).fold(by_place, |sum, j| sum + (bounds.by_input[(i, j)] * u[j]).abs());
-                stage.limits.price[i].is_finite() || bounds.values[i] <= larger(zero, round_off * terms)
+                match stage.limits.kinds[i] {
+                    Kind::Soft(_) => true,
+                    Kind::Inequality => bounds.values[i] <= larger(zero, round_off * terms),
+                    Kind::Equation(size) => bounds.values[i].abs() <= equal * larger(terms, size),
+                }
             })
         })
     }
@@ -247,8 +322,7 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, B: Start<S, D, U, C>, const D:
             let t = self.problem.time_after(index);
             let values = self.problem.bounds(stage, t, &stage.place, &stage.input);
             let hard = |values: SVector<T, C>| {
-                let hard = (0..C).filter(|i| !stage.limits.price[*i].is_finite());
-                hard.fold(largest, |largest, i| larger(largest, values[i]))
+                (0..C).fold(largest, |largest, i| larger(largest, stage.limits.violation(i, values[i])))
             };
             values.map_or(largest, hard)
         })
@@ -261,9 +335,9 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, B: Start<S, D, U, C>, const D:
             let t = self.problem.time_after(index);
             let Ok(values) = self.problem.bounds(stage, t, &stage.place, &stage.input) else { continue };
             for i in 0..C {
-                let part = values[i] / stage.limits.excess[i];
-                if part > most && stage.limits.excess[i] > T::zero() {
-                    (most, worst) = (part, Some((index, S::BOUNDS[i], values[i])));
+                let part = stage.limits.relative_violation(i, values[i]);
+                if part > most {
+                    (most, worst) = (part, Some((index, S::BOUNDS[i], stage.limits.violation(i, values[i]))));
                 }
             }
         }

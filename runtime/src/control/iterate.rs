@@ -2,6 +2,7 @@
 
 use super::barrier;
 use super::end::{Gramian, PlanEnd};
+use super::slacks::Strictness;
 use super::sweep::{PlanSummary, Settings};
 use crate::Real;
 use crate::newton::{Curvature, adapted};
@@ -64,6 +65,8 @@ pub(super) struct Iterate<T, const D: usize> {
     missed: Option<T>,
     /// Whether the last sweep left out the curvature of steps, and of most of them.
     is_straightened: bool,
+    /// Whether equations were made less stiff again.
+    is_relieved: bool,
     is_mostly_straight: bool,
     /// The number of corrections that still go without that curvature.
     straight: u32,
@@ -89,19 +92,19 @@ pub(super) enum Verdict {
 
 impl<T: Real, const D: usize> Iterate<T, D> {
     /// Before the first sweep; a barrier is chosen after it where none is given.
-    pub fn new(multipliers: SVector<T, D>, barrier: Option<T>, distance: T) -> Self {
+    pub fn new(multipliers: SVector<T, D>, strictness: Option<Strictness<T>>, distance: T) -> Self {
         let zero = T::zero();
         Self {
             settings: Settings {
                 multipliers,
                 weight: SMatrix::zeros(),
                 gap_price: None,
-                barrier: barrier.unwrap_or(zero),
+                strictness: strictness.unwrap_or(Strictness::none()),
                 curvature: Curvature::mirrored(zero, zero),
                 is_straight: false,
                 is_last: false,
             },
-            is_open: barrier.is_none(),
+            is_open: strictness.is_none(),
             damping: zero,
             stiffer: SMatrix::zeros(),
             is_probed: false,
@@ -118,6 +121,7 @@ impl<T: Real, const D: usize> Iterate<T, D> {
             in_vain: 0,
             missed: None,
             is_straightened: false,
+            is_relieved: false,
             is_mostly_straight: false,
             straight: 0,
         }
@@ -294,7 +298,7 @@ impl<T: Real, const D: usize> Iterate<T, D> {
             Verdict::Correct
         } else if !end.is_reached() {
             Verdict::Stir
-        } else if self.settings.barrier > last_barrier + last_barrier {
+        } else if self.settings.strictness.barrier > last_barrier + last_barrier {
             Verdict::Tighten
         } else {
             Verdict::Done
@@ -303,11 +307,40 @@ impl<T: Real, const D: usize> Iterate<T, D> {
 
     /// The next barrier, if it is another.
     pub fn tighten(&mut self, bounds: T, price: T) {
-        let next = barrier::next(self.settings.barrier, bounds, price);
-        if next < self.settings.barrier * T::from_ratio(9, 10) {
-            self.settings.barrier = next;
+        let barrier = &mut self.settings.strictness.barrier;
+        let next = barrier::next(*barrier, bounds, price);
+        if next < *barrier * T::from_ratio(9, 10) {
+            *barrier = next;
             (self.before, self.calm, self.is_cornered) = (None, 0, false);
         }
+    }
+
+    /// Makes equations stiffer after a full correction of this size, for steps of this price. Where corrections hardly shrink, some multipliers
+    /// move hardly anything, and creep. Equations are then stiffer than they may be at the end, for rounding of a is multiplied by ρ.
+    pub fn stiffen(&mut self, price: T, size: T) {
+        let is_near = |before: T| before <= T::from_ratio(NEAR.0, NEAR.1) && size > before * T::from_ratio(1, 8);
+        let creeps = self.before.is_some_and(is_near) && !self.is_relieved;
+        let Strictness { rigidity, price: of_step, .. } = &mut self.settings.strictness;
+        let [stiffer, rigid, most] = [barrier::STIFFER, barrier::RIGID, barrier::MOST_RIGID].map(T::from_f64);
+        let (stiffer, limit) = (*rigidity * stiffer, if creeps { most } else { rigid });
+        *of_step = larger(*of_step, price);
+        if creeps && *rigidity >= most {
+            // only rounding changes it now
+            self.relieve();
+        } else {
+            *rigidity = larger(*rigidity, if stiffer < limit { stiffer } else { limit });
+        }
+    }
+
+    /// Makes equations less stiff for the last digits of their multipliers; `false` where they are not too stiff for that.
+    pub fn relieve(&mut self) -> bool {
+        let rigid = T::from_f64(barrier::RIGID);
+        let is_stiffer = self.settings.strictness.rigidity > rigid;
+        if is_stiffer {
+            self.settings.strictness.rigidity = rigid;
+            (self.is_relieved, self.before, self.calm, self.stagnations) = (true, None, 0, 0);
+        }
+        is_stiffer
     }
 
     /// Goes on after a sweep with so many pivots that are not positive. A fraction of its correction was made after

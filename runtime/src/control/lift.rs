@@ -15,10 +15,9 @@
 //! the implementation of an interior-point filter line-search algorithm* (2006), for the filter.
 
 use super::attempt::Amplitudes;
-use super::barrier::FIRST;
 use super::iterate::Iterate;
 use super::search::Descent;
-use super::slacks::Proposed;
+use super::slacks::{Proposed, Strictness};
 use super::start::Start;
 use super::sweep::{Plan, Problem, Swept};
 use crate::newton::Curvature;
@@ -74,7 +73,7 @@ impl<T: Real, const D: usize> Gap<T, D> {
 #[derive(Clone, Copy)]
 struct Proposal<X, T> {
     last: X,
-    /// The sum of all gaps, that to the target with them, and the part to which bounds are relaxed.
+    /// The sum of all gaps, that to the target with them, the part to which bounds are relaxed, and the violations of equations.
     gaps: T,
     /// Σℓ + φ
     price: T,
@@ -174,8 +173,8 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, B: Start<S, D, U, C>, const D:
     fn close(&mut self) -> Result<bool, Error> {
         let (zero, one) = (T::zero(), T::one());
         let end = self.end();
-        let barrier = self.resume_or_relax()?;
-        let mut now = Iterate::new(SVector::zeros(), barrier, end.distance);
+        let strictness = self.resume_or_relax()?;
+        let mut now = Iterate::new(SVector::zeros(), strictness, end.distance);
         let (mut filter, mut at, mut units, mut stuck) = (Filter::new(zero), None, SVector::zeros(), 0);
         for _ in 0..SWEEPS {
             let Some(Swept { summary, end, gramian }) = self.sweep(&mut now)? else { continue };
@@ -202,12 +201,13 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, B: Start<S, D, U, C>, const D:
             now.largest = larger(now.largest, summary.magnitude);
             let magnitude = summary.magnitude + T::EPSILON.sqrt() * now.largest;
             let size = (decrement.abs() / magnitude).sqrt();
-            let measures = before.measures(now.settings.barrier);
+            let measures = before.measures(now.settings.strictness.barrier);
             let Some((fraction, proposal)) = self.try_parts(&last_motion, &filter, measures, (&now, &units)) else {
                 return Ok(false);
             };
             filter.add(measures);
-            self.accept(fraction, now.settings.barrier, proposal.last);
+            self.equate(&change, fraction, now.settings.strictness)?;
+            self.accept(fraction, now.settings.strictness.barrier, proposal.last);
             self.add_multipliers(&mut now, &(change * fraction));
             at = Some(proposal);
             stuck = if fraction < T::from_ratio(SHORT.0, SHORT.1) { stuck + 1 } else { 0 };
@@ -220,9 +220,12 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, B: Start<S, D, U, C>, const D:
                 return Ok(true);
             }
             if fraction >= T::from_ratio(9, 10) && is_below(CENTRAL) {
-                let barrier = now.settings.barrier;
+                let barrier = now.settings.strictness.barrier;
                 now.tighten(self.bounds, magnitude);
-                if now.settings.barrier < barrier {
+                if self.has_equations {
+                    now.stiffen(magnitude / self.steps(), size);
+                }
+                if now.settings.strictness.barrier < barrier {
                     filter.count = 0;
                 }
             }
@@ -248,11 +251,9 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, B: Start<S, D, U, C>, const D:
         self.resume_or_relax()?;
         let price = larger(proposal.price.abs(), repair);
         now.largest = price;
-        if self.bounds > zero {
+        if self.is_bounded() {
             self.size_by_others();
-            let price = if price > zero { price } else { T::one() };
-            now.settings.barrier = T::from_f64(WIDER * FIRST) * price / self.bounds;
-            self.begin(now.settings.barrier);
+            self.begin_bounds(now, if price > zero { price } else { T::one() }, WIDER);
         }
         let units = self.units();
         Ok((units, self.propose(zero, last_motion, &units)?))
@@ -273,7 +274,7 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, B: Start<S, D, U, C>, const D:
                     fraction = larger(allowed * T::from_ratio(99, 100), fraction * T::from_f64(1e-3));
                     continue;
                 }
-                let (gaps, price) = proposal.measures(now.settings.barrier);
+                let (gaps, price) = proposal.measures(now.settings.strictness.barrier);
                 let is_closed = gaps <= T::from_f64(CLOSED);
                 if gaps.is_finite() && price.is_finite() && (is_closed || filter.accepts(gaps, price, measures)) {
                     return Some((fraction, proposal));
@@ -331,6 +332,7 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, B: Start<S, D, U, C>, const D:
         let zero = T::zero();
         let size = |change: SVector<T, D>| change.component_mul(units).iter().fold(zero, |sum, part| sum + part.abs());
         let (mut price, mut logarithms, mut gaps, mut slacks) = (zero, zero, zero, Proposed::none());
+        let free = Strictness::none();
         let mut reached: Option<S::Place> = None;
         for (index, stage) in self.stages.iter_mut().enumerate() {
             let t = self.problem.time_after(index);
@@ -341,7 +343,7 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, B: Start<S, D, U, C>, const D:
             }
             if C > 0 {
                 let bounds = problem.bounds(stage, t, &x, &input)?;
-                stage.limits.propose(&bounds, (fraction, zero), |i| S::BOUNDS[i], &mut slacks)?;
+                stage.limits.propose(&bounds, (fraction, free), |i| S::BOUNDS[i], &mut slacks)?;
                 logarithms += stage.limits.logarithms();
             }
             if index == 0 {
@@ -359,7 +361,7 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, B: Start<S, D, U, C>, const D:
         price += system.endpoint(constants, problem.end_time(), &last);
         Ok(Proposal {
             last,
-            gaps: gaps + slacks.relaxed,
+            gaps: gaps + slacks.relaxed + slacks.unequal,
             price: price + slacks.soft,
             logarithms,
             allowed: slacks.allowed,

@@ -24,6 +24,8 @@ const STIRS: u32 = 3;
 const DEAR: f64 = 1e4;
 /// Steps in a row that may be next to nothing.
 const STALLS: u32 = 8;
+/// Critical plans that may violate equations, before these contradict each other.
+const UNMET: u32 = 8;
 
 /// Whether a decrease of the price by so much is round-off of places and inputs, for the span of a price that is round-off itself.
 fn is_below_round_off<T: Real>(decrement: T, span: T) -> bool {
@@ -42,7 +44,7 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, B: Start<S, D, U, C>, const D:
         // The size of a correction that is round-off. Slacks of active bounds have few digits.
         let exact = T::from_f64(4.0) * T::EPSILON * steps.sqrt();
         let mut now = self.start(is_priced)?;
-        let (mut size, mut stirs, mut has_corrected) = (zero, 0, false);
+        let (mut size, mut stirs, mut unmet, mut has_corrected) = (zero, 0, 0, false);
         for _ in 0..SWEEPS {
             if self.sweeps >= self.most && (has_corrected || self.most == 0) {
                 return self.interrupted(&now, Ended::AtLimit);
@@ -74,7 +76,7 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, B: Start<S, D, U, C>, const D:
                 continue;
             }
             let bounds = self.bounds;
-            let unit = if bounds > zero { T::EPSILON.powf(T::from_ratio(3, 5)) } else { exact };
+            let unit = if self.is_bounded() { T::EPSILON.powf(T::from_ratio(3, 5)) } else { exact };
             let span = self.span(&summary)?;
             let has_vanished = is_below_round_off(decrement, span);
             size = if decrement == zero || has_vanished { zero } else { (decrement.abs() / magnitude).sqrt() };
@@ -87,10 +89,16 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, B: Start<S, D, U, C>, const D:
                 {
                     continue;
                 }
+                Verdict::Done if now.relieve() => continue,
                 // Nothing pushes, but bounds are still violated.
-                Verdict::Done if self.is_violated() => {}
+                Verdict::Done if self.is_violated() => {
+                    unmet += 1;
+                    if self.has_equations && unmet > UNMET {
+                        return Err(self.failure(&end, size));
+                    }
+                }
                 Verdict::Done => {
-                    self.settle(&change, now.settings.barrier)?;
+                    self.settle(&change, now.settings.strictness)?;
                     // Where inputs need no correction, the multipliers may.
                     now.settings.multipliers += change;
                     let found = self.finish(&now);
@@ -98,7 +106,7 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, B: Start<S, D, U, C>, const D:
                     if is_lenient && matches!(found, Err(Error::NotStationary { .. })) {
                         // a price that the guess had made so large that corrections seemed to be round-off
                         now.forget_prices();
-                        self.begin(now.settings.barrier);
+                        self.begin(now.settings.strictness.barrier);
                         continue;
                     }
                     return found;
@@ -143,13 +151,16 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, B: Start<S, D, U, C>, const D:
             }
             has_corrected = true;
             let is_whole = made.is_some_and(|(fraction, _)| fraction >= T::from_ratio(9, 10));
+            if is_whole && self.has_equations {
+                now.stiffen(size_of_price / steps, size);
+            }
             now.advance(made, size, summary.negative, end.distance);
             if now.stalls == STALLS || now.damping > T::from_f64(DAMPING_LIMIT) {
                 return Err(self.failure(&end, size));
             }
             // A bound of places curves with the motion: away from its central path, slacks allow next to nothing of a correction.
             let part = if summary.bounds_places { T::from_ratio(1, 10) } else { T::from_f64(10.0) };
-            let is_central = decrement <= part * now.settings.barrier * bounds;
+            let is_central = decrement <= part * now.settings.strictness.barrier * bounds;
             if bounds > zero && is_whole && is_central && !now.is_priced() {
                 now.tighten(bounds, size_of_price);
             }
@@ -168,10 +179,10 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, B: Start<S, D, U, C>, const D:
         }
         let mut multipliers = costate.map_or(SVector::zeros(), |costate| self.multipliers(&self.end(), &costate));
         self.push(&mut multipliers);
-        let barrier = self.resume_or_relax()?;
+        let strictness = self.resume_or_relax()?;
         let distance = self.end().distance;
         check_finite("the target at the end of the guessed plan", &distance)?;
-        let mut now = Iterate::new(multipliers, barrier, distance);
+        let mut now = Iterate::new(multipliers, strictness, distance);
         now.is_open |= is_priced;
         Ok(now)
     }
@@ -186,15 +197,14 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, B: Start<S, D, U, C>, const D:
     ) -> Result<(), Error> {
         now.is_open = false;
         now.settings.weight = now.stiffer;
-        if self.bounds > T::zero() {
+        if self.is_bounded() {
             let price = if self.has_kinks() { larger(price, self.price_of_kinks(change)?) } else { price };
             self.size(change)?;
             // If neither plans nor the inputs that satisfy bounds have a price, any is as good.
             let is_free = price <= T::zero() && self.is_violated();
             let price = if is_free { T::one() } else { price };
             now.largest = larger(now.largest, price);
-            now.settings.barrier = T::from_f64(barrier::FIRST) * price / self.bounds;
-            self.begin(now.settings.barrier);
+            self.begin_bounds(now, price, 1.0);
         }
         if is_priced {
             // equations have one price, those of places one for motions and one for momenta

@@ -91,7 +91,8 @@ impl<S: Controlled<D, U, C, Scalar: Real>, const D: usize, const U: usize, const
 
     /// Begins the next search without multipliers.
     pub(super) fn forget_multipliers(&mut self) {
-        (self.next_costate, self.limits.multipliers) = (Space::origin(), Space::origin());
+        self.next_costate = Space::origin();
+        self.limits.forget();
     }
 
     getters! {
@@ -110,15 +111,16 @@ impl<S: Controlled<D, U, C, Scalar: Real>, const D: usize, const U: usize, const
     }
 
     /// The multipliers z ≥ 0 of the bounds a ≤ 0: by how much the least price falls where a bound is relaxed by one unit.
+    /// Equations a = 0 have multipliers of any sign: the least price of a = ε is less by zε + O(ε²).
     #[inline]
     pub fn multipliers(&self) -> &SVector<S::Scalar, C> {
         &self.limits.multipliers
     }
 
-    /// The bounds that limit the inputs: their multiplier is larger than the distance to them.
+    /// The bounds that limit the inputs: their multiplier is larger than the distance to them. Equations always do.
     #[inline]
     pub fn active(&self) -> [bool; C] {
-        core::array::from_fn(|i| self.limits.multipliers[i] > self.limits.slack[i])
+        core::array::from_fn(|i| self.limits.is_active(i))
     }
 }
 

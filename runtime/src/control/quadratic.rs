@@ -171,7 +171,7 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: usize
         &self,
         step: &Expansion<S::Place, T, D, U>,
         costate: &SVector<T, D>,
-        pushes: Option<SVector<T, U>>,
+        pushed: Option<SVector<T, U>>,
     ) -> SVector<T, U> {
         let place = self.place.max_abs();
         let part = rounding::<T>();
@@ -181,7 +181,7 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: usize
             let by_input = |sum, j: usize| sum + (step.input_curvature[(i, j)] * self.input[j]).abs();
             let forces = (0..D).fold(step.price_by_input[i].abs(), carried);
             let moved = (0..U).fold((0..D).fold(T::zero(), by_place), by_input);
-            forces + pushes.map_or(T::zero(), |pushes| pushes[i]) + part * moved
+            forces + pushed.map_or(T::zero(), |pushed| pushed[i]) + part * moved
         })
     }
 }

@@ -132,7 +132,7 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, B: Start<S, D, U, C>, const D:
                     let by_model = decrement * fraction * (one - fraction * half);
                     let is_good = rolled.difference <= -by_model * T::from_ratio(GOOD.0, GOOD.1);
                     if is_good || !is_lower || is_relaxed || is_trusted || is_aimed {
-                        return Some((self.take(now, descent, (fraction, part, &change), rolled.last), refused));
+                        return Some((self.take(now, descent, (fraction, part, &change), rolled.last)?, refused));
                     }
                     best = Some((fraction, part, rolled.difference));
                 }
@@ -143,21 +143,22 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, B: Start<S, D, U, C>, const D:
         let (fraction, part, _) = best?;
         let (change, _) = descent.correction(part);
         let rolled = self.roll_out(descent, fraction, &change).ok()?;
-        Some((self.take(now, descent, (fraction, part, &change), rolled.last), refused))
+        Some((self.take(now, descent, (fraction, part, &change), rolled.last)?, refused))
     }
 
-    /// Takes the plan of a roll-out, and gives its fraction.
+    /// Takes the plan of a roll-out, and gives its fraction; `None` where equations of the plan before cannot be expanded.
     fn take(
         &mut self,
         now: &mut Iterate<T, D>,
         descent: &Descent<'_, T, D, U>,
         (fraction, part, change): (T, T, &SVector<T, D>),
         last: S::Place,
-    ) -> T {
-        self.accept(fraction, descent.settings.barrier, last);
+    ) -> Option<T> {
+        self.equate(change, fraction, descent.settings.strictness).ok()?;
+        self.accept(fraction, descent.settings.strictness.barrier, last);
         self.add_multipliers(now, &(change * fraction));
         now.closes = fraction * part;
-        fraction
+        Some(fraction)
     }
 
     /// Goes down from where a sweep with all curvature as it is found a direction to do so. `false` where nothing gets smaller.
@@ -178,7 +179,7 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, B: Start<S, D, U, C>, const D:
                     && rolled.allowed.is_none()
                     && rolled.difference <= -promised
                 {
-                    self.accept(one, descent.settings.barrier, rolled.last);
+                    self.accept(one, descent.settings.strictness.barrier, rolled.last);
                     return true;
                 }
             }
@@ -208,7 +209,7 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, B: Start<S, D, U, C>, const D:
     ) -> Result<Rolled<S::Place, T>, Error> {
         let problem = &self.problem;
         let Problem { system, constants, .. } = *problem;
-        let barrier = descent.settings.barrier;
+        let strictness = descent.settings.strictness;
         // φ₀ + Σℓ + φ
         let mut slacks = Proposed::none();
         let start_change = B::change(&self.correction, change);
@@ -222,7 +223,7 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, B: Start<S, D, U, C>, const D:
             }
             if C > 0 {
                 let bounds = problem.bounds(stage, t, &x, &input)?;
-                stage.limits.propose(&bounds, (fraction, barrier), |i| S::BOUNDS[i], &mut slacks)?;
+                stage.limits.propose(&bounds, (fraction, strictness), |i| S::BOUNDS[i], &mut slacks)?;
             }
             price += problem.price(stage, t, &x, &input)?;
             (stage.next_place, stage.next_input) = (x, input);
@@ -231,7 +232,7 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, B: Start<S, D, U, C>, const D:
         price += system.endpoint(constants, problem.end_time(), &x);
         let end = problem.end(&x, T::zero(), &self.pushing);
         let penalties = descent.penalty(change, &end) - descent.penalty(change, descent.end);
-        let barriers = barrier * slacks.logarithms + fraction * slacks.excess_price;
+        let barriers = strictness.barrier * slacks.logarithms + fraction * slacks.excess_price;
         let difference = price - descent.summary.price - barriers + penalties + slacks.dearer;
         Ok(Rolled { last: x, distance: end.distance, difference, allowed: slacks.allowed })
     }

@@ -17,6 +17,7 @@ use super::end::{Gramian, PlanEnd, without_kinks};
 use super::iterate::Iterate;
 use super::lift::Gap;
 use super::quadratic::{Bounded, Fall, Policy, Value};
+use super::slacks::Strictness;
 use super::start::Start;
 use super::{Referenced, Stage, Target};
 use crate::newton::{Curvature, Spectrum};
@@ -66,8 +67,9 @@ pub(super) struct Plan<
     pub correction: B::Correction,
     /// x_N
     pub last: S::Place,
-    /// The number of bounds of all stages, without those that are none.
+    /// The number of inequalities of all stages, without those that are none, and whether there are equations.
     pub bounds: S::Scalar,
+    pub has_equations: bool,
     /// The inequalities of the end that have a multiplier.
     pub pushing: [bool; D],
     /// The backward sweeps that were made, and the most that may be.
@@ -93,8 +95,8 @@ pub struct Settings<T, const D: usize> {
     pub weight: SMatrix<T, D, D>,
     /// Where no correction has to close the gap to the target: the price of its square, for each change.
     pub gap_price: Option<SVector<T, D>>,
-    /// The price μ of e-fold smaller slacks.
-    pub barrier: T,
+    /// How strictly bounds are obeyed.
+    pub strictness: Strictness<T>,
     pub(super) curvature: Curvature<T>,
     /// Whether the curvature of all steps is left out, which leaves that of price and bounds.
     pub is_straight: bool,
@@ -313,12 +315,18 @@ impl<
             correction: B::none(),
             last,
             bounds,
+            has_equations: false,
             pushing,
             sweeps: 0,
             most: u32::MAX,
             way: Way::Kept,
             is_lifted: false,
         }
+    }
+
+    /// Whether anything is bounded.
+    pub fn is_bounded(&self) -> bool {
+        self.bounds > T::zero() || self.has_equations
     }
 
     /// x_0
@@ -441,7 +449,7 @@ impl<
             violation: zero,
             yielding: zero,
         };
-        let (mut following, mut bounds_places) = (self.last, false);
+        let (mut following, mut bounds_places, is_bounded) = (self.last, false, self.is_bounded());
         for (index, stage) in self.stages.iter_mut().enumerate().rev() {
             let t = self.problem.time_after(index);
             // the step, with its curvature or without
@@ -453,7 +461,7 @@ impl<
             let mut model = |value: &Value<T, D>, step: &Expansion<S::Place, T, D, U>, is_straight: bool| {
                 let mut step = *step;
                 let mut bounded = None;
-                if self.bounds > zero {
+                if is_bounded {
                     let natural = step.input_curvature.diagonal();
                     let multipliers = if is_straight { SVector::zeros() } else { stage.limits.multipliers };
                     let mut bounds = problem.bounds_expanded(stage, t, &multipliers)?;
@@ -473,10 +481,9 @@ impl<
                 following = stage.place;
             }
             if settings.is_last {
-                let bounds = self.bounds > zero;
                 let expanded = || problem.bounds_expanded(stage, t, &stage.limits.multipliers);
-                let pushes = bounds.then(expanded).transpose()?.map(|bounds| stage.limits.pushes(&bounds.by_input));
-                summary.terms = larger(summary.terms, stage.terms(&step, &value.costate, pushes).max_abs());
+                let forces = is_bounded.then(expanded).transpose()?.map(|bounds| stage.limits.forces(&bounds.by_input));
+                summary.terms = larger(summary.terms, stage.terms(&step, &value.costate, forces).max_abs());
             }
             let (mut policy, mut before, violated) = model(&value, &step, false)?;
             summary.violation += violated;
@@ -488,7 +495,7 @@ impl<
                     (policy, before, _) = model(&value, &step, false)?;
                     summary.straightened += 1;
                 }
-                if self.bounds > zero && is_wrong(&policy, &before) {
+                if is_bounded && is_wrong(&policy, &before) {
                     (policy, before, _) = model(&value, &step, true)?;
                 }
                 if is_wrong(&policy, &before) {
@@ -498,7 +505,7 @@ impl<
                 }
             }
             summary.count(index, step.price, &policy);
-            if self.bounds > zero {
+            if is_bounded {
                 summary.magnitude += stage.limits.price_of_violations();
             }
             if settings.is_last {

@@ -1,7 +1,7 @@
 //! Plans of least price: `cargo bench -p clebsch-tests --bench control -- [PROBLEMS] [SEED]`.
 //!
 //! Random goals of a unicycle, of a body with bounded torques and of a quadrotor, all from a guess at rest. A car on random tracks, past
-//! an obstacle that moves. Then a quadrotor that is planned anew a hundred times a second while gusts push it. Printed are the share that is solved,
+//! an obstacle that moves. A car whose sideways input vanishes by an equation, and a body whose tilt stays the same. Then a quadrotor that is planned anew a hundred times a second while gusts push it. Printed are the share that is solved,
 //! and the median, the ninth decile and the largest number of linearisations of a solution.
 
 mod systems;
@@ -9,9 +9,10 @@ mod systems;
 use clebsch::{Controlled, Limits, Target};
 use clebsch_tests::fixtures::follower::Follower;
 use clebsch_tests::fixtures::unicycle::Unicycle;
+use clebsch_tests::fixtures::wheeled_car::WheeledCar;
 use clebsch_tests::oracle::random::Random;
 use nalgebra::{Matrix3, Matrix4, Rotation3, Vector2, Vector3, Vector4, Vector6};
-use systems::{Place, Quadrotor, SteeredBody, quadrotor};
+use systems::{Place, Quadrotor, SteeredBody, TiltedBody, quadrotor};
 
 fn main() {
     let numbers: Vec<u64> = std::env::args().filter_map(|argument| argument.parse().ok()).collect();
@@ -24,6 +25,8 @@ fn main() {
     print("quadrotor", (0..count / 2).map(|_| flight(random)));
     let seeds = &mut Random::new(seed + 2);
     print("car on a track", (0..count).map(|_| track(seeds)));
+    print("car with equations", (0..count).map(|_| wheels(seeds)));
+    print("tilted body", (0..count).map(|_| tilted(seeds)));
     print("quadrotor in gusts", (0..count / 40).flat_map(|_| gusts(random, None)).map(|tick| tick.sweeps));
     println!(
         "\n{:<18} {:>9} {:>8} {:>14} {:>14}",
@@ -85,6 +88,34 @@ fn track(random: &mut Random) -> Option<u32> {
     let mut plan = [control.stage(&start); STEPS];
     control.refer(&mut plan, |_, t| (track(t), middle + drift * (t - 2.0)));
     control.solve(&start, Target::Free, &mut plan).ok().map(|found| found.iterations())
+}
+
+/// A goal in any direction, where an equation forbids to slide sideways.
+fn wheels(random: &mut Random) -> Option<u32> {
+    const STEPS: usize = 50;
+    let control = WheeledCar { turning: 1.0, fastest: 7.0 }.control(0.02).expect("regular");
+    let (angle, x, y) = (3.0 * random.number(), random.number(), random.number());
+    let goal = Matrix3::new(angle.cos(), -angle.sin(), x, angle.sin(), angle.cos(), y, 0.0, 0.0, 1.0);
+    let start = Matrix3::identity();
+    let mut plan = [control.stage(&start); STEPS];
+    control.solve(&start, Target::Place(goal), &mut plan).ok().map(|found| found.iterations())
+}
+
+/// From rest to rest, turned by any angles about the vertical and about its own axis.
+fn tilted(random: &mut Random) -> Option<u32> {
+    const STEPS: usize = 30;
+    let moments = random.vector::<3>().map(|part| 2.0 + part);
+    let axes = rotation(vector(random, 2.0));
+    let inertia = axes * Matrix3::from_diagonal(&moments) * axes.transpose();
+    let tilt = 0.8 * random.number();
+    let mut place = || {
+        let turn = |angle: f64| rotation(Vector3::z() * 3.0 * angle);
+        (turn(random.number()) * rotation(Vector3::x() * tilt.acos()) * turn(random.number()), Vector3::zeros())
+    };
+    let (start, goal) = (place(), place());
+    let control = TiltedBody { inertia, tilt }.control(0.1).expect("regular");
+    let mut plan = [control.stage(&start); STEPS];
+    control.solve(&start, Target::Place(goal), &mut plan).ok().map(|found| found.iterations())
 }
 
 /// From one tumbling to another.

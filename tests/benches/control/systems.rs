@@ -1,5 +1,6 @@
-//! The bodies of the scenes `slew` and `quadrotor`, and the parameters of the latter.
+//! The bodies of the scenes `slew` and `quadrotor`, the parameters of the latter, and a body that keeps its tilt.
 
+use clebsch::Clebsch;
 use nalgebra::{Matrix3, Matrix4};
 
 #[path = "../../../examples/quadrotor/declaration.rs"]
@@ -24,4 +25,20 @@ pub fn quadrotor() -> Quadrotor {
     mass_matrix[(3, 3)] = mass;
     let (arm, drag, hover, top) = (0.046 / 2.0_f64.sqrt(), 0.005_964_552, mass * gravity / 4.0, 0.1597);
     Quadrotor { mass_matrix, mass, gravity, arm, drag, hover, top }
+}
+
+/// A body that is to keep its tilt.
+#[derive(Clebsch, Clone, Debug)]
+#[clebsch(
+    action     = |F: SO<3>, R: SO<3>| R * F,
+    lagrangian = |omega| omega.dot(&(self.inertia * omega)) / 2,
+    force      = |torque: Vector3| torque,
+    effort     = |h, torque| h * torque.norm_squared() / 2,
+    bounds     = |R| [R[(2, 2)] == self.tilt],
+)]
+pub struct TiltedBody {
+    #[clebsch(symmetric)]
+    pub inertia: Matrix3<f64>,
+    /// The cosine of the angle between its third axis and the vertical.
+    pub tilt: f64,
 }

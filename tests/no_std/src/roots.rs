@@ -357,18 +357,26 @@ macro_rules! connecting {
     };
 }
 
+/// The types of plans of a system: its scalar T, places X and stages.
+#[macro_export]
+macro_rules! types_of_plans {
+    ($type:ty, $d:literal, $u:literal, $c:literal) => {
+        type S = $type;
+        type T = <S as clebsch::Controlled<$d, $u, $c>>::Scalar;
+        type X = <S as clebsch::Controlled<$d, $u, $c>>::Place;
+        type Stages = [clebsch::Stage<S, $d, $u, $c>; $crate::roots::STEPS];
+    };
+}
+
 /// Plans with a start that is unknown.
 #[macro_export]
 macro_rules! estimating {
     ($name:literal, $type:ty, $d:literal, $u:literal, $c:literal) => {
         const _: () = {
-            use clebsch::{Control, Controlled, Limits, Prior, Stage, Target};
+            use clebsch::{Control, Limits, Prior, Target};
             use nalgebra::SMatrix;
 
-            type S = $type;
-            type T = <S as Controlled<$d, $u, $c>>::Scalar;
-            type X = <S as Controlled<$d, $u, $c>>::Place;
-            type Stages = [Stage<S, $d, $u, $c>; $crate::roots::STEPS];
+            $crate::types_of_plans!($type, $d, $u, $c);
             type Estimator = clebsch::Estimator<S, $d, $u, $c>;
 
             $crate::export!("prior", $name, |control: &Control<S, $d, $u, $c>,
@@ -397,12 +405,9 @@ macro_rules! estimating {
 macro_rules! planning {
     ($name:literal, $type:ty, $d:literal, $u:literal, $c:literal) => {
         const _: () = {
-            use clebsch::{Control, Controlled, Limits, Stage, Target};
+            use clebsch::{Control, Controlled, Limits, Target};
 
-            type S = $type;
-            type T = <S as Controlled<$d, $u, $c>>::Scalar;
-            type X = <S as Controlled<$d, $u, $c>>::Place;
-            type Stages = [Stage<S, $d, $u, $c>; $crate::roots::STEPS];
+            $crate::types_of_plans!($type, $d, $u, $c);
 
             $crate::export!("control", $name, |system: &S, h: &T, made: &mut Option<Control<S, $d, $u, $c>>| {
                 *made = Some(system.clone().control(*h)?);

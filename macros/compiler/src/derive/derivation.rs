@@ -146,19 +146,23 @@ fn references(model: &System<'_>) -> String {
     told.collect()
 }
 
-/// `one bound`, `3 bounds, and a soft one where that pays`; `None` where nothing is bounded.
+/// `one bound`, `2 equations and 3 bounds, and a soft one where that pays`; `None` where nothing is bounded.
 fn bounds(model: &System<'_>) -> Option<String> {
     let all = model.control.as_ref().map_or(&[][..], |control| &control.bounds);
-    let soft = all.iter().filter(|bound| bound.price.is_some()).count();
+    let soft = all.iter().filter(|bound| bound.price().is_some()).count();
+    let equations = all.iter().filter(|bound| bound.is_equation()).count();
     let counted = |count: usize, of: &str| match count {
         0 => None,
-        1 => Some(format!("one {of}bound")),
-        count => Some(format!("{count} {of}bounds")),
+        1 => Some(format!("one {of}")),
+        count => Some(format!("{count} {of}s")),
     };
-    match (counted(all.len() - soft, ""), counted(soft, "soft ")) {
-        (Some(hard), Some(soft)) => Some(format!("{hard}, and {soft} where that pays")),
-        (None, Some(soft)) => Some(format!("{soft} where that pays")),
-        (hard, None) => hard,
+    let hard = [counted(equations, "equation"), counted(all.len() - soft - equations, "bound")];
+    let hard = hard.into_iter().flatten().into_list().join(" and ");
+    match (hard.is_empty(), counted(soft, "soft bound")) {
+        (false, Some(soft)) => Some(format!("{hard}, and {soft} where that pays")),
+        (true, Some(soft)) => Some(format!("{soft} where that pays")),
+        (false, None) => Some(hard),
+        (true, None) => None,
     }
 }
 

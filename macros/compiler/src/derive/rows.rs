@@ -10,7 +10,7 @@ use super::constraint::coordinates_of_motion;
 use super::midpoint::MidpointFormulas;
 use super::moves::inverse_by;
 use super::{Formula, FormulaTable, Id, JointRows, MechanicsFormulas, SteeredFormulas, SystemFormulas};
-use crate::model::{Configuration, EdgeEnergy, LeafSpace, Motion};
+use crate::model::{Bound, Configuration, EdgeEnergy, LeafSpace, Motion};
 
 /// More conserved momenta are told by the first and the last of them.
 pub(super) const MOST_LISTED: usize = 16;
@@ -92,11 +92,9 @@ impl<'g> SystemFormulas<'g> {
             let velocity = tuple(control.velocities.iter().map(Expr::to_string));
             let read = if steering.on_edge.price { format!("{velocity}, {u}") } else { u.clone() };
             let read = referring(read, control.price, &self.model.reference.1);
-            let prices: Vec<_> = control.bounds.iter().filter_map(|bound| bound.price).into_list();
-            let (symbol, kinks) = match prices.len() {
-                0 => ("0 ≥ a".to_string(), ""),
-                count => (format!("0 ≥ a, the last {count} soft"), " − Σ w max(a, 0)"),
-            };
+            let prices: Vec<_> = control.bounds.iter().filter_map(Bound::price).into_list();
+            let kinks = if prices.is_empty() { "" } else { " − Σ w max(a, 0)" };
+            let symbol = compared(&control.bounds);
             let price = Formula::new(Id::Price, format!("ℓ(h, {read}){kinks}"), [control.price]);
             let bounds: Vec<_> = control.bounds.each(|bound| bound.value);
             let bounds = Formula::new(Id::Bounds, symbol, bounds);
@@ -370,4 +368,23 @@ fn rows_of_midpoint<'g>(midpoint: &MidpointFormulas<'g>, Names { q, mu, .. }: &N
 fn tuple(names: impl Iterator<Item = String>) -> String {
     let names: Vec<String> = names.into_list();
     if names.len() == 1 { names.concat() } else { format!("({})", names.join(", ")) }
+}
+
+/// The left side of a: `0 ≥ a`, with the numbers of equations and of soft bounds.
+fn compared(bounds: &[Bound<'_>]) -> String {
+    let soft = bounds.iter().filter(|bound| bound.price().is_some()).count();
+    let equations = bounds.iter().filter(|bound| bound.is_equation()).count();
+    if equations == bounds.len() && equations > 0 {
+        return "0 = a".into();
+    }
+    let mut text = "0 ≥ a".to_string();
+    match equations {
+        0 => {}
+        1 => text += ", the first equal",
+        count => text += &format!(", the first {count} equal"),
+    }
+    if soft > 0 {
+        text += &format!(", the last {soft} soft");
+    }
+    text
 }

@@ -19,8 +19,8 @@ pub(super) struct ControlTypes<'a> {
     pub is_steered: bool,
     /// The number of inputs.
     pub inputs: usize,
-    /// The declared bounds.
-    pub bounds: Vec<&'a str>,
+    /// The declared bounds, and the number of equations among them.
+    pub bounds: (Vec<&'a str>, usize),
     /// The conditions of the end, and the number of equations among them.
     pub target: (Vec<&'a str>, usize),
     /// The types of the references of a step and of the end, where there are any.
@@ -34,7 +34,12 @@ impl ControlTypes<'_> {
         block: &Block<'_>,
         functions: impl FnOnce(&Words<'_>) -> TokenStream,
     ) -> TokenStream {
-        let ControlTypes { is_steered, inputs, bounds, target: (target, equations), references } = self;
+        let ControlTypes { is_steered, inputs, bounds: (bounds, equal), target: (target, equations), references } =
+            self;
+        let equal = (*equal > 0).then(|| {
+            let equal = size(*equal);
+            quote!(const EQUAL_BOUNDS: ::core::primitive::usize = #equal;)
+        });
         let target = (!target.is_empty()).then(|| {
             let equations = size(*equations);
             quote! {
@@ -71,6 +76,7 @@ impl ControlTypes<'_> {
 
                 const NAME: &'static ::core::primitive::str = #name;
                 const BOUNDS: [&'static ::core::primitive::str; #c] = [#(#bounds),*];
+                #equal
                 const MOTIONS: ::core::primitive::usize = #motions;
                 #target
 
@@ -92,7 +98,10 @@ impl SystemEmitter<'_, '_> {
         let types = ControlTypes {
             is_steered,
             inputs: self.model.inputs.iter().map(|leaf| leaf.shape.len()).sum(),
-            bounds: control.bounds.each(|bound| bound.text.as_str()),
+            bounds: (
+                control.bounds.each(|bound| bound.text.as_str()),
+                control.bounds.iter().filter(|bound| bound.is_equation()).count(),
+            ),
             target: self.conditions_as_written(),
             references: self.reference_types(),
         };

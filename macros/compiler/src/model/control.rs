@@ -1,9 +1,10 @@
 //! The choice of inputs: the closures `controls` and `dynamics`, the price, the bounds and the price of the end.
 
 use clebsch_symbolic::{Elements, Expr, IntoList};
-use syn::{BinOp, Expr as Syntax};
+use syn::Expr as Syntax;
 
 use super::closures::{chosen_discretization, optional, scalar, written};
+use super::comparisons::{Among, comparisons, conjuncts, is_comparison};
 use super::elaborate::{Elaborator, Kink};
 use super::features::{self, Feature, Found};
 use super::groups::without_cayley_map;
@@ -14,11 +15,9 @@ use super::slots::{
 use super::space::{Space, new_value_of};
 use super::typed::{ActedSystem, Velocity, part};
 use super::value::Value;
-use super::{Bound, Discretization, EndPrice, InputChoice, Motion};
-use crate::diagnostic::{Diagnostic, Diagnostics, error, refuse};
-use crate::parse::{
-    self, Argument, Closure, Declaration, Located, RungeKutta, joined, parenthesized, shortened, spell, tail,
-};
+use super::{Bound, BoundKind, Condition, Discretization, EndPrice, InputChoice, Motion};
+use crate::diagnostic::{refuse, report};
+use crate::parse::{self, Argument, Closure, Declaration, Located, RungeKutta, joined, tail};
 
 impl<'g> ActedSystem<'_, '_, 'g> {
     /// The motion that inputs give, with the input; `None` with an error, which was reported.
@@ -152,7 +151,7 @@ impl<'g> ActedSystem<'_, '_, 'g> {
                 refuse!(diagnostics, written.place, "the factor of `{}` depends on the place, the input or the velocity", written.text;
                     help "write a sum of such terms, each times fields and `h`, as in `h * self.price * {}`", written.text);
             }
-            Some(Bound { value, price: Some(weight), text: written.text })
+            Some(Bound { value, kind: BoundKind::Soft(weight), text: written.text })
         };
         let bounds = kinks.into_iter().map(soft).collect::<Option<Vec<_>>>()?;
         let zeros = symbols.each(|symbol| (*symbol, graph.integer(0)));
@@ -193,7 +192,7 @@ impl<'g> ActedSystem<'_, '_, 'g> {
         Some((scope, velocities))
     }
 
-    /// `[a <= b, …]` as a − b ≤ 0, with the velocity, one for each factor, where it is taken.
+    /// `[a == b, c <= d, …]` as a − b = 0 and c − d ≤ 0, equations first, with the velocity, one for each factor, where it is taken.
     fn bounds(
         &mut self,
         closure: &Closure,
@@ -204,69 +203,36 @@ impl<'g> ActedSystem<'_, '_, 'g> {
         let body = tail(&closure.body);
         let Syntax::Array(list) = body else {
             let name = self.arguments.names.input.map_or("u".into(), |pattern| pattern.spell());
-            refuse!(diagnostics, body, "bounds are a list of inequalities";
-                help "write `bounds = |{}| [{}]`", joined(closure.arguments.iter().map(Argument::spell)), conjuncts(body).unwrap_or(format!("-1 <= {name}.x, {name}.x <= 1")));
+            refuse!(diagnostics, body, "bounds are a list of inequalities and equations";
+                help "write `bounds = |{}| [{}]`", joined(closure.arguments.iter().map(Argument::spell)),
+                    if is_comparison(body) { conjuncts(body) } else { format!("-1 <= {name}.x, {name}.x <= 1") });
         };
         // arguments are matched once, so that a mistake in them is told once
         let matched = self.arguments.matched(closure, if is_steered { BOUNDS } else { BOUNDS_OF_FORCES });
         if matched.has_error() {
             return None;
         }
-        let (_, velocities) = self.with_velocity(&matched, Some(input))?;
-        let mut side = |side: &Syntax| {
-            let (scope, _) = self.with_velocity(&matched, Some(input))?;
-            let value = Elaborator::new(self.context, "bounds", scope).elaborate(side)?;
-            let Some(scalar) = value.matrix().filter(|value| value.shape().is_scalar()) else {
-                let (text, is) = (shortened(side), value.describe());
-                refuse!(diagnostics, side, "`{text}` is {is}, and a bound compares scalars";
-                    help "compare component by component, as in `{}.x <= 1`", parenthesized(side));
-            };
-            Some(scalar)
-        };
-        let bound = |inequality: &Syntax| {
-            let (lower, upper) = sides(inequality, diagnostics)?;
-            if let Some(error) = without_absolute_value((lower, upper), "bounds") {
-                return diagnostics.refuse(error);
+        let (scope, velocities) = self.with_velocity(&matched, Some(input))?;
+        let mut elaborator = Elaborator::new(self.context, "bounds", scope);
+        let comparisons =
+            elaborator.in_block(&closure.body, |elaborator| comparisons(elaborator, list, Among::Bounds))?;
+        let leaves = self.space.leaves.iter().chain(&input.leaves).map(|leaf| leaf.symbol);
+        let moving = leaves.chain(velocities.iter().copied()).into_list();
+        // one row of `u == vector![u.x, 0]` says nothing
+        let says_more = |text: &str| comparisons.iter().any(|row| row.text == *text && row.left != row.right);
+        let is_empty = |row: &Condition<'g>| row.is_equation && row.left == row.right && says_more(&row.text);
+        let empty: Vec<_> = comparisons.each(is_empty);
+        let rows = comparisons.into_iter().zip(empty).filter(|(_, is_empty)| !is_empty).map(|(row, _)| row);
+        let bound = |Condition { left, right, is_equation, place, text }: Condition<'g>| {
+            let value = left - right;
+            if is_equation && !moving.iter().any(|symbol| value.depends_on(*symbol)) {
+                report!(diagnostics, place, "`{text}` depends on neither place nor input of a step";
+                    help "leave it out");
             }
-            Some(Bound { value: side(lower)? - side(upper)?, price: None, text: spell(inequality) })
+            Bound { value, kind: if is_equation { BoundKind::Equation } else { BoundKind::Inequality }, text }
         };
-        let bounds = list.elems.iter().map(bound).collect::<Option<Vec<_>>>()?;
-        Some((bounds, velocities))
-    }
-}
-
-/// The inequalities of `a <= b && c <= d`, separated by commas.
-fn conjuncts(body: &Syntax) -> Option<String> {
-    let Syntax::Binary(link) = body else { return None };
-    let part = |side: &Syntax| conjuncts(side).unwrap_or_else(|| spell(side));
-    match link.op {
-        BinOp::And(_) => Some(format!("{}, {}", part(&link.left), part(&link.right))),
-        BinOp::Le(_) | BinOp::Ge(_) => Some(spell(body)),
-        _ => None,
-    }
-}
-
-/// The advice for `x.abs() <= a` among bounds or conditions.
-pub(super) fn without_absolute_value((lower, upper): (&Syntax, &Syntax), among: &str) -> Option<Diagnostic> {
-    let Syntax::MethodCall(call) = lower else { return None };
-    if call.method != "abs" {
-        return None;
-    }
-    let (inside, limit) = (parenthesized(&call.receiver), parenthesized(upper));
-    Some(error!(&call.method, "`abs` has no derivative at 0, so no {among} can use it";
-        help "write two {among}, `-{limit} <= {inside}, {inside} <= {limit}`"))
-}
-
-/// The smaller and the larger side of an inequality.
-fn sides<'s>(inequality: &'s Syntax, diagnostics: &Diagnostics) -> Option<(&'s Syntax, &'s Syntax)> {
-    match inequality {
-        Syntax::Binary(comparison) if matches!(comparison.op, BinOp::Le(_)) => {
-            Some((&comparison.left, &comparison.right))
-        }
-        Syntax::Binary(comparison) if matches!(comparison.op, BinOp::Ge(_)) => {
-            Some((&comparison.right, &comparison.left))
-        }
-        _ => refuse!(diagnostics, inequality, "`{}` is no bound", shortened(inequality);
-            help "write `a <= b` or `a >= b`"; note "bounds hold with equality where they are active"),
+        let (mut all, inequalities): (Vec<_>, Vec<_>) = rows.map(bound).partition(Bound::is_equation);
+        all.extend(inequalities);
+        Some((all, velocities))
     }
 }

@@ -4,6 +4,7 @@ mod action_errors;
 mod action_laws;
 mod arguments;
 mod closures;
+mod comparisons;
 mod constraint;
 mod control;
 mod declared;

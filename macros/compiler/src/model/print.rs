@@ -6,8 +6,8 @@ use clebsch_symbolic::Group;
 
 use super::scalar::spell_scalar;
 use super::{
-    Condition, FieldEnergies, Isotropy, Joint, Kinetic, LeafSpace, Mechanics, Model, Motion, OfferedSymmetry, Order,
-    Parameter, Side, Signature, Steered, System, VelocityRows,
+    BoundKind, Condition, FieldEnergies, Isotropy, Joint, Kinetic, LeafSpace, Mechanics, Model, Motion,
+    OfferedSymmetry, Order, Parameter, Side, Signature, Steered, System, VelocityRows,
 };
 use crate::parse::joined;
 
@@ -135,9 +135,10 @@ impl System<'_> {
         }
         if let Some(control) = &self.control {
             writeln!(f, "  price      {}", control.price)?;
-            control.bounds.iter().try_for_each(|bound| match bound.price {
-                None => writeln!(f, "  bound      {} <= 0", bound.value),
-                Some(price) => writeln!(f, "  soft bound {} <= 0, else {price} times it", bound.value),
+            control.bounds.iter().try_for_each(|bound| match bound.kind {
+                BoundKind::Equation => writeln!(f, "  equation   {} = 0", bound.value),
+                BoundKind::Inequality => writeln!(f, "  bound      {} <= 0", bound.value),
+                BoundKind::Soft(price) => writeln!(f, "  soft bound {} <= 0, else {price} times it", bound.value),
             })?;
         }
         self.endpoint.iter().try_for_each(|price| writeln!(f, "  endpoint   {}", price.value))?;

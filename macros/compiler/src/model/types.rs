@@ -451,14 +451,39 @@ pub struct Condition<'g> {
     pub text: String,
 }
 
-/// a(t, q, ξ, u) ≤ 0. The soft ones, of a price with max(a, 0), come last.
+/// a(t, q, ξ, u) ≤ 0 or a = 0. Equations come first, and the soft ones, of a price with max(a, 0), last.
 pub struct Bound<'g> {
     /// a.
     pub value: Expr<'g>,
-    /// w(t, h), the price of one unit of a where it may be violated.
-    pub price: Option<Expr<'g>>,
+    /// Whether a = 0 or a ≤ 0, and the price of violating it.
+    pub kind: BoundKind<'g>,
     /// As it was written, `u.x <= 1`.
     pub text: String,
+}
+
+/// The kind of a bound, by its value a.
+pub enum BoundKind<'g> {
+    /// a = 0.
+    Equation,
+    /// a ≤ 0.
+    Inequality,
+    /// a ≤ 0, or the price w(t, h) of each unit of a.
+    Soft(Expr<'g>),
+}
+
+impl<'g> Bound<'g> {
+    /// w(t, h), where the bound may be violated.
+    pub fn price(&self) -> Option<Expr<'g>> {
+        match self.kind {
+            BoundKind::Soft(price) => Some(price),
+            BoundKind::Equation | BoundKind::Inequality => None,
+        }
+    }
+
+    /// Whether a = 0.
+    pub fn is_equation(&self) -> bool {
+        matches!(self.kind, BoundKind::Equation)
+    }
 }
 
 /// A symmetry that the user offers: an action of a group on configurations and group elements together, with

@@ -6,6 +6,7 @@
 
 mod closed_forms;
 mod derivatives;
+mod equations;
 mod estimates;
 mod kinks;
 mod references;

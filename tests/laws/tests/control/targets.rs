@@ -62,9 +62,9 @@ struct Meeting {
     bounds   = |u| [-self.fastest <= u.x, u.x <= self.fastest],
     target   = |q, goal: Vector2| [q.translation() == goal],
 )]
-struct Unicycle {
-    turning: f64,
-    fastest: f64,
+pub(super) struct Unicycle {
+    pub(super) turning: f64,
+    pub(super) fastest: f64,
 }
 
 /// The effect of the inputs of a mass on its end.
