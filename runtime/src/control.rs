@@ -305,6 +305,50 @@ impl<S: Controlled<D, U, C, Scalar: Real>, B: Start<S, D, U, C>, const D: usize,
         Ok(Optimum { stages: plan, ..solved })
     }
 
+    /// As [`solve`](Self::solve), near places that are known roughly: those of a planner, of an interpolation, of a side of an obstacle.
+    ///
+    /// `path(k, t_k)` is a guess of the place x_k, for k from 1 to N. It need not be a motion of the system, nor end at the target. Momenta of
+    /// states may be zero. Multiple shooting begins there, with the inputs that the stages hold. Where it leads nowhere, the plan is that of
+    /// [`solve`](Self::solve).
+    ///
+    /// ```
+    /// # use clebsch::{Clebsch, Controlled, Target};
+    /// # use nalgebra::Vector2;
+    /// /// A boat that keeps away from an island.
+    /// #[derive(Clebsch, Clone, Debug)]
+    /// #[clebsch(
+    ///     dynamics = |h, x: Vector2, u: Vector2| x + h * u,
+    ///     cost     = |h, u| h * u.norm_squared() / 2,
+    ///     bounds   = |x| [x.norm_squared() >= self.radius.powi(2)],
+    /// )]
+    /// struct Boat { radius: f64 }
+    ///
+    /// let control = Boat { radius: 1.0 }.control(0.1)?;
+    /// let (start, goal) = (Vector2::new(-2.0, 0.0), Vector2::new(2.0, 0.0));
+    /// for side in [1.0, -1.0] {
+    ///     let mut plan = [control.stage(&start); 20];
+    ///     let path = |_, t: f64| Vector2::new(2.0 * t - 2.0, 1.5 * side);
+    ///     let optimum = control.solve_along(&start, Target::Place(goal), path, &mut plan)?;
+    ///     assert!(optimum.is_minimum());
+    ///     assert!(plan[10].place().y * side >= 1.0); // it passes on the side of the guess
+    /// }
+    /// # Ok::<(), clebsch::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// Those of [`solve`](Self::solve), and those of places that are none, as [`Error::NotFinite`] and [`Error::OffOrbit`].
+    pub fn solve_along<'p>(
+        &self,
+        start: &S::Place,
+        target: Target<S::Place>,
+        path: impl FnMut(usize, S::Scalar) -> S::Place,
+        plan: &'p mut [Stage<S, D, U, C>],
+    ) -> Result<Optimum<'p, S, D, U, C>, Error> {
+        self.check(start, &target, plan)?;
+        let solved = Plan::new(self.problem(start, &target, plan.len()), plan).attempt_along(path)?;
+        Ok(Optimum { stages: plan, ..solved })
+    }
+
     /// As [`solve`](Self::solve) with bounded work, for plans that are made anew while the system moves.
     ///
     /// One search goes from the guess, with its multipliers. At the limit it ends with the plan that it has reached, and

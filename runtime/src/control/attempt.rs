@@ -78,6 +78,23 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, B: Start<S, D, U, C>, const D:
         solved
     }
 
+    /// The critical plan near these places from x_1 to x_N, which need not be a motion of the system. If that search fails, the plan is sought
+    /// from the inputs of the guess alone.
+    pub fn attempt_along<'p>(
+        &mut self,
+        path: impl FnMut(usize, T) -> S::Place,
+    ) -> Result<Optimum<'p, S, D, U, C>, Error> {
+        self.stages.iter_mut().for_each(|stage| stage.guess = stage.input);
+        self.forget();
+        if self.lift_along(path)? {
+            match self.newton(false) {
+                Err(error) if may_be_found(&error) => self.forget(),
+                found => return found,
+            }
+        }
+        self.attempt()
+    }
+
     /// The plan that one search from the guess has reached, whether it ends or not. After an error, which is one of a step,
     /// the stages hold the inputs of the guess.
     pub fn attempt_once<'p>(&mut self) -> Result<Optimum<'p, S, D, U, C>, Error> {

@@ -247,19 +247,20 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, B: Start<S, D, U, C>, const D:
         for (index, stage) in self.stages.iter_mut().enumerate().filter(|_| C > 0) {
             let t = self.problem.time_after(index);
             let bounds = problem.bounds_expanded(stage, t, &stage.limits.multipliers)?;
-            if self.is_lifted {
-                // the correction is made linear
-                visit(stage, bounds.by_place * stage.motion + bounds.by_input * stage.shift, SVector::zeros());
-                continue;
-            }
-            let step = problem.expand(stage, t, &stage.next_costate)?;
-            let input = stage.shift + stage.by_multiplier * change + stage.gain * displacement;
-            let (far, wide) = (displacement.max_abs(), input.max_abs());
+            // places that are unknowns have their corrections
+            let (displaced, input) = match self.is_lifted {
+                true => (stage.motion, stage.shift),
+                false => (displacement, stage.shift + stage.by_multiplier * change + stage.gain * displacement),
+            };
+            let (far, wide) = (displaced.max_abs(), input.max_abs());
             let most = SVector::from_fn(|i, _| {
                 largest(bounds.by_place.row(i).iter()) * far + largest(bounds.by_input.row(i).iter()) * wide
             });
-            visit(stage, bounds.by_place * displacement + bounds.by_input * input, most);
-            displacement = step.by_place * displacement + step.by_input * input;
+            visit(stage, bounds.by_place * displaced + bounds.by_input * input, most);
+            if !self.is_lifted {
+                let step = problem.expand(stage, t, &stage.next_costate)?;
+                displacement = step.by_place * displacement + step.by_input * input;
+            }
         }
         Ok(())
     }

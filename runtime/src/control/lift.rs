@@ -83,6 +83,15 @@ struct Proposal<X, T> {
     allowed: Option<T>,
 }
 
+/// The places that gaps are between at first.
+#[derive(Clone, Copy, PartialEq)]
+enum Places {
+    /// Those of a motion, bent to the target.
+    Bent,
+    /// Those of the caller.
+    Given,
+}
+
 /// The units of gaps, and the plan after the first correction.
 type Begun<X, T, const D: usize> = (SVector<T, D>, Proposal<X, T>);
 
@@ -128,16 +137,41 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, B: Start<S, D, U, C>, const D:
         let lifted = self.vary(variation, amplitudes).and_then(|()| {
             self.follow()?;
             self.reach();
-            self.is_lifted = true;
-            let is_near = self.close()?;
-            self.land().map(|()| is_near)
+            self.close_and_land(Places::Bent)
         });
-        self.is_lifted = false;
         let is_near = matches!(lifted, Ok(true));
         if !is_near {
             self.forget();
         }
         is_near
+    }
+
+    /// The same from the places that `path` gives, from x_1 to x_N, with the inputs that the stages hold. `false` where a step has an error.
+    /// Where corrections get stuck, the plan goes on from there: it is where the caller wants it to be.
+    pub fn lift_along(&mut self, mut path: impl FnMut(usize, T) -> S::Place) -> Result<bool, Error> {
+        let Problem { system, .. } = self.problem;
+        for index in 1..=self.stages.len() {
+            let place = path(index, self.problem.time_after(index));
+            system.check_place(&place)?;
+            match self.stages.get_mut(index) {
+                Some(stage) => stage.place = place,
+                None => self.last = place,
+            }
+        }
+        let lifted = self.close_and_land(Places::Given);
+        if lifted.is_err() {
+            self.forget();
+        }
+        Ok(lifted.is_ok())
+    }
+
+    /// Closes the gaps between places, and rolls out. Returns whether corrections came near a critical plan.
+    fn close_and_land(&mut self, places: Places) -> Result<bool, Error> {
+        self.is_lifted = true;
+        let closed = self.close(places);
+        self.is_lifted = false;
+        let is_near = closed?;
+        self.land().map(|()| is_near)
     }
 
     /// Bends the places of a plan so that its end reaches the target, by and by.
@@ -170,7 +204,7 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, B: Start<S, D, U, C>, const D:
     }
 
     /// Closes gaps until a roll-out can go on; `false` where corrections get stuck.
-    fn close(&mut self) -> Result<bool, Error> {
+    fn close(&mut self, places: Places) -> Result<bool, Error> {
         let (zero, one) = (T::zero(), T::one());
         let end = self.end();
         let strictness = self.resume_or_relax()?;
@@ -191,10 +225,16 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, B: Start<S, D, U, C>, const D:
             }
             let last_motion = self.make_linear(&change)?;
             let Some(before) = at else {
-                // the first correction is made without bounds, and tells the sizes of changes and of prices
+                // the first sweep is made without bounds, and tells the sizes of changes and of prices
                 now.settings.weight = gramian.weight(&summary.gramian, &now.settings.weight);
                 let begun;
-                (units, begun) = self.begin_lifted(&mut now, &last_motion, summary.repair())?;
+                (units, begun) = match places {
+                    Places::Bent => self.begin_lifted(&mut now, &last_motion, summary.repair())?,
+                    Places::Given => {
+                        let price = larger(summary.magnitude + decrement, summary.repair());
+                        self.begin_where_it_is(&mut now, &last_motion, &change, price)?
+                    }
+                };
                 at = Some(begun);
                 continue;
             };
@@ -211,19 +251,23 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, B: Start<S, D, U, C>, const D:
             self.add_multipliers(&mut now, &(change * fraction));
             at = Some(proposal);
             stuck = if fraction < T::from_ratio(SHORT.0, SHORT.1) { stuck + 1 } else { 0 };
-            if stuck > PATIENCE {
-                return Ok(false);
-            }
             let is_below =
                 |(of_size, of_gaps): (f64, f64)| size <= T::from_f64(of_size) && proposal.gaps <= T::from_f64(of_gaps);
+            if stuck > PATIENCE {
+                return Ok(is_below(NEAR));
+            }
             if fraction >= one && is_below(NEAR) {
                 return Ok(true);
             }
             if fraction >= T::from_ratio(9, 10) && is_below(CENTRAL) {
-                let barrier = now.settings.strictness.barrier;
-                now.tighten(self.bounds, magnitude);
                 if self.has_equations {
                     now.stiffen(magnitude / self.steps(), size);
+                }
+                // a bound of places curves with the motion: away from its central path, slacks allow next to nothing of a correction
+                let barrier = now.settings.strictness.barrier;
+                let most = T::from_ratio(1, 10) * barrier * self.bounds;
+                if !summary.bounds_places || decrement <= most {
+                    now.tighten(self.bounds, magnitude);
                 }
                 if now.settings.strictness.barrier < barrier {
                     filter.count = 0;
@@ -254,6 +298,26 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, B: Start<S, D, U, C>, const D:
         if self.is_bounded() {
             self.size_by_others();
             self.begin_bounds(now, if price > zero { price } else { T::one() }, WIDER);
+        }
+        let units = self.units();
+        Ok((units, self.propose(zero, last_motion, &units)?))
+    }
+
+    /// Begins with the first correction not made: it might lead through an obstacle that the given places avoid. Returns the units of gaps, and
+    /// the plan.
+    fn begin_where_it_is(
+        &mut self,
+        now: &mut Iterate<T, D>,
+        last_motion: &SVector<T, D>,
+        change: &SVector<T, D>,
+        price: T,
+    ) -> Result<Begun<S::Place, T, D>, Error> {
+        let zero = T::zero();
+        let price = if price > zero { price } else { T::one() };
+        now.largest = price;
+        if self.is_bounded() {
+            self.size(change)?;
+            self.begin_bounds(now, price, WIDER);
         }
         let units = self.units();
         Ok((units, self.propose(zero, last_motion, &units)?))
@@ -343,7 +407,7 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, B: Start<S, D, U, C>, const D:
             }
             if C > 0 {
                 let bounds = problem.bounds(stage, t, &x, &input)?;
-                stage.limits.propose(&bounds, (fraction, free), |i| S::BOUNDS[i], &mut slacks)?;
+                stage.limits.propose(&bounds, (fraction, free, false), |i| S::BOUNDS[i], &mut slacks)?;
                 logarithms += stage.limits.logarithms();
             }
             if index == 0 {

@@ -24,6 +24,8 @@ const STIRS: u32 = 3;
 const DEAR: f64 = 1e4;
 /// Steps in a row that may be next to nothing.
 const STALLS: u32 = 8;
+/// Newton decrements that are this part of all barriers, after which they are lowered twice.
+const SETTLED: f64 = 0.01;
 /// Critical plans that may violate equations, before these contradict each other.
 const UNMET: u32 = 8;
 
@@ -162,7 +164,10 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, B: Start<S, D, U, C>, const D:
             let part = if summary.bounds_places { T::from_ratio(1, 10) } else { T::from_f64(10.0) };
             let is_central = decrement <= part * now.settings.strictness.barrier * bounds;
             if bounds > zero && is_whole && is_central && !now.is_priced() {
-                now.tighten(bounds, size_of_price);
+                // next to it the barrier is lowered twice, but where bounds curve
+                let is_next_to_it = !summary.bounds_places
+                    && decrement <= T::from_f64(SETTLED) * now.settings.strictness.barrier * bounds;
+                (0..=usize::from(is_next_to_it)).for_each(|_| now.tighten(bounds, size_of_price));
             }
         }
         let end = self.end();

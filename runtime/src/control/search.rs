@@ -25,6 +25,8 @@ use nalgebra::{SMatrix, SVector};
 const TRIALS: usize = 12;
 /// A correction that gains this part of the gain by its model is not made shorter.
 const GOOD: (i64, i64) = (4, 5);
+/// The part of the distance to the target at which a plan is near it.
+const NEAR: (i64, i64) = (1, 100);
 /// Halvings of the first change away from a saddle, which would take a hundredth of the price: the minimum next to the saddle is wanted.
 const HALVINGS: usize = 30;
 
@@ -209,7 +211,8 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, B: Start<S, D, U, C>, const D:
     ) -> Result<Rolled<S::Place, T>, Error> {
         let problem = &self.problem;
         let Problem { system, constants, .. } = *problem;
-        let strictness = descent.settings.strictness;
+        let near = T::from_ratio(NEAR.0, NEAR.1);
+        let (strictness, is_near) = (descent.settings.strictness, descent.end.distance <= near * descent.end.scale);
         // φ₀ + Σℓ + φ
         let mut slacks = Proposed::none();
         let start_change = B::change(&self.correction, change);
@@ -223,7 +226,7 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, B: Start<S, D, U, C>, const D:
             }
             if C > 0 {
                 let bounds = problem.bounds(stage, t, &x, &input)?;
-                stage.limits.propose(&bounds, (fraction, strictness), |i| S::BOUNDS[i], &mut slacks)?;
+                stage.limits.propose(&bounds, (fraction, strictness, is_near), |i| S::BOUNDS[i], &mut slacks)?;
             }
             price += problem.price(stage, t, &x, &input)?;
             (stage.next_place, stage.next_input) = (x, input);

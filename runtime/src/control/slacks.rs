@@ -14,6 +14,8 @@ use nalgebra::{SMatrix, SVector};
 
 /// The part of a slack that one step may take.
 pub(super) const TO_BOUNDARY: f64 = 0.995;
+/// The same for a bound that is reached, by its multiplier.
+const TO_REACHED: f64 = 0.9999;
 /// ρ̂ from which on the multipliers of equations count for their stiffness in full. Plans on their way bend more easily without them.
 const SETTLED: f64 = 1e4;
 
@@ -38,8 +40,8 @@ pub(super) enum Kind<T> {
 pub struct Strictness<T> {
     /// The price μ of e-fold smaller slacks.
     pub barrier: T,
-    /// ρ̂, and the price p of a step. An equation has the stiffness ρ = ρ̂ (p/c² + |z|/c), with values of the size c. So rounding of a is as
-    /// small beside z, whatever z is.
+    /// ρ̂, and the price p of a step. An equation has the stiffness ρ = ρ̂ (p/c² + |z|/c), with values of the size c. So the effect of
+    /// rounding of a on z is the same part of any z.
     pub rigidity: T,
     pub price: T,
 }
@@ -446,12 +448,13 @@ impl<T: Real, const C: usize> Barriers<T, C> {
         (0..C).map(of).fold(T::zero(), |sum, part| sum + part)
     }
 
-    /// Stores the slacks after a fraction of a correction that leads to these values of the bounds, and adds them to `proposed`.
+    /// Stores the slacks after a fraction of a correction that leads to these values of the bounds, and adds them to `proposed`. Where the end
+    /// is near its target, slacks may become as small as their multipliers promise.
     #[inline]
     pub fn propose(
         &mut self,
         values: &SVector<T, C>,
-        (fraction, strictness): (T, Strictness<T>),
+        (fraction, strictness, is_near): (T, Strictness<T>, bool),
         name: impl Fn(usize) -> &'static str,
         proposed: &mut Proposed<T>,
     ) -> Result<(), Error> {
@@ -495,8 +498,11 @@ impl<T: Real, const C: usize> Barriers<T, C> {
                 proposed.relaxed = larger(proposed.relaxed, excess / s);
             }
             let ratio = next / s;
+            // the slack μ/z of a bound that is reached is where the correction leads
+            let reached = larger(T::from_ratio(1, 2) * barrier / (z * s), T::from_f64(1.0 - TO_REACHED));
+            let least = if is_near && reached < least { reached } else { least };
             if ratio < least {
-                let limit = fraction * T::from_f64(TO_BOUNDARY) / (one - ratio);
+                let limit = fraction * (one - least) / (one - ratio);
                 if limit < proposed.allowed.unwrap_or(fraction) {
                     proposed.allowed = Some(limit);
                 }

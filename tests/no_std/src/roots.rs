@@ -419,6 +419,14 @@ macro_rules! planning {
                 plan.fill(control.stage(&ends[0]));
                 *price = control.solve(&ends[0], Target::Place(ends[1]), plan)?.price();
             });
+            $crate::export!("plan_along", $name, |control: &Control<S, $d, $u, $c>,
+                                                  places: &[X; $crate::roots::STEPS],
+                                                  plan: &mut Stages,
+                                                  price: &mut T| {
+                let [start, .., goal] = places;
+                let path = |k: usize, _| places.get(k).copied().unwrap_or(*goal);
+                *price = control.solve_along(start, Target::Place(*goal), path, plan)?.price();
+            });
             $crate::export!("plan_within", $name, |control: &Control<S, $d, $u, $c>,
                                                    ends: &[X; 2],
                                                    plan: &mut Stages,

@@ -15,6 +15,7 @@ const COLUMNS: [(&str, &[&str]); 7] = [
         &[
             "plan",
             "plan_within",
+            "plan_along",
             "plan_free_time",
             "estimate",
             "slide",

@@ -9,6 +9,7 @@ mod derivatives;
 mod equations;
 mod estimates;
 mod kinks;
+mod paths;
 mod references;
 mod right_hand_sides;
 mod targets;

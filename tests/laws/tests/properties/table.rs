@@ -206,6 +206,7 @@ pub const PROPERTIES: &[(&str, &[Property])] = &[
             "Optimum::iterations", "Optimum::residual", "Optimum::gap", "Optimum::negative", "Optimum::is_minimum", "Optimum::end", "Optimum::final_costate", "Optimum::stages",
         ]),
         ("unicycles_park",            &["Stage::with_input", "Stage::multipliers", "Stage::active"]),
+        ("places_lead_to_plans",      &["Control::solve_along"]),
         ("bounded_work_adds_up",      &["Control::solve_within", "Control::shift", "Optimum::ended", "Optimum::violation"]),
         ("references_are_those_of_their_steps", &[
             "Control::refer", "Control::with_end_reference", "Stage::with_reference", "Stage::reference",
