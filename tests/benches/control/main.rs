@@ -1,9 +1,13 @@
 //! Plans of least price: `cargo bench -p clebsch-tests --bench control -- [PROBLEMS] [SEED]`.
 //!
 //! Random goals of a unicycle, of a body with bounded torques and of a quadrotor, all from a guess at rest. A car on random tracks, past
-//! an obstacle that moves. A car whose sideways input vanishes by an equation, and a body whose tilt stays the same. Then a quadrotor that is planned anew a hundred times a second while gusts push it. Printed are the share that is solved,
-//! and the median, the ninth decile and the largest number of linearisations of a solution.
+//! an obstacle that moves. A car whose sideways input vanishes by an equation, and a body whose tilt stays the same. Then a quadrotor that
+//! is planned anew a hundred times a second while gusts push it. Printed are the share that is solved, and the median, the ninth decile and
+//! the largest number of linearisations of a solution.
+//!
+//! With the word `cases` or `compare`, the problems are those that other solvers get too.
 
+mod cases;
 mod systems;
 
 use clebsch::{Controlled, Limits, Target};
@@ -15,9 +19,28 @@ use nalgebra::{Matrix3, Matrix4, Rotation3, Vector2, Vector3, Vector4, Vector6};
 use systems::{Place, Quadrotor, SteeredBody, TiltedBody, quadrotor};
 
 fn main() {
-    let numbers: Vec<u64> = std::env::args().filter_map(|argument| argument.parse().ok()).collect();
+    let arguments: Vec<String> = std::env::args().skip(1).filter(|argument| argument != "--bench").collect();
+    let numbers: Vec<u64> = arguments.iter().filter_map(|argument| argument.parse().ok()).collect();
     let count = numbers.first().map_or(200, |count| *count as usize);
     let seed = numbers.get(1).map_or(1, |seed| *seed);
+    let outcome = match arguments.iter().map(String::as_str).collect::<Vec<_>>()[..] {
+        [way @ ("cases" | "along"), file, ..] => {
+            cases::write(file, count, seed, way == "along").map_err(|error| format!("{file}: {error}"))
+        }
+        ["compare", file, ..] => cases::compare(file, &arguments[2..]),
+        _ => {
+            counts(count, seed);
+            Ok(())
+        }
+    };
+    if let Err(error) = outcome {
+        eprintln!("control: {error}");
+        std::process::exit(1);
+    }
+}
+
+/// The linearisations of random problems, in a table.
+fn counts(count: usize, seed: u64) {
     let random = &mut Random::new(seed);
     println!("{:<18} {:>9} {:>8} {:>8} {:>8} {:>8}", "problem", "solved", "median", "9 of 10", "most", "all");
     print("unicycle", (0..count).map(|_| car(random)));
