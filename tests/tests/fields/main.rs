@@ -1,4 +1,4 @@
-//! Fields in many steps or sweeps: implicit steps, rest, slabs, threads, and the longest stable step.
+//! Fields in many steps or sweeps: implicit steps, rest, threads, and the longest stable step.
 //!
 //! Those of a few steps are in `tests/laws/tests/fields`.
 
@@ -6,6 +6,5 @@
 
 mod midpoint;
 mod relaxation;
-mod slabs;
 mod stability;
 mod threads;

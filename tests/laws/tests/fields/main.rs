@@ -1,5 +1,5 @@
-//! Fields: steps against integrations in 60 digits and against closed forms, grids and their sides, orders, conserved momenta, and
-//! the errors of wrong ones.
+//! Fields: steps against integrations in 60 digits and against closed forms, grids and their sides, orders, conserved momenta, slabs,
+//! and the errors of wrong ones.
 //!
 //! Those of many steps are in `tests/tests/fields`, which is optimised.
 
@@ -13,4 +13,5 @@ mod multisymplectic;
 mod reference;
 mod refused;
 mod residuals;
+mod slabs;
 mod waves;
