@@ -308,8 +308,8 @@ impl<S: Controlled<D, U, C, Scalar: Real>, B: Start<S, D, U, C>, const D: usize,
     /// As [`solve`](Self::solve), near places that are known roughly: those of a planner, of an interpolation, of a side of an obstacle.
     ///
     /// `path(k, t_k)` is a guess of the place x_k, for k from 1 to N. It need not be a motion of the system, nor end at the target. Momenta of
-    /// states may be zero. Multiple shooting begins there, with the inputs that the stages hold. Where it leads nowhere, the plan is that of
-    /// [`solve`](Self::solve).
+    /// states may be zero. Multiple shooting begins there, with the inputs that the stages hold and without multipliers. Where it leads nowhere,
+    /// the plan is that of [`solve`](Self::solve).
     ///
     /// ```
     /// # use clebsch::{Clebsch, Controlled, Target};

@@ -227,9 +227,10 @@ def main():
             for case in (case for case in cases if case["problem"] == name):
                 start, goal, guess = posed(case["case"])
                 given = dict(x0=guess, p=np.r_[start, goal], lbx=problem.lowest, ubx=problem.highest, lbg=problem.low, ubg=problem.high)
-                before = time.process_time()
+                solver(**given)  # clebsch is timed at its second solution too
+                before = time.perf_counter()
                 solved = solver(**given)
-                us = 1e6 * (time.process_time() - before)
+                us = 1e6 * (time.perf_counter() - before)
                 values = np.array(solved["g"]).ravel()
                 violation = max(0.0, np.max(np.r_[problem.low - values, values - problem.high]))
                 told = solver.stats()

@@ -88,7 +88,7 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, B: Start<S, D, U, C>, const D:
         self.forget();
         if self.lift_along(path)? {
             match self.newton(false) {
-                Err(error) if may_be_found(&error) => self.forget(),
+                Err(_) => self.forget(),
                 found => return found,
             }
         }

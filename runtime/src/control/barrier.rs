@@ -1,7 +1,10 @@
 //! Bounds by a primal-dual interior point method: a + s = excess with slacks s > 0 that cost −μ ln s each.
 //!
 //! If a guess violates bounds, they are relaxed by the excess. A step of fraction α shrinks the excess exactly by 1 −
-//! α. So slacks are s = excess − a, for bounds of any form. Steps keep a two-hundredth of each slack.
+//! α. So slacks are s = excess − a, for bounds of any form. Steps keep a two-hundredth of each slack, or less of
+//! one that is reached.
+//!
+//! Equations among the bounds have an augmented Lagrangian in place of slacks: see `slacks`.
 //!
 //! A bound a = −∞ is none, as from an infinite parameter. Its slack is infinite, it has no multiplier and does not
 //! count.
@@ -15,7 +18,7 @@ use super::iterate::Iterate;
 use super::quadratic::Slopes;
 use super::slacks::{Condensed, Kind, Strictness, Values, is_none};
 use super::start::Start;
-use super::sweep::{Plan, Settings};
+use super::sweep::{Plan, Problem, Settings};
 use crate::space::larger;
 use crate::{BoundsExpansion, Controlled, Error, Expansion, Real, Space};
 use nalgebra::{SMatrix, SVector};
@@ -37,14 +40,19 @@ const PART_OF_CHANGE: (i64, i64) = (1, 10);
 /// slide sideways on its way to a plan, so that it winds.
 const FIRST_RIGID: f64 = 3.0;
 /// The growth of ρ̂ with each correction that is made in full.
-pub(super) const STIFFER: f64 = 30.0;
-/// ρ̂ at last: a violation is as dear as a multiplier's part 10⁻⁷, and rounding is a part 10⁻⁹ of it.
-pub(super) const RIGID: f64 = 1e7;
-/// ρ̂ where multipliers creep.
-pub(super) const MOST_RIGID: f64 = 1e11;
+pub(super) const HARDER: f64 = 30.0;
+/// ρ̂ at last: rounding of a, times ρ, is less than √ε of a multiplier. It is 10⁷ in double precision.
+const RIGID: (i64, i64) = (9, 20);
+/// ρ̂ where multipliers creep: 10¹¹ in double precision.
+const MOST_RIGID: (i64, i64) = (7, 10);
 
 /// Units in the last place of the terms of an equation that are round-off of inputs and places.
 const EQUAL: f64 = 1024.0;
+
+/// ρ̂ at last, and where multipliers creep.
+pub(super) fn rigidities<T: Real>() -> [T; 2] {
+    [RIGID, MOST_RIGID].map(|(numerator, denominator)| T::EPSILON.powf(-T::from_ratio(numerator, denominator)))
+}
 
 fn largest<'a, T: Real>(entries: impl Iterator<Item = &'a T>) -> T {
     entries.fold(T::zero(), |most, entry| larger(most, entry.abs()))
@@ -109,6 +117,7 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, B: Start<S, D, U, C>, const D:
         }
         self.bounds = T::from_f64(bounds as f64);
         self.has_equations = S::EQUAL_BOUNDS > 0;
+        self.except_start()?;
         if !self.is_bounded() {
             return Ok(Some(Strictness::none()));
         }
@@ -117,7 +126,8 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, B: Start<S, D, U, C>, const D:
         let is_inside = bounds == 0 || sum > zero;
         if is_inside && self.stages.iter().all(|stage| stage.limits.is_warm()) {
             let barrier = if bounds == 0 { zero } else { sum / self.bounds };
-            let rigidity = if self.has_equations { T::from_f64(RIGID) } else { zero };
+            let [rigid, _] = rigidities::<T>();
+            let rigidity = if self.has_equations { rigid } else { zero };
             return Ok(Some(Strictness { barrier, rigidity, price: self.price_of_step()? }));
         }
         let sizes = self.sizes();
@@ -127,10 +137,29 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, B: Start<S, D, U, C>, const D:
         Ok(None)
     }
 
-    /// Σ|ℓ|/N where equations need it, or 1 where steps have no price.
+    /// Equations of a given start that no input moves are none: it is where it is.
+    fn except_start(&mut self) -> Result<(), Error> {
+        let is_given = B::change(&B::none(), &SVector::from_element(T::zero())).is_none();
+        let Some(stage) = self.stages.first_mut().filter(|_| self.has_equations && is_given) else { return Ok(()) };
+        let zeros = SVector::from_element(T::zero());
+        let bounds = self.problem.bounds_expanded(stage, self.problem.time_after(0), &zeros)?;
+        for i in 0..C {
+            if bounds.by_input.row(i).iter().all(|slope| *slope == T::zero()) {
+                stage.limits.except(i);
+            }
+        }
+        Ok(())
+    }
+
+    /// (|φ₀| + Σ|ℓ| + |φ|)/N where equations need it, or 1 where a plan has no price.
     fn price_of_step(&self) -> Result<T, Error> {
-        let mut price = T::zero();
-        for (index, stage) in self.stages.iter().enumerate().filter(|_| self.has_equations) {
+        if !self.has_equations {
+            return Ok(T::one());
+        }
+        let Problem { system, constants, beginning, .. } = &self.problem;
+        let end = system.endpoint(constants, self.problem.end_time(), &self.last);
+        let mut price = end.abs() + beginning.price(system, &self.origin()).abs();
+        for (index, stage) in self.stages.iter().enumerate() {
             price += self.problem.price(stage, self.problem.time_after(index), &stage.place, &stage.input)?.abs();
         }
         Ok(if price > T::zero() { price / self.steps() } else { T::one() })
@@ -329,14 +358,15 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, B: Start<S, D, U, C>, const D:
         })
     }
 
-    /// The bound that keeps all from being relaxed less: its stage, its name and by how much it is violated.
-    pub fn worst_bound(&self) -> Option<(usize, &'static str, T)> {
+    /// The bound that keeps all from being relaxed less, with its stage, its name and its violation. Equations count that are violated by more than
+    /// this part of their size.
+    pub fn worst_bound(&self, least: Option<T>) -> Option<(usize, &'static str, T)> {
         let (mut most, mut worst) = (T::zero(), None);
         for (index, stage) in self.stages.iter().enumerate() {
             let t = self.problem.time_after(index);
             let Ok(values) = self.problem.bounds(stage, t, &stage.place, &stage.input) else { continue };
             for i in 0..C {
-                let part = stage.limits.relative_violation(i, values[i]);
+                let part = stage.limits.relative_violation(i, values[i], least);
                 if part > most {
                     (most, worst) = (part, Some((index, S::BOUNDS[i], stage.limits.violation(i, values[i]))));
                 }

@@ -65,9 +65,9 @@ pub(super) struct Iterate<T, const D: usize> {
     missed: Option<T>,
     /// Whether the last sweep left out the curvature of steps, and of most of them.
     is_straightened: bool,
+    is_mostly_straight: bool,
     /// Whether equations were made less stiff again.
     is_relieved: bool,
-    is_mostly_straight: bool,
     /// The number of corrections that still go without that curvature.
     straight: u32,
 }
@@ -91,7 +91,7 @@ pub(super) enum Verdict {
 }
 
 impl<T: Real, const D: usize> Iterate<T, D> {
-    /// Before the first sweep; a barrier is chosen after it where none is given.
+    /// Before the first sweep; the strictness of bounds is chosen after it where none is given.
     pub fn new(multipliers: SVector<T, D>, strictness: Option<Strictness<T>>, distance: T) -> Self {
         let zero = T::zero();
         Self {
@@ -317,24 +317,25 @@ impl<T: Real, const D: usize> Iterate<T, D> {
 
     /// Makes equations stiffer after a full correction of this size, for steps of this price. Where corrections hardly shrink, some multipliers
     /// move hardly anything, and creep. Equations are then stiffer than they may be at the end, for rounding of a is multiplied by ρ.
-    pub fn stiffen(&mut self, price: T, size: T) {
+    pub fn harden(&mut self, price: T, size: T) {
         let is_near = |before: T| before <= T::from_ratio(NEAR.0, NEAR.1) && size > before * T::from_ratio(1, 8);
         let creeps = self.before.is_some_and(is_near) && !self.is_relieved;
         let Strictness { rigidity, price: of_step, .. } = &mut self.settings.strictness;
-        let [stiffer, rigid, most] = [barrier::STIFFER, barrier::RIGID, barrier::MOST_RIGID].map(T::from_f64);
-        let (stiffer, limit) = (*rigidity * stiffer, if creeps { most } else { rigid });
-        *of_step = larger(*of_step, price);
+        let [rigid, most] = barrier::rigidities::<T>();
+        let (harder, limit) = (*rigidity * T::from_f64(barrier::HARDER), if creeps { most } else { rigid });
+        // a guess may have been dear, and is forgotten by and by
+        *of_step = larger(*of_step * T::from_ratio(1, 8), price);
         if creeps && *rigidity >= most {
             // only rounding changes it now
             self.relieve();
         } else {
-            *rigidity = larger(*rigidity, if stiffer < limit { stiffer } else { limit });
+            *rigidity = larger(*rigidity, if harder < limit { harder } else { limit });
         }
     }
 
     /// Makes equations less stiff for the last digits of their multipliers; `false` where they are not too stiff for that.
     pub fn relieve(&mut self) -> bool {
-        let rigid = T::from_f64(barrier::RIGID);
+        let [rigid, _] = barrier::rigidities::<T>();
         let is_stiffer = self.settings.strictness.rigidity > rigid;
         if is_stiffer {
             self.settings.strictness.rigidity = rigid;

@@ -92,7 +92,7 @@ enum Places {
     Given,
 }
 
-/// The units of gaps, and the plan after the first correction.
+/// The units of gaps, and the plan that is gone on from.
 type Begun<X, T, const D: usize> = (SVector<T, D>, Proposal<X, T>);
 
 impl<X, T: Real> Proposal<X, T> {
@@ -203,7 +203,7 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, B: Start<S, D, U, C>, const D:
         Ok(())
     }
 
-    /// Closes gaps until a roll-out can go on; `false` where corrections get stuck.
+    /// Closes gaps until a roll-out can go on; `false` where corrections get stuck far from a solution.
     fn close(&mut self, places: Places) -> Result<bool, Error> {
         let (zero, one) = (T::zero(), T::one());
         let end = self.end();
@@ -261,7 +261,7 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, B: Start<S, D, U, C>, const D:
             }
             if fraction >= T::from_ratio(9, 10) && is_below(CENTRAL) {
                 if self.has_equations {
-                    now.stiffen(magnitude / self.steps(), size);
+                    now.harden(magnitude / self.steps(), size);
                 }
                 // a bound of places curves with the motion: away from its central path, slacks allow next to nothing of a correction
                 let barrier = now.settings.strictness.barrier;

@@ -96,7 +96,7 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, B: Start<S, D, U, C>, const D:
                 Verdict::Done if self.is_violated() => {
                     unmet += 1;
                     if self.has_equations && unmet > UNMET {
-                        return Err(self.failure(&end, size));
+                        return Err(self.infeasible(Some(zero)).unwrap_or(self.failure(&end, size)));
                     }
                 }
                 Verdict::Done => {
@@ -135,6 +135,10 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, B: Start<S, D, U, C>, const D:
                     stirs += 1;
                     self.way = Way::Kept;
                     self.stir(&summary, end.lack.max_abs(), stirs, &Amplitudes::NEAR);
+                    if self.has_equations {
+                        // soft again, for another motion
+                        self.stages.iter_mut().for_each(|stage| stage.limits.forget());
+                    }
                     now = self.start(false)?;
                     continue;
                 }
@@ -154,7 +158,7 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, B: Start<S, D, U, C>, const D:
             has_corrected = true;
             let is_whole = made.is_some_and(|(fraction, _)| fraction >= T::from_ratio(9, 10));
             if is_whole && self.has_equations {
-                now.stiffen(size_of_price / steps, size);
+                now.harden(size_of_price / steps, size);
             }
             now.advance(made, size, summary.negative, end.distance);
             if now.stalls == STALLS || now.damping > T::from_f64(DAMPING_LIMIT) {
@@ -316,12 +320,20 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, B: Start<S, D, U, C>, const D:
         !before.is_reached() && !is_nearer && !is_as_modelled
     }
 
+    /// The bound that no plan satisfies. Equations count that are violated by more than this part of their size.
+    #[cold]
+    fn infeasible(&self, least: Option<T>) -> Option<Error> {
+        let (stage, bound, violation) = self.worst_bound(least)?;
+        Some(Error::Infeasible { bound, stage, violation: violation.to_f64() })
+    }
+
     /// Why nothing was found.
     #[cold]
     fn failure(&self, end: &PlanEnd<T, D>, size: T) -> Error {
         let iterations = self.sweeps;
-        match self.worst_bound() {
-            Some((stage, bound, violation)) => Error::Infeasible { bound, stage, violation: violation.to_f64() },
+        // where the target is reached, equations may have stopped the search
+        match self.infeasible(end.is_reached().then_some(T::EPSILON.sqrt())) {
+            Some(error) => error,
             None if !end.is_reached() => Error::TargetMissed { distance: end.distance.to_f64(), iterations },
             None => Error::NoExtremal { correction: size.to_f64(), iterations },
         }

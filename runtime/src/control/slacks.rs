@@ -16,8 +16,9 @@ use nalgebra::{SMatrix, SVector};
 pub(super) const TO_BOUNDARY: f64 = 0.995;
 /// The same for a bound that is reached, by its multiplier.
 const TO_REACHED: f64 = 0.9999;
-/// ρ̂ from which on the multipliers of equations count for their stiffness in full. Plans on their way bend more easily without them.
-const SETTLED: f64 = 1e4;
+/// ρ̂ from which on the multipliers of equations count for their stiffness in full, a power of 1/ε. Plans on their way bend more easily
+/// without them.
+const SETTLED: (i64, i64) = (1, 4);
 
 /// Whether a bound with this slack is none.
 pub(super) fn is_none<T: Real>(slack: T) -> bool {
@@ -106,7 +107,7 @@ impl<T: Real> Equation<T> {
     fn stiffness(self, strictness: Strictness<T>) -> T {
         let Strictness { rigidity, price, .. } = strictness;
         if self.size > T::zero() {
-            let part = rigidity / T::from_f64(SETTLED);
+            let part = rigidity * T::EPSILON.powf(T::from_ratio(SETTLED.0, SETTLED.1));
             let by_multiplier = self.multiplier.abs() * if part < T::one() { part } else { T::one() };
             rigidity * (price / self.size + by_multiplier) / self.size
         } else {
@@ -299,11 +300,11 @@ impl<T: Real, const C: usize> Barriers<T, C> {
         }
     }
 
-    /// The violation of a bound as a part of that by which it is relaxed. Of an equation it is a part of its size, or 0 where it is rounding.
-    pub fn relative_violation(&self, i: usize, value: T) -> T {
+    /// The violation of a bound as a part of that by which it is relaxed. Of an equation it is a part of its size, where that is more than `least`.
+    pub fn relative_violation(&self, i: usize, value: T, least: Option<T>) -> T {
         match self.kinds[i] {
             Kind::Inequality if self.excess[i] > T::zero() => value / self.excess[i],
-            Kind::Equation(size) if value.abs() > T::EPSILON.sqrt() * size => value.abs() / size,
+            Kind::Equation(size) if least.is_some_and(|least| value.abs() > least * size) => value.abs() / size,
             Kind::Inequality | Kind::Soft(_) | Kind::Equation(_) => T::zero(),
         }
     }
@@ -394,6 +395,14 @@ impl<T: Real, const C: usize> Barriers<T, C> {
         match self.kinds[i] {
             Kind::Equation(_) => larger(moved.abs(), most * T::from_ratio(1, 100)),
             Kind::Inequality | Kind::Soft(_) => moved.abs(),
+        }
+    }
+
+    /// Makes an equation none.
+    pub fn except(&mut self, i: usize) {
+        if let Kind::Equation(_) = self.kinds[i] {
+            (self.kinds[i], self.slack[i]) = (Kind::Soft(T::zero()), T::from_f64(f64::INFINITY));
+            self.multipliers[i] = T::zero();
         }
     }
 

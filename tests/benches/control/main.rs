@@ -5,7 +5,7 @@
 //! is planned anew a hundred times a second while gusts push it. Printed are the share that is solved, and the median, the ninth decile and
 //! the largest number of linearisations of a solution.
 //!
-//! With the word `cases` or `compare`, the problems are those that other solvers get too.
+//! With the word `cases`, `along` or `compare`, the problems are those that other solvers get too.
 
 mod cases;
 mod systems;

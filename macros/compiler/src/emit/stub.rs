@@ -12,7 +12,7 @@ use super::functions::{BOUNDED, ENDED, EXPANDED, FORCED, PRICED, STEERED, SYSTEM
 use super::names::Names;
 use super::scope::nested_type;
 use crate::model::{Nested, Outline};
-use crate::parse::Declaration;
+use crate::parse::{Declaration, tail};
 
 /// The implementation of the trait for a declaration with an error.
 pub fn stub(declaration: &Declaration, outline: &Outline) -> TokenStream {
@@ -83,7 +83,7 @@ fn system(block: &Block<'_>, declaration: &Declaration, outline: &Outline) -> Op
 
 /// The trait `Controlled`, where the declaration chooses inputs.
 fn controlled(block: &Block<'_>, declaration: &Declaration, outline: &Outline) -> Option<TokenStream> {
-    let bounds = match declaration.control.as_ref()?.bounds.as_ref().map(|closure| &closure.body) {
+    let bounds = match declaration.control.as_ref()?.bounds.as_ref().map(|closure| tail(&closure.body)) {
         Some(syn::Expr::Array(list)) => list.elems.len(),
         _ => 0,
     };

@@ -34,7 +34,18 @@ pub(super) fn comparisons<'g>(
     list: &ExprArray,
     among: Among,
 ) -> Option<Vec<Condition<'g>>> {
-    let read = list.elems.iter().map(|syntax| comparison(elaborator, syntax, among)).into_list();
+    // one row of `u == vector![u.x, 0]` says nothing
+    let read = list.elems.iter().map(|syntax| {
+        let mut rows = comparison(elaborator, syntax, among)?;
+        let says_something = |row: &Condition<'g>| !row.is_equation || row.left != row.right;
+        if rows.iter().any(says_something) {
+            rows.retain(says_something);
+        } else {
+            rows.truncate(1);
+        }
+        Some(rows)
+    });
+    let read = read.into_list();
     Some(read.into_iter().collect::<Option<Vec<_>>>()?.into_iter().flatten().into_list())
 }
 

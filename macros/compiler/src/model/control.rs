@@ -218,11 +218,6 @@ impl<'g> ActedSystem<'_, '_, 'g> {
             elaborator.in_block(&closure.body, |elaborator| comparisons(elaborator, list, Among::Bounds))?;
         let leaves = self.space.leaves.iter().chain(&input.leaves).map(|leaf| leaf.symbol);
         let moving = leaves.chain(velocities.iter().copied()).into_list();
-        // one row of `u == vector![u.x, 0]` says nothing
-        let says_more = |text: &str| comparisons.iter().any(|row| row.text == *text && row.left != row.right);
-        let is_empty = |row: &Condition<'g>| row.is_equation && row.left == row.right && says_more(&row.text);
-        let empty: Vec<_> = comparisons.each(is_empty);
-        let rows = comparisons.into_iter().zip(empty).filter(|(_, is_empty)| !is_empty).map(|(row, _)| row);
         let bound = |Condition { left, right, is_equation, place, text }: Condition<'g>| {
             let value = left - right;
             if is_equation && !moving.iter().any(|symbol| value.depends_on(*symbol)) {
@@ -231,7 +226,8 @@ impl<'g> ActedSystem<'_, '_, 'g> {
             }
             Bound { value, kind: if is_equation { BoundKind::Equation } else { BoundKind::Inequality }, text }
         };
-        let (mut all, inequalities): (Vec<_>, Vec<_>) = rows.map(bound).partition(Bound::is_equation);
+        let (mut all, inequalities): (Vec<_>, Vec<_>) =
+            comparisons.into_iter().map(bound).partition(Bound::is_equation);
         all.extend(inequalities);
         Some((all, velocities))
     }
