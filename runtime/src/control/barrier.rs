@@ -54,10 +54,6 @@ pub(super) fn rigidities<T: Real>() -> [T; 2] {
     [RIGID, MOST_RIGID].map(|(numerator, denominator)| T::EPSILON.powf(-T::from_ratio(numerator, denominator)))
 }
 
-fn largest<'a, T: Real>(entries: impl Iterator<Item = &'a T>) -> T {
-    entries.fold(T::zero(), |most, entry| larger(most, entry.abs()))
-}
-
 /// The last μ, for so many bounds and a price of this size.
 pub(super) fn last<T: Real>(bounds: T, price: T) -> T {
     T::EPSILON.powf(T::from_ratio(LAST.0, LAST.1)) * price / bounds
@@ -194,9 +190,11 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, B: Start<S, D, U, C>, const D:
         self.stages.iter_mut().for_each(|stage| stage.limits.relax(&least));
     }
 
-    /// Gives sizes to equations: the largest |a|, or the first change, if that is larger. Relaxes the bounds that are 0 in all stages, each by its own size. That is its first change, by a correction
-    /// without bounds. If nothing changes it, its size is the smallest of the others. Too small a slack shortens steps,
-    /// and too large a slack switches the bound off.
+    /// Relaxes the bounds that are 0 in all stages, each by a part of its first change, by a correction without bounds. If nothing changes
+    /// it, the smallest size of the others takes the place of that. Too small a slack shortens steps, and too large a slack switches the
+    /// bound off.
+    ///
+    /// The size of an equation is the largest |a|, or its first change where that is larger.
     #[cold]
     pub fn size(&mut self, change: &SVector<T, D>) -> Result<(), Error> {
         let zero = T::zero();
@@ -215,7 +213,7 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, B: Start<S, D, U, C>, const D:
         Ok(())
     }
 
-    /// Relaxes the bounds that are 0 in all stages, and that nothing changes, by the smallest size of the others.
+    /// The same without a first change.
     #[cold]
     pub fn size_by_others(&mut self) {
         self.size_by(&self.sizes(), &SVector::zeros());
@@ -243,8 +241,13 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, B: Start<S, D, U, C>, const D:
 
     /// Takes the plan that a roll-out with this fraction of the correction proposes, which leads to `last`. Multipliers stay positive, near μ/s.
     pub fn accept(&mut self, fraction: T, barrier: T, last: S::Place) {
+        self.stages.iter_mut().for_each(|stage| stage.limits.accept(fraction, barrier));
+        self.arrive_at(last);
+    }
+
+    /// Takes places and inputs of a proposed plan that leads to `last`, with the multipliers that the stages hold.
+    pub fn arrive_at(&mut self, last: S::Place) {
         for stage in self.stages.iter_mut() {
-            stage.limits.accept(fraction, barrier);
             (stage.place, stage.input) = (stage.next_place, stage.next_input);
         }
         self.last = last;
@@ -283,7 +286,8 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, B: Start<S, D, U, C>, const D:
             };
             let (far, wide) = (displaced.max_abs(), input.max_abs());
             let most = SVector::from_fn(|i, _| {
-                largest(bounds.by_place.row(i).iter()) * far + largest(bounds.by_input.row(i).iter()) * wide
+                let (by_place, by_input) = (bounds.by_place.row(i).into_owned(), bounds.by_input.row(i).into_owned());
+                by_place.max_abs() * far + by_input.max_abs() * wide
             });
             visit(stage, bounds.by_place * displaced + bounds.by_input * input, most);
             if !self.is_lifted {

@@ -208,6 +208,12 @@ impl<T: Real, const D: usize> Iterate<T, D> {
         self.begin_again();
     }
 
+    /// Goes on from a plan near a critical one, whose inputs move the end in so many directions. The exact model is tried first.
+    pub fn go_on(&mut self, rank: usize) {
+        self.rank = rank;
+        self.settings.curvature = Curvature::exact(self.steadiness());
+    }
+
     /// Nothing is known any more of the corrections before.
     fn begin_again(&mut self) {
         (self.before, self.calm, self.is_cornered, self.is_probed) = (None, 0, false, false);

@@ -29,6 +29,8 @@ use nalgebra::{SMatrix, SVector};
 const SWEEPS: u32 = 60;
 /// The first barrier, in units of that of roll-outs: a plan with gaps is further away.
 const WIDER: f64 = 10.0;
+/// The same for given places: bounds may be anywhere, and narrow slacks would leave next to nothing of corrections.
+const WIDEST: f64 = 200.0;
 /// The motions that bend a place to the target, one after the other.
 const PARTS: usize = 8;
 /// Fractions of corrections that are tried.
@@ -42,8 +44,10 @@ const GAIN: f64 = 1e-5;
 const CLOSED: f64 = 1e-6;
 /// The corrections and gaps from which a roll-out goes on.
 const NEAR: (f64, f64) = (0.03, 1e-2);
+/// Gaps that are wide.
+const WIDE: f64 = 1.0;
 /// Corrections and gaps for which the barrier is lowered.
-const CENTRAL: (f64, f64) = (0.5, 1.0);
+const CENTRAL: (f64, f64) = (2.0, WIDE);
 
 /// The gap between two steps.
 pub(super) struct Gap<T, const D: usize> {
@@ -84,7 +88,7 @@ struct Proposal<X, T> {
 }
 
 /// The places that gaps are between at first.
-#[derive(Clone, Copy, PartialEq)]
+#[derive(Clone, Copy)]
 enum Places {
     /// Those of a motion, bent to the target.
     Bent,
@@ -92,8 +96,22 @@ enum Places {
     Given,
 }
 
-/// The units of gaps, and the plan that is gone on from.
-type Begun<X, T, const D: usize> = (SVector<T, D>, Proposal<X, T>);
+/// The measure of gaps.
+struct Measure<T, const D: usize> {
+    /// One by the largest change from the start to any place, for each component, 0 where nothing moves.
+    units: SVector<T, D>,
+    /// The part by which bounds are still relaxed: 1 at first, where they are.
+    relaxed: T,
+}
+
+impl<T: Real, const D: usize> Measure<T, D> {
+    fn of(&self, change: SVector<T, D>) -> T {
+        change.component_mul(&self.units).iter().fold(T::zero(), |sum, part| sum + part.abs())
+    }
+}
+
+/// The measure of gaps, and the plan that is gone on from.
+type Begun<X, T, const D: usize> = (Measure<T, D>, Proposal<X, T>);
 
 impl<X, T: Real> Proposal<X, T> {
     /// The gaps, and the price with barriers.
@@ -170,8 +188,10 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, B: Start<S, D, U, C>, const D:
         self.is_lifted = true;
         let closed = self.close(places);
         self.is_lifted = false;
-        let is_near = closed?;
-        self.land().map(|()| is_near)
+        let rank = closed?;
+        self.land()?;
+        self.landed = rank;
+        Ok(rank.is_some())
     }
 
     /// Bends the places of a plan so that its end reaches the target, by and by.
@@ -203,13 +223,15 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, B: Start<S, D, U, C>, const D:
         Ok(())
     }
 
-    /// Closes gaps until a roll-out can go on; `false` where corrections get stuck far from a solution.
-    fn close(&mut self, places: Places) -> Result<bool, Error> {
+    /// Closes gaps until a roll-out can go on, with the number of directions that inputs move the end in. `None` where corrections get stuck far
+    /// from a solution.
+    fn close(&mut self, places: Places) -> Result<Option<usize>, Error> {
         let (zero, one) = (T::zero(), T::one());
         let end = self.end();
         let strictness = self.resume_or_relax()?;
         let mut now = Iterate::new(SVector::zeros(), strictness, end.distance);
-        let (mut filter, mut at, mut units, mut stuck) = (Filter::new(zero), None, SVector::zeros(), 0);
+        let (mut filter, mut at, mut measure, mut stuck) =
+            (Filter::new(zero), None, Measure { units: SVector::zeros(), relaxed: zero }, 0);
         for _ in 0..SWEEPS {
             let Some(Swept { summary, end, gramian }) = self.sweep(&mut now)? else { continue };
             let descent = Descent { summary: &summary, end: &end, settings: now.settings, inverse: gramian.inverse() };
@@ -221,14 +243,14 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, B: Start<S, D, U, C>, const D:
                 continue;
             }
             if !decrement.is_finite() {
-                return Ok(false);
+                return Ok(None);
             }
             let last_motion = self.make_linear(&change)?;
             let Some(before) = at else {
                 // the first sweep is made without bounds, and tells the sizes of changes and of prices
                 now.settings.weight = gramian.weight(&summary.gramian, &now.settings.weight);
                 let begun;
-                (units, begun) = match places {
+                (measure, begun) = match places {
                     Places::Bent => self.begin_lifted(&mut now, &last_motion, summary.repair())?,
                     Places::Given => {
                         let price = larger(summary.magnitude + decrement, summary.repair());
@@ -242,22 +264,23 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, B: Start<S, D, U, C>, const D:
             let magnitude = summary.magnitude + T::EPSILON.sqrt() * now.largest;
             let size = (decrement.abs() / magnitude).sqrt();
             let measures = before.measures(now.settings.strictness.barrier);
-            let Some((fraction, proposal)) = self.try_parts(&last_motion, &filter, measures, (&now, &units)) else {
-                return Ok(false);
+            let Some((fraction, proposal)) = self.try_parts(&last_motion, &filter, measures, (&now, &measure)) else {
+                return Ok(None);
             };
             filter.add(measures);
             self.equate(&change, fraction, now.settings.strictness)?;
             self.accept(fraction, now.settings.strictness.barrier, proposal.last);
+            measure.relaxed *= one - fraction;
             self.add_multipliers(&mut now, &(change * fraction));
             at = Some(proposal);
             stuck = if fraction < T::from_ratio(SHORT.0, SHORT.1) { stuck + 1 } else { 0 };
             let is_below =
                 |(of_size, of_gaps): (f64, f64)| size <= T::from_f64(of_size) && proposal.gaps <= T::from_f64(of_gaps);
             if stuck > PATIENCE {
-                return Ok(is_below(NEAR));
+                return Ok(is_below(NEAR).then_some(now.rank));
             }
             if fraction >= one && is_below(NEAR) {
-                return Ok(true);
+                return Ok(Some(now.rank));
             }
             if fraction >= T::from_ratio(9, 10) && is_below(CENTRAL) {
                 if self.has_equations {
@@ -275,11 +298,11 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, B: Start<S, D, U, C>, const D:
             }
             now.settings.curvature = if size <= one { Curvature::exact(zero) } else { Curvature::mirrored(zero, zero) };
         }
-        Ok(false)
+        Ok(None)
     }
 
     /// Makes all of the first correction. Bounds are relaxed after it, as far as it violates them. The first barrier has the size of its
-    /// price, as the guess may be far dearer. Returns the units of gaps, and the plan.
+    /// price, as the guess may be far dearer. Returns the measure of gaps, and the plan.
     fn begin_lifted(
         &mut self,
         now: &mut Iterate<T, D>,
@@ -287,11 +310,9 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, B: Start<S, D, U, C>, const D:
         repair: T,
     ) -> Result<Begun<S::Place, T, D>, Error> {
         let zero = T::zero();
-        let proposal = self.propose(T::one(), last_motion, &SVector::zeros())?;
-        for stage in self.stages.iter_mut() {
-            (stage.place, stage.input) = (stage.next_place, stage.next_input);
-        }
-        self.last = proposal.last;
+        let unmeasured = Measure { units: SVector::zeros(), relaxed: zero };
+        let proposal = self.propose(T::one(), last_motion, &unmeasured)?;
+        self.arrive_at(proposal.last);
         self.resume_or_relax()?;
         let price = larger(proposal.price.abs(), repair);
         now.largest = price;
@@ -299,12 +320,13 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, B: Start<S, D, U, C>, const D:
             self.size_by_others();
             self.begin_bounds(now, if price > zero { price } else { T::one() }, WIDER);
         }
-        let units = self.units();
-        Ok((units, self.propose(zero, last_motion, &units)?))
+        let measure = self.measure();
+        let begun = self.propose(zero, last_motion, &measure)?;
+        Ok((measure, begun))
     }
 
-    /// Begins with the first correction not made: it might lead through an obstacle that the given places avoid. Returns the units of gaps, and
-    /// the plan.
+    /// Begins with the first correction not made: it might lead through an obstacle that the given places avoid. Returns the measure of gaps,
+    /// and the plan.
     fn begin_where_it_is(
         &mut self,
         now: &mut Iterate<T, D>,
@@ -317,10 +339,11 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, B: Start<S, D, U, C>, const D:
         now.largest = price;
         if self.is_bounded() {
             self.size(change)?;
-            self.begin_bounds(now, price, WIDER);
+            self.begin_bounds(now, price, WIDEST);
         }
-        let units = self.units();
-        Ok((units, self.propose(zero, last_motion, &units)?))
+        let measure = self.measure();
+        let begun = self.propose(zero, last_motion, &measure)?;
+        Ok((measure, begun))
     }
 
     /// The first fraction of the correction that the filter accepts, with its plan.
@@ -329,18 +352,21 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, B: Start<S, D, U, C>, const D:
         last_motion: &SVector<T, D>,
         filter: &Filter<T>,
         measures: (T, T),
-        (now, units): (&Iterate<T, D>, &SVector<T, D>),
+        (now, measure): (&Iterate<T, D>, &Measure<T, D>),
     ) -> Option<(T, Proposal<S::Place, T>)> {
         let mut fraction = T::one();
         for _ in 0..TRIALS {
-            if let Ok(proposal) = self.propose(fraction, last_motion, units) {
+            if let Ok(proposal) = self.propose(fraction, last_motion, measure) {
                 if let Some(allowed) = proposal.allowed {
                     fraction = larger(allowed * T::from_ratio(99, 100), fraction * T::from_f64(1e-3));
                     continue;
                 }
                 let (gaps, price) = proposal.measures(now.settings.strictness.barrier);
+                // wide gaps may not grow, whatever the price: it takes many corrections to close them again
+                let is_wider = gaps > larger(measures.0, T::from_f64(WIDE));
                 let is_closed = gaps <= T::from_f64(CLOSED);
-                if gaps.is_finite() && price.is_finite() && (is_closed || filter.accepts(gaps, price, measures)) {
+                let is_better = is_closed || !is_wider && filter.accepts(gaps, price, measures);
+                if gaps.is_finite() && price.is_finite() && is_better {
                     return Some((fraction, proposal));
                 }
             }
@@ -372,8 +398,8 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, B: Start<S, D, U, C>, const D:
         Ok(motion)
     }
 
-    /// The units of gaps: one by the largest change from the start to any place, for each component, 0 where nothing moves.
-    fn units(&self) -> SVector<T, D> {
+    /// The measure of gaps between the places of this plan.
+    fn measure(&self) -> Measure<T, D> {
         let Problem { system, .. } = self.problem;
         let start = self.origin();
         let places = self.stages.iter().map(|stage| &stage.place).chain([&self.last]);
@@ -381,7 +407,9 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, B: Start<S, D, U, C>, const D:
             let change = system.displacement(&start, place);
             SVector::from_fn(|i, _| larger(largest[i], change[i].abs()))
         });
-        largest.map(|size| if size > T::zero() && size.is_finite() { size.recip() } else { T::zero() })
+        let (zero, one) = (T::zero(), T::one());
+        let units = largest.map(|size| if size > zero && size.is_finite() { size.recip() } else { zero });
+        Measure { units, relaxed: if self.is_relaxed() { one } else { zero } }
     }
 
     /// The plan after a part of the correction.
@@ -389,12 +417,11 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, B: Start<S, D, U, C>, const D:
         &mut self,
         fraction: T,
         last_motion: &SVector<T, D>,
-        units: &SVector<T, D>,
+        measure: &Measure<T, D>,
     ) -> Result<Proposal<S::Place, T>, Error> {
         let problem = &self.problem;
         let Problem { system, constants, .. } = *problem;
         let zero = T::zero();
-        let size = |change: SVector<T, D>| change.component_mul(units).iter().fold(zero, |sum, part| sum + part.abs());
         let (mut price, mut logarithms, mut gaps, mut slacks) = (zero, zero, zero, Proposed::none());
         let free = Strictness::none();
         let mut reached: Option<S::Place> = None;
@@ -403,7 +430,7 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, B: Start<S, D, U, C>, const D:
             let x = system.moved(&stage.place, &(stage.motion * fraction));
             let input = stage.input + stage.shift * fraction;
             if let Some(reached) = &reached {
-                gaps += size(system.displacement(&x, reached));
+                gaps += measure.of(system.displacement(&x, reached));
             }
             if C > 0 {
                 let bounds = problem.bounds(stage, t, &x, &input)?;
@@ -419,13 +446,13 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, B: Start<S, D, U, C>, const D:
         }
         let last = system.moved(&self.last, &(last_motion * fraction));
         if let Some(reached) = &reached {
-            gaps += size(system.displacement(&last, reached));
+            gaps += measure.of(system.displacement(&last, reached));
         }
-        gaps += size(self.problem.end(&last, zero, &self.pushing).motion);
+        gaps += measure.of(self.problem.end(&last, zero, &self.pushing).motion);
         price += system.endpoint(constants, problem.end_time(), &last);
         Ok(Proposal {
             last,
-            gaps: gaps + slacks.relaxed + slacks.unequal,
+            gaps: gaps + measure.relaxed * (T::one() - fraction) + slacks.unequal,
             price: price + slacks.soft,
             logarithms,
             allowed: slacks.allowed,

@@ -73,6 +73,14 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, B: Start<S, D, U, C>, const D:
                 continue;
             }
             if now.is_open {
+                if self.way == Way::Open && self.is_bounded() && descent.reaches() {
+                    // where a motion without bounds goes astray, one within them does too
+                    let is_astray = |end: PlanEnd<T, D>| self.is_astray(&end, &descent, T::one());
+                    if self.unbounded(&change).map_or(true, is_astray) {
+                        self.way = Way::Given(Amplitudes::FAR);
+                        return Err(self.failure(&end, size));
+                    }
+                }
                 let price = larger(summary.magnitude + decrement, summary.repair());
                 self.open(&mut now, is_priced, price, &change)?;
                 continue;
@@ -149,7 +157,7 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, B: Start<S, D, U, C>, const D:
             if self.way == Way::Open && descent.reaches() {
                 // after the first correction the guess could not reach the target: only its new motion can
                 let is_dear = has_corrected && !end.is_reached() && decrement > summary.magnitude * T::from_f64(DEAR);
-                if is_dear || self.is_astray(&end, now.closes) {
+                if is_dear || self.is_astray(&self.end(), &descent, now.closes) {
                     self.way = Way::Given(if has_corrected { Amplitudes::NEAR } else { Amplitudes::FAR });
                     return Err(self.failure(&end, size));
                 }
@@ -193,6 +201,9 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, B: Start<S, D, U, C>, const D:
         check_finite("the target at the end of the guessed plan", &distance)?;
         let mut now = Iterate::new(multipliers, strictness, distance);
         now.is_open |= is_priced;
+        if let Some(rank) = self.landed.take() {
+            now.go_on(rank);
+        }
         Ok(now)
     }
 
@@ -307,10 +318,10 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, B: Start<S, D, U, C>, const D:
         }
     }
 
-    /// Whether the end is still more than half as far from the target as it was, and not where the model leads. The correction closes this
-    /// part of the gap by its model. Where bounds alone have made it short, the end is where the model leads.
-    fn is_astray(&self, before: &PlanEnd<T, D>, closes: T) -> bool {
-        let end = self.end();
+    /// Whether an end is still more than half as far from the target as before the correction, and not where the model leads. The correction
+    /// closes this part of the gap by its model. Where bounds alone have made it short, the end is where the model leads.
+    fn is_astray(&self, end: &PlanEnd<T, D>, descent: &Descent<'_, T, D, U>, closes: T) -> bool {
+        let before = descent.end;
         let missed: SVector<T, D> = end.lack - before.lack * (T::one() - closes);
         // conditions leave a part of the place free, and a roll-out finds that part by and by
         let is_declared = matches!(self.problem.target, Target::Conditions);

@@ -210,7 +210,7 @@ impl<'p, S: Controlled<D, U, C, Scalar: Real>, const D: usize, const U: usize, c
         copy gap: S::Scalar;
         /// How the search ended.
         copy ended: Ended;
-        /// The largest a of bounds a ≤ 0 that are violated by more than round-off; 0 where the search has converged.
+        /// The largest a of bounds a ≤ 0, and |a| of equations, that are violated by more than round-off; 0 where the search has converged.
         copy violation: S::Scalar;
         /// The Morse index: the number of independent changes of the inputs that keep target and active bounds and lower the price. 0 on a local minimum.
         copy negative: usize;

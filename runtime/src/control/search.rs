@@ -25,7 +25,7 @@ use nalgebra::{SMatrix, SVector};
 const TRIALS: usize = 12;
 /// A correction that gains this part of the gain by its model is not made shorter.
 const GOOD: (i64, i64) = (4, 5);
-/// The part of the distance to the target at which a plan is near it.
+/// The distance to the target at which a plan is near it, as a part of the scale of the end.
 const NEAR: (i64, i64) = (1, 100);
 /// Halvings of the first change away from a saddle, which would take a hundredth of the price: the minimum next to the saddle is wanted.
 const HALVINGS: usize = 30;
@@ -200,6 +200,20 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, B: Start<S, D, U, C>, const D:
         }
         self.last = x;
         check_finite("the end of the guessed plan", &x)
+    }
+
+    /// The end after the correction with the change δν of the multipliers of the target, whatever bounds allow.
+    pub fn unbounded(&self, change: &SVector<T, D>) -> Result<PlanEnd<T, D>, Error> {
+        let problem = &self.problem;
+        let Problem { system, constants, .. } = *problem;
+        let start_change = B::change(&self.correction, change);
+        let mut x = start_change.map_or(self.origin(), |by| system.moved(&self.origin(), &by));
+        for (index, stage) in self.stages.iter().enumerate() {
+            let displaced = system.displacement(&stage.place, &x);
+            let input = stage.input + stage.shift + stage.by_multiplier * change + stage.gain * displaced;
+            x = system.follow(constants, problem.time_after(index), &x, &input)?;
+        }
+        Ok(problem.end(&x, T::zero(), &self.pushing))
     }
 
     /// Proposes the plan after `fraction` of the correction with the change δν of the multipliers of the target.

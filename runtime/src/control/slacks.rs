@@ -16,10 +16,6 @@ use nalgebra::{SMatrix, SVector};
 pub(super) const TO_BOUNDARY: f64 = 0.995;
 /// The same for a bound that is reached, by its multiplier.
 const TO_REACHED: f64 = 0.9999;
-/// ρ̂ from which on the multipliers of equations count for their stiffness in full, a power of 1/ε. Plans on their way bend more easily
-/// without them.
-const SETTLED: (i64, i64) = (1, 4);
-
 /// Whether a bound with this slack is none.
 pub(super) fn is_none<T: Real>(slack: T) -> bool {
     slack > T::zero() && !slack.is_finite()
@@ -84,8 +80,6 @@ pub(super) struct Proposed<T> {
     pub logarithms: T,
     /// z·(a + s) before, with the multipliers of the full correction.
     pub excess_price: T,
-    /// The largest part to which bounds stay relaxed.
-    pub relaxed: T,
     /// By how much soft bounds become dearer, with barriers, and equations.
     pub dearer: T,
     /// The price of soft bounds, with barriers.
@@ -103,11 +97,11 @@ struct Equation<T> {
 }
 
 impl<T: Real> Equation<T> {
-    /// ρ
+    /// ρ. Multipliers count in full from ρ̂ = ε^(−1/4) on: plans on their way bend more easily without them.
     fn stiffness(self, strictness: Strictness<T>) -> T {
         let Strictness { rigidity, price, .. } = strictness;
         if self.size > T::zero() {
-            let part = rigidity * T::EPSILON.powf(T::from_ratio(SETTLED.0, SETTLED.1));
+            let part = rigidity * T::EPSILON.sqrt().sqrt();
             let by_multiplier = self.multiplier.abs() * if part < T::one() { part } else { T::one() };
             rigidity * (price / self.size + by_multiplier) / self.size
         } else {
@@ -191,15 +185,7 @@ impl<T: Real> Proposed<T> {
     /// Of no bounds.
     pub fn none() -> Self {
         let zero = T::zero();
-        Self {
-            allowed: None,
-            logarithms: zero,
-            excess_price: zero,
-            relaxed: zero,
-            dearer: zero,
-            soft: zero,
-            unequal: zero,
-        }
+        Self { allowed: None, logarithms: zero, excess_price: zero, dearer: zero, soft: zero, unequal: zero }
     }
 }
 
@@ -267,7 +253,7 @@ impl<T: Real, const C: usize> Barriers<T, C> {
 
     /// Whether any bound is soft.
     pub fn has_kinks(&self) -> bool {
-        self.kinds.iter().any(|kind| matches!(kind, Kind::Soft(_)))
+        (0..C).any(|i| self.soft(i).is_some())
     }
 
     /// Σ w max(a, 0)
@@ -291,7 +277,7 @@ impl<T: Real, const C: usize> Barriers<T, C> {
         self.equation(i).is_some() || self.multipliers[i] > self.slack[i]
     }
 
-    /// By how much this value violates a bound that has to hold, where it is positive.
+    /// By how much this value violates a bound that has to hold: a of an inequality, |a| of an equation.
     pub fn violation(&self, i: usize, value: T) -> T {
         match self.kinds[i] {
             Kind::Inequality => value,
@@ -503,9 +489,6 @@ impl<T: Real, const C: usize> Barriers<T, C> {
             let excess = (one - fraction) * self.excess[i];
             let next = excess - value;
             self.next_slack[i] = next;
-            if excess > zero {
-                proposed.relaxed = larger(proposed.relaxed, excess / s);
-            }
             let ratio = next / s;
             // the slack μ/z of a bound that is reached is where the correction leads
             let reached = larger(T::from_ratio(1, 2) * barrier / (z * s), T::from_f64(1.0 - TO_REACHED));

@@ -78,6 +78,8 @@ pub(super) struct Plan<
     pub way: Way,
     /// Whether places are unknowns too, with gaps between steps.
     pub is_lifted: bool,
+    /// Where gaps have just been closed: the number of directions that inputs move the end in.
+    pub landed: Option<usize>,
 }
 
 /// A backward sweep, with the end that it began from.
@@ -321,6 +323,7 @@ impl<
             most: u32::MAX,
             way: Way::Kept,
             is_lifted: false,
+            landed: None,
         }
     }
 

@@ -148,15 +148,14 @@ fn references(model: &System<'_>) -> String {
 
 /// `one bound`, `2 equations and 3 bounds, and a soft one where that pays`; `None` where nothing is bounded.
 fn bounds(model: &System<'_>) -> Option<String> {
-    let all = model.control.as_ref().map_or(&[][..], |control| &control.bounds);
-    let soft = all.iter().filter(|bound| bound.price().is_some()).count();
-    let equations = all.iter().filter(|bound| bound.is_equation()).count();
+    let control = model.control.as_ref()?;
+    let (soft, equations) = (control.soft_bounds(), control.equations());
     let counted = |count: usize, of: &str| match count {
         0 => None,
         1 => Some(format!("one {of}")),
         count => Some(format!("{count} {of}s")),
     };
-    let hard = [counted(equations, "equation"), counted(all.len() - soft - equations, "bound")];
+    let hard = [counted(equations, "equation"), counted(control.bounds.len() - soft - equations, "bound")];
     let hard = hard.into_iter().flatten().into_list().join(" and ");
     match (hard.is_empty(), counted(soft, "soft bound")) {
         (false, Some(soft)) => Some(format!("{hard}, and {soft} where that pays")),

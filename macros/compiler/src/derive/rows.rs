@@ -10,7 +10,7 @@ use super::constraint::coordinates_of_motion;
 use super::midpoint::MidpointFormulas;
 use super::moves::inverse_by;
 use super::{Formula, FormulaTable, Id, JointRows, MechanicsFormulas, SteeredFormulas, SystemFormulas};
-use crate::model::{Bound, Configuration, EdgeEnergy, LeafSpace, Motion};
+use crate::model::{Bound, Configuration, EdgeEnergy, InputChoice, LeafSpace, Motion};
 
 /// More conserved momenta are told by the first and the last of them.
 pub(super) const MOST_LISTED: usize = 16;
@@ -94,7 +94,7 @@ impl<'g> SystemFormulas<'g> {
             let read = referring(read, control.price, &self.model.reference.1);
             let prices: Vec<_> = control.bounds.iter().filter_map(Bound::price).into_list();
             let kinks = if prices.is_empty() { "" } else { " − Σ w max(a, 0)" };
-            let symbol = compared(&control.bounds);
+            let symbol = compared(control);
             let price = Formula::new(Id::Price, format!("ℓ(h, {read}){kinks}"), [control.price]);
             let bounds: Vec<_> = control.bounds.each(|bound| bound.value);
             let bounds = Formula::new(Id::Bounds, symbol, bounds);
@@ -371,10 +371,9 @@ fn tuple(names: impl Iterator<Item = String>) -> String {
 }
 
 /// The left side of a: `0 ≥ a`, with the numbers of equations and of soft bounds.
-fn compared(bounds: &[Bound<'_>]) -> String {
-    let soft = bounds.iter().filter(|bound| bound.price().is_some()).count();
-    let equations = bounds.iter().filter(|bound| bound.is_equation()).count();
-    if equations == bounds.len() && equations > 0 {
+fn compared(control: &InputChoice<'_>) -> String {
+    let (soft, equations) = (control.soft_bounds(), control.equations());
+    if equations == control.bounds.len() && equations > 0 {
         return "0 = a".into();
     }
     let mut text = "0 ≥ a".to_string();

@@ -98,10 +98,7 @@ impl SystemEmitter<'_, '_> {
         let types = ControlTypes {
             is_steered,
             inputs: self.model.inputs.iter().map(|leaf| leaf.shape.len()).sum(),
-            bounds: (
-                control.bounds.each(|bound| bound.text.as_str()),
-                control.bounds.iter().filter(|bound| bound.is_equation()).count(),
-            ),
+            bounds: (control.bounds.each(|bound| bound.text.as_str()), control.equations()),
             target: self.conditions_as_written(),
             references: self.reference_types(),
         };

@@ -6,11 +6,11 @@ use syn::{BinOp, Expr as Syntax, ExprArray, ExprBinary};
 use super::Condition;
 use super::elaborate::Elaborator;
 use super::value::Value;
-use crate::diagnostic::{Diagnostic, Location, error, refuse};
+use crate::diagnostic::{Diagnostic, Location, error, refuse, report};
 use crate::parse::{parenthesized, shortened, spell};
 
 /// The list that comparisons stand in.
-#[derive(Clone, Copy, PartialEq)]
+#[derive(Clone, Copy)]
 pub(super) enum Among {
     /// `bounds`, for each step.
     Bounds,
@@ -26,27 +26,53 @@ impl Among {
             Among::Conditions => "condition",
         }
     }
+
+    /// Whether such a comparison has to depend on moving parts.
+    fn needs_motion(self, is_equation: bool) -> bool {
+        is_equation || matches!(self, Among::Conditions)
+    }
+
+    /// The lack of a comparison of constants.
+    fn lack(self) -> &'static str {
+        match self {
+            Among::Bounds => "depends on neither place nor input of a step",
+            Among::Conditions => "does not depend on where a plan ends",
+        }
+    }
 }
 
-/// The comparisons of a list, each of scalars; `None` if one has an error.
+/// The comparisons of a list, each of scalars, equations first; `None` if one has an error. They are functions of `moving`.
 pub(super) fn comparisons<'g>(
     elaborator: &mut Elaborator<'_, '_, 'g>,
     list: &ExprArray,
-    among: Among,
+    (among, moving): (Among, &[Expr<'g>]),
 ) -> Option<Vec<Condition<'g>>> {
-    // one row of `u == vector![u.x, 0]` says nothing
     let read = list.elems.iter().map(|syntax| {
         let mut rows = comparison(elaborator, syntax, among)?;
-        let says_something = |row: &Condition<'g>| !row.is_equation || row.left != row.right;
-        if rows.iter().any(says_something) {
-            rows.retain(says_something);
-        } else {
-            rows.truncate(1);
+        let is_unmoved = |row: &Condition<'g>| {
+            let difference = row.left - row.right;
+            among.needs_motion(row.is_equation) && !moving.iter().any(|symbol| difference.depends_on(*symbol))
+        };
+        let diagnostics = elaborator.context.diagnostics;
+        if rows.iter().all(is_unmoved) {
+            report!(diagnostics, syntax, "`{}` {}", spell(syntax), among.lack(); help "leave it out");
+            return Some(rows);
         }
+        // one row of `u == vector![u.x, 0]` says nothing
+        let says_something = |row: &Condition<'g>| !row.is_equation || row.left != row.right;
+        let unmoved = |(_, row): &(usize, &Condition<'g>)| says_something(row) && is_unmoved(row);
+        for (index, _) in rows.iter().enumerate().filter(unmoved) {
+            report!(diagnostics, syntax, "row {} of `{}` {}", index + 1, spell(syntax), among.lack();
+                help "compare the other components, one by one");
+        }
+        rows.retain(says_something);
         Some(rows)
     });
-    let read = read.into_list();
-    Some(read.into_iter().collect::<Option<Vec<_>>>()?.into_iter().flatten().into_list())
+    let read = read.into_list().into_iter().collect::<Option<Vec<_>>>()?;
+    let (mut all, inequalities): (Vec<_>, Vec<_>) =
+        read.into_iter().flatten().partition(|comparison| comparison.is_equation);
+    all.extend(inequalities);
+    Some(all)
 }
 
 /// Whether an expression compares, or joins comparisons.

@@ -16,7 +16,7 @@ use super::space::{Space, new_value_of};
 use super::typed::{ActedSystem, Velocity, part};
 use super::value::Value;
 use super::{Bound, BoundKind, Condition, Discretization, EndPrice, InputChoice, Motion};
-use crate::diagnostic::{refuse, report};
+use crate::diagnostic::refuse;
 use crate::parse::{self, Argument, Closure, Declaration, Located, RungeKutta, joined, tail};
 
 impl<'g> ActedSystem<'_, '_, 'g> {
@@ -214,21 +214,15 @@ impl<'g> ActedSystem<'_, '_, 'g> {
         }
         let (scope, velocities) = self.with_velocity(&matched, Some(input))?;
         let mut elaborator = Elaborator::new(self.context, "bounds", scope);
-        let comparisons =
-            elaborator.in_block(&closure.body, |elaborator| comparisons(elaborator, list, Among::Bounds))?;
         let leaves = self.space.leaves.iter().chain(&input.leaves).map(|leaf| leaf.symbol);
         let moving = leaves.chain(velocities.iter().copied()).into_list();
-        let bound = |Condition { left, right, is_equation, place, text }: Condition<'g>| {
-            let value = left - right;
-            if is_equation && !moving.iter().any(|symbol| value.depends_on(*symbol)) {
-                report!(diagnostics, place, "`{text}` depends on neither place nor input of a step";
-                    help "leave it out");
-            }
-            Bound { value, kind: if is_equation { BoundKind::Equation } else { BoundKind::Inequality }, text }
+        let comparisons =
+            elaborator.in_block(&closure.body, |elaborator| comparisons(elaborator, list, (Among::Bounds, &moving)))?;
+        let bound = |Condition { left, right, is_equation, text, .. }: Condition<'g>| Bound {
+            value: left - right,
+            kind: if is_equation { BoundKind::Equation } else { BoundKind::Inequality },
+            text,
         };
-        let (mut all, inequalities): (Vec<_>, Vec<_>) =
-            comparisons.into_iter().map(bound).partition(Bound::is_equation);
-        all.extend(inequalities);
-        Some((all, velocities))
+        Some((comparisons.into_iter().map(bound).into_list(), velocities))
     }
 }

@@ -27,16 +27,9 @@ impl<'g> ActedSystem<'_, '_, 'g> {
                 help "write `target = |{}| [{}]`", joined(closure.arguments.iter().map(Argument::spell)), conjuncts(body)),
         };
         let mut elaborator = Elaborator::new(self.context, "target", scope);
-        let conditions =
-            elaborator.in_block(&closure.body, |elaborator| comparisons(elaborator, list, Among::Conditions))?;
         let moving = self.space.leaves.iter().map(|leaf| leaf.symbol).chain(velocities.iter().copied()).into_list();
-        for condition in &conditions {
-            let difference = condition.left - condition.right;
-            if !moving.iter().any(|symbol| difference.depends_on(*symbol)) {
-                report!(diagnostics, condition.place, "`{}` does not depend on where a plan ends", condition.text;
-                    help "leave it out");
-            }
-        }
+        let conditions = elaborator
+            .in_block(&closure.body, |elaborator| comparisons(elaborator, list, (Among::Conditions, &moving)))?;
         let motions: usize = self.factors.iter().map(|factor| factor.group.dimension()).sum();
         let room = if is_steered { motions } else { 2 * motions };
         if let Some(beyond) = conditions.get(room) {
@@ -44,10 +37,7 @@ impl<'g> ActedSystem<'_, '_, 'g> {
             report!(diagnostics, beyond.place, "the target has {count} conditions, and places have {room} dimensions";
                 help "leave out conditions that follow from others, or write one for both sides of an interval, as in `(q.x - 1).powi(2) <= 0.01`");
         }
-        let (mut all, inequalities): (Vec<_>, Vec<_>) =
-            conditions.into_iter().partition(|condition| condition.is_equation);
-        let equations = all.len();
-        all.extend(inequalities);
-        Some(EndConditions { conditions: all, equations, velocities, written: written(closure) })
+        let equations = conditions.iter().filter(|condition| condition.is_equation).count();
+        Some(EndConditions { conditions, equations, velocities, written: written(closure) })
     }
 }

@@ -415,6 +415,18 @@ pub struct InputChoice<'g> {
     pub written: Written,
 }
 
+impl InputChoice<'_> {
+    /// The number of bounds that are equations.
+    pub fn equations(&self) -> usize {
+        self.bounds.iter().filter(|bound| matches!(bound.kind, BoundKind::Equation)).count()
+    }
+
+    /// The number of bounds that may be violated, at a price.
+    pub fn soft_bounds(&self) -> usize {
+        self.bounds.iter().filter(|bound| matches!(bound.kind, BoundKind::Soft(_))).count()
+    }
+}
+
 /// φ(t, q, ξ), the price of the end.
 pub struct EndPrice<'g> {
     /// φ.
@@ -478,11 +490,6 @@ impl<'g> Bound<'g> {
             BoundKind::Soft(price) => Some(price),
             BoundKind::Equation | BoundKind::Inequality => None,
         }
-    }
-
-    /// Whether a = 0.
-    pub fn is_equation(&self) -> bool {
-        matches!(self.kind, BoundKind::Equation)
     }
 }
 
