@@ -4,6 +4,10 @@
     python tests/peers/plans.py cases.jsonl fatrop fatrop.jsonl [--compiled]
     cargo bench -p clebsch-tests --bench control -- compare $PWD/cases.jsonl $PWD/fatrop.jsonl
 
+    cargo bench -p clebsch-tests --bench control -- gusts $PWD/gusts.jsonl
+    python tests/peers/plans.py gusts.jsonl fatrop flown.jsonl [--compiled]
+    cargo bench -p clebsch-tests --bench control -- compare $PWD/gusts.jsonl $PWD/flown.jsonl
+
 The discrete problems are those of clebsch, with the same minima. Attitudes are quaternions here, and the inputs are the increments of a step.
 The forces follow from them, so that no step is implicit. The guess is an interpolated path. Needs `pip install casadi numpy`, and a C compiler
 for `--compiled`.
@@ -211,6 +215,30 @@ def quadrotor(steps=100, h=0.01):
 PROBLEMS = {"unicycle": unicycle, "body": body, "quadrotor": quadrotor}
 
 
+def fly(ticks, arguments):
+    """A quadrotor in gusts. Each plan begins with the one before, a step later."""
+    problem, posed, tolerance = quadrotor(steps=80)
+    solver = problem.solver(arguments.solver, tolerance, arguments.compiled)
+    rest, turn, goal = np.zeros(3), 0.5, [0.6, 0.2, 0.15]
+    with open(arguments.results, "w") as results:
+        for tick in ticks:
+            if tick["k"] == 0:
+                place, goal_of_flight, guess = posed(np.r_[rest, rest, rest, turn, goal])
+            given = dict(x0=guess, p=np.r_[place, goal_of_flight], lbx=problem.lowest, ubx=problem.highest, lbg=problem.low, ubg=problem.high)
+            before = time.perf_counter()
+            solved = solver(**given)
+            us = 1e6 * (time.perf_counter() - before)
+            told, plan = solver.stats(), np.array(solved["x"]).ravel()
+            states, size = problem.states, problem.states + problem.controls
+            first, last = plan[states:size], plan[-size:-states]
+            reached, price, _ = problem.step(place, first)
+            line = {"problem": "gusts", "flight": tick["flight"], "k": tick["k"], "cost": float(price)}
+            line |= {"iters": int(told["iter_count"]), "us": round(us, 1), "ok": bool(told["success"])}
+            print(json.dumps(line), file=results)
+            place = np.array(reached).ravel() + np.r_[np.zeros(10), tick["gust"]]
+            guess = np.r_[place, plan[size + states :], last, plan[-states:]]
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("cases")
@@ -220,6 +248,8 @@ def main():
     arguments = parser.parse_args()
     with open(arguments.cases) as file:
         cases = [json.loads(line) for line in file]
+    if cases[0]["problem"] == "gusts":
+        return fly(cases, arguments)
     with open(arguments.results, "w") as results:
         for name, made in PROBLEMS.items():
             problem, posed, tolerance = made()

@@ -9,7 +9,7 @@
 //! | quadrotor | rotation vector, position and velocity of the start, yaw and position of the goal | 100 of 0.01 s |
 
 use super::systems::{SteeredBody, quadrotor};
-use super::{moving, pose, rotation};
+use super::{moving, pose, rotation, ticks};
 use clebsch::{Controlled, Target};
 use clebsch_tests::fixtures::unicycle::Unicycle;
 use clebsch_tests::oracle::random::Random;
@@ -128,13 +128,13 @@ pub fn write(path: &str, count: usize, seed: u64, is_along: bool) -> std::io::Re
 }
 
 /// A solution of a case.
-struct Line {
-    problem: String,
-    k: usize,
-    cost: f64,
-    iterations: f64,
-    us: f64,
-    ok: bool,
+pub struct Line {
+    pub problem: String,
+    pub k: usize,
+    pub cost: f64,
+    pub iterations: f64,
+    pub us: f64,
+    pub ok: bool,
 }
 
 /// The text behind a key of a flat object.
@@ -143,7 +143,7 @@ fn field<'l>(line: &'l str, key: &str) -> Option<&'l str> {
     rest.split([',', '}']).next().map(|text| text.trim_matches('"'))
 }
 
-fn read(path: &str) -> Result<Vec<Line>, String> {
+pub fn read(path: &str) -> Result<Vec<Line>, String> {
     let text = std::fs::read_to_string(path).map_err(|error| format!("{path}: {error}"))?;
     let line = |(number, line): (usize, &str)| {
         let missing = |key: &str| format!("{path}, line {}: no `{key}`", number + 1);
@@ -161,6 +161,11 @@ fn read(path: &str) -> Result<Vec<Line>, String> {
     text.lines().enumerate().filter(|(_, line)| line.starts_with('{')).map(line).collect()
 }
 
+/// The name of a file, without its folder and ending.
+pub fn stem(path: &str) -> String {
+    std::path::Path::new(path).file_stem().map_or(path.into(), |stem| stem.to_string_lossy().into_owned())
+}
+
 fn median(mut values: Vec<f64>) -> f64 {
     values.sort_by(f64::total_cmp);
     values.get(values.len() / 2).copied().unwrap_or(f64::NAN)
@@ -170,6 +175,9 @@ fn median(mut values: Vec<f64>) -> f64 {
 /// optima on either side, and how near the others are.
 pub fn compare(path: &str, peers: &[String]) -> Result<(), String> {
     let ours = read(path)?;
+    if ours.iter().all(|line| line.problem == "gusts") {
+        return ticks::compare(path, peers);
+    }
     println!(
         "{:<10} {:<32} {:>7} {:>7} {:>7} {:>7} {:>10} {:>7} {:>10}",
         "problem", "by", "solved", "median", "9 of 10", "time", "we worse", "worse", "agree to"
@@ -203,9 +211,7 @@ pub fn compare(path: &str, peers: &[String]) -> Result<(), String> {
         for peer in peers {
             let lines = read(peer)?;
             if of(&lines) > 0 {
-                let name =
-                    std::path::Path::new(peer).file_stem().map_or(peer.as_str().into(), |stem| stem.to_string_lossy());
-                row(&name, &lines);
+                row(&stem(peer), &lines);
             }
         }
     }

@@ -5,10 +5,11 @@
 //! is planned anew a hundred times a second while gusts push it. Printed are the share that is solved, and the median, the ninth decile and
 //! the largest number of linearisations of a solution.
 //!
-//! With the word `cases`, `along` or `compare`, the problems are those that other solvers get too.
+//! With the word `cases`, `along`, `gusts` or `compare`, the problems are those that other solvers get too.
 
 mod cases;
 mod systems;
+mod ticks;
 
 use clebsch::{Controlled, Limits, Target};
 use clebsch_tests::fixtures::follower::Follower;
@@ -17,6 +18,7 @@ use clebsch_tests::fixtures::wheeled_car::WheeledCar;
 use clebsch_tests::oracle::random::Random;
 use nalgebra::{Matrix3, Matrix4, Rotation3, Vector2, Vector3, Vector4, Vector6};
 use systems::{Place, Quadrotor, SteeredBody, TiltedBody, quadrotor};
+use ticks::Tick;
 
 fn main() {
     let arguments: Vec<String> = std::env::args().skip(1).filter(|argument| argument != "--bench").collect();
@@ -26,6 +28,11 @@ fn main() {
     let outcome = match arguments.iter().map(String::as_str).collect::<Vec<_>>()[..] {
         [way @ ("cases" | "along"), file, ..] => {
             cases::write(file, count, seed, way == "along").map_err(|error| format!("{file}: {error}"))
+        }
+        ["gusts", file, ..] => {
+            let [flights, sweeps] =
+                [(0, 5), (2, 4)].map(|(at, default)| numbers.get(at).map_or(default, |n| *n as usize));
+            ticks::write(file, flights, seed, sweeps as u32).map_err(|error| format!("{file}: {error}"))
         }
         ["compare", file, ..] => cases::compare(file, &arguments[2..]),
         _ => {
@@ -50,14 +57,14 @@ fn counts(count: usize, seed: u64) {
     print("car on a track", (0..count).map(|_| track(seeds)));
     print("car with equations", (0..count).map(|_| wheels(seeds)));
     print("tilted body", (0..count).map(|_| tilted(seeds)));
-    print("quadrotor in gusts", (0..count / 40).flat_map(|_| gusts(random, None)).map(|tick| tick.sweeps));
+    print("quadrotor in gusts", flights(count, random, None).iter().map(|tick| tick.sweeps));
     println!(
         "\n{:<18} {:>9} {:>8} {:>14} {:>14}",
         "sweeps in a tick", "median", "most", "price of all", "gap of plans"
     );
     for most in [400, 8, 4, 2, 1] {
         let random = &mut Random::new(seed + 1);
-        let ticks: Vec<Tick> = (0..count / 40).flat_map(|_| gusts(random, Some(Limits { sweeps: most }))).collect();
+        let ticks = flights(count, random, Some(Limits { sweeps: most }));
         let mut sweeps: Vec<u32> = ticks.iter().filter_map(|tick| tick.sweeps).collect();
         sweeps.sort_unstable();
         let Some((median, greatest)) = sweeps.get(sweeps.len() / 2).zip(sweeps.last()) else { continue };
@@ -65,6 +72,11 @@ fn counts(count: usize, seed: u64) {
         let gap = ticks.iter().map(|tick| tick.gap).sum::<f64>() / ticks.len() as f64;
         println!("{most:<18} {median:>9} {greatest:>8} {price:>14.6} {gap:>14.1e}");
     }
+}
+
+/// One flight for forty problems, without the first plans.
+fn flights(count: usize, random: &mut Random, limits: Option<Limits>) -> Vec<Tick> {
+    (0..count / 40).flat_map(|_| ticks::flight(random, limits).into_iter().skip(1)).collect()
 }
 
 /// A line of the table, of the linearisations of each solution that was found.
@@ -175,40 +187,4 @@ fn flight(random: &mut Random) -> Option<u32> {
     let goal = (pose(&yaw, &vector(random, 0.5)), Vector6::zeros());
     let mut plan = vec![control.stage(&start).with_input(Vector4::repeat(control.system().hover)); STEPS];
     control.solve(&start, Target::Place(goal), &mut plan).ok().map(|found| found.iterations())
-}
-
-/// A hundredth of a second in gusts.
-struct Tick {
-    /// The linearisations of its plan, if there is one.
-    sweeps: Option<u32>,
-    /// The price of the step that is flown.
-    price: f64,
-    /// The distance of the plan's end from the target.
-    gap: f64,
-}
-
-/// Plans over the next 0.8 s, each from the plan before, within limits after the first one. The first one is left out.
-fn gusts(random: &mut Random, limits: Option<Limits>) -> Vec<Tick> {
-    const STEPS: usize = 80;
-    let control = quadrotor().control(0.01).expect("regular");
-    let goal = (pose(&rotation(Vector3::z() * 0.5), &Vector3::new(0.6, 0.2, 0.15)), Vector6::zeros());
-    let mut place = (Matrix4::identity(), Vector6::zeros());
-    let mut plan = vec![control.stage(&place).with_input(Vector4::repeat(control.system().hover)); STEPS];
-    let mut all = Vec::new();
-    let constants = control.system().prepare(control.step_size()).expect("regular");
-    for tick in 0..60 {
-        let target = Target::Place(goal);
-        let solved = match limits.filter(|_| tick > 0) {
-            Some(limits) => control.solve_within(&place, target, limits, &mut plan),
-            None => control.solve(&place, target, &mut plan),
-        };
-        let (sweeps, gap) = solved.map_or((None, f64::NAN), |found| (Some(found.iterations()), found.gap()));
-        let price = control.system().price(&constants, 0.0, &place, plan[0].input()).expect("a price");
-        all.push(Tick { sweeps, price, gap });
-        place = control.follow(&place, plan[0].input()).expect("a step");
-        let gust = vector(random, 0.01) * control.system().mass;
-        place.1.fixed_rows_mut::<3>(3).iter_mut().zip(gust.iter()).for_each(|(momentum, gust)| *momentum += gust);
-        control.shift(&mut plan, 1);
-    }
-    all.split_off(1)
 }
