@@ -495,7 +495,7 @@ errors! {
             violation: f64,
         } =>
             "no inputs were found that keep the bounds: `{bound}` is violated by {violation:.3e} in step {stage}; \
-             relax it, or guess inputs that keep it; equations have to agree with each other";
+             relax it, or guess inputs that keep it; equations among the bounds have to agree with each other";
         /// No inputs were found that lead to the target.
         TargetMissed {
             /// The distance that is left, as the root of the sum of squares of all entries.

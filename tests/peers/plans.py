@@ -216,7 +216,7 @@ PROBLEMS = {"unicycle": unicycle, "body": body, "quadrotor": quadrotor}
 
 
 def fly(ticks, arguments):
-    """A quadrotor in gusts. Each plan begins with the one before, a step later."""
+    """A quadrotor in gusts. Each plan begins with places and inputs of the one before, a step later."""
     problem, posed, tolerance = quadrotor(steps=80)
     solver = problem.solver(arguments.solver, tolerance, arguments.compiled)
     rest, turn, goal = np.zeros(3), 0.5, [0.6, 0.2, 0.15]
@@ -228,12 +228,13 @@ def fly(ticks, arguments):
             before = time.perf_counter()
             solved = solver(**given)
             us = 1e6 * (time.perf_counter() - before)
-            told, plan = solver.stats(), np.array(solved["x"]).ravel()
+            told, plan, values = solver.stats(), np.array(solved["x"]).ravel(), np.array(solved["g"]).ravel()
+            violation = max(0.0, np.max(np.r_[problem.low - values, values - problem.high]))
             states, size = problem.states, problem.states + problem.controls
             first, last = plan[states:size], plan[-size:-states]
             reached, price, _ = problem.step(place, first)
             line = {"problem": "gusts", "flight": tick["flight"], "k": tick["k"], "cost": float(price)}
-            line |= {"iters": int(told["iter_count"]), "us": round(us, 1), "ok": bool(told["success"])}
+            line |= {"iters": int(told["iter_count"]), "us": round(us, 1), "ok": bool(told["success"] and violation < 1e-6)}
             print(json.dumps(line), file=results)
             place = np.array(reached).ravel() + np.r_[np.zeros(10), tick["gust"]]
             guess = np.r_[place, plan[size + states :], last, plan[-states:]]

@@ -188,10 +188,9 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, B: Start<S, D, U, C>, const D:
         self.is_lifted = true;
         let closed = self.close(places);
         self.is_lifted = false;
-        let rank = closed?;
-        self.land()?;
-        self.landed = rank;
-        Ok(rank.is_some())
+        let is_near = closed?;
+        self.landed_rank = self.landed_rank.filter(|_| is_near);
+        self.land().map(|()| is_near)
     }
 
     /// Bends the places of a plan so that its end reaches the target, by and by.
@@ -223,9 +222,8 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, B: Start<S, D, U, C>, const D:
         Ok(())
     }
 
-    /// Closes gaps until a roll-out can go on, with the number of directions that inputs move the end in. `None` where corrections get stuck far
-    /// from a solution.
-    fn close(&mut self, places: Places) -> Result<Option<usize>, Error> {
+    /// Closes gaps until a roll-out can go on; `false` where corrections get stuck far from a solution.
+    fn close(&mut self, places: Places) -> Result<bool, Error> {
         let (zero, one) = (T::zero(), T::one());
         let end = self.end();
         let strictness = self.resume_or_relax()?;
@@ -243,7 +241,7 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, B: Start<S, D, U, C>, const D:
                 continue;
             }
             if !decrement.is_finite() {
-                return Ok(None);
+                return Ok(false);
             }
             let last_motion = self.make_linear(&change)?;
             let Some(before) = at else {
@@ -265,22 +263,23 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, B: Start<S, D, U, C>, const D:
             let size = (decrement.abs() / magnitude).sqrt();
             let measures = before.measures(now.settings.strictness.barrier);
             let Some((fraction, proposal)) = self.try_parts(&last_motion, &filter, measures, (&now, &measure)) else {
-                return Ok(None);
+                return Ok(false);
             };
             filter.add(measures);
             self.equate(&change, fraction, now.settings.strictness)?;
             self.accept(fraction, now.settings.strictness.barrier, proposal.last);
             measure.relaxed *= one - fraction;
-            self.add_multipliers(&mut now, &(change * fraction));
+            let is_another_end = self.add_multipliers(&mut now, &(change * fraction));
+            self.landed_rank = if is_another_end { None } else { Some(now.rank) };
             at = Some(proposal);
             stuck = if fraction < T::from_ratio(SHORT.0, SHORT.1) { stuck + 1 } else { 0 };
             let is_below =
                 |(of_size, of_gaps): (f64, f64)| size <= T::from_f64(of_size) && proposal.gaps <= T::from_f64(of_gaps);
             if stuck > PATIENCE {
-                return Ok(is_below(NEAR).then_some(now.rank));
+                return Ok(is_below(NEAR));
             }
             if fraction >= one && is_below(NEAR) {
-                return Ok(Some(now.rank));
+                return Ok(true);
             }
             if fraction >= T::from_ratio(9, 10) && is_below(CENTRAL) {
                 if self.has_equations {
@@ -298,7 +297,7 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, B: Start<S, D, U, C>, const D:
             }
             now.settings.curvature = if size <= one { Curvature::exact(zero) } else { Curvature::mirrored(zero, zero) };
         }
-        Ok(None)
+        Ok(false)
     }
 
     /// Makes all of the first correction. Bounds are relaxed after it, as far as it violates them. The first barrier has the size of its

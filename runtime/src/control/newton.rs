@@ -74,9 +74,9 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, B: Start<S, D, U, C>, const D:
             }
             if now.is_open {
                 if self.way == Way::Open && self.is_bounded() && descent.reaches() {
-                    // where a motion without bounds goes astray, one within them does too
+                    // where a motion without bounds goes astray, one within them seldom leads on
                     let is_astray = |end: PlanEnd<T, D>| self.is_astray(&end, &descent, T::one());
-                    if self.unbounded(&change).map_or(true, is_astray) {
+                    if self.end_without_bounds(&change).map_or(true, is_astray) {
                         self.way = Way::Given(Amplitudes::FAR);
                         return Err(self.failure(&end, size));
                     }
@@ -188,6 +188,7 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, B: Start<S, D, U, C>, const D:
 
     /// The plan that the inputs make, with the multipliers that the stages hold.
     pub fn start(&mut self, is_priced: bool) -> Result<Iterate<T, D>, Error> {
+        let (landed_rank, pushing) = (self.landed_rank.take(), self.pushing);
         self.follow()?;
         let costate = self.stages.last().map(|stage| stage.next_costate);
         let costate = costate.filter(|costate| costate.all_finite() && costate.max_abs() > T::zero());
@@ -201,7 +202,7 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, B: Start<S, D, U, C>, const D:
         check_finite("the target at the end of the guessed plan", &distance)?;
         let mut now = Iterate::new(multipliers, strictness, distance);
         now.is_open |= is_priced;
-        if let Some(rank) = self.landed.take() {
+        if let Some(rank) = landed_rank.filter(|_| self.pushing == pushing) {
             now.go_on(rank);
         }
         Ok(now)

@@ -203,7 +203,7 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, B: Start<S, D, U, C>, const D:
     }
 
     /// The end after the correction with the change δν of the multipliers of the target, whatever bounds allow.
-    pub fn unbounded(&self, change: &SVector<T, D>) -> Result<PlanEnd<T, D>, Error> {
+    pub fn end_without_bounds(&self, change: &SVector<T, D>) -> Result<PlanEnd<T, D>, Error> {
         let problem = &self.problem;
         let Problem { system, constants, .. } = *problem;
         let start_change = B::change(&self.correction, change);
@@ -213,7 +213,9 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, B: Start<S, D, U, C>, const D:
             let input = stage.input + stage.shift + stage.by_multiplier * change + stage.gain * displaced;
             x = system.follow(constants, problem.time_after(index), &x, &input)?;
         }
-        Ok(problem.end(&x, T::zero(), &self.pushing))
+        let end = problem.end(&x, T::zero(), &self.pushing);
+        check_finite("the target at the end of the plan", &end.distance)?;
+        Ok(end)
     }
 
     /// Proposes the plan after `fraction` of the correction with the change δν of the multipliers of the target.

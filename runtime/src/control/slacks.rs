@@ -16,6 +16,7 @@ use nalgebra::{SMatrix, SVector};
 pub(super) const TO_BOUNDARY: f64 = 0.995;
 /// The same for a bound that is reached, by its multiplier.
 const TO_REACHED: f64 = 0.9999;
+
 /// Whether a bound with this slack is none.
 pub(super) fn is_none<T: Real>(slack: T) -> bool {
     slack > T::zero() && !slack.is_finite()

@@ -79,7 +79,7 @@ pub(super) struct Plan<
     /// Whether places are unknowns too, with gaps between steps.
     pub is_lifted: bool,
     /// Where gaps have just been closed: the number of directions that inputs move the end in.
-    pub landed: Option<usize>,
+    pub landed_rank: Option<usize>,
 }
 
 /// A backward sweep, with the end that it began from.
@@ -323,7 +323,7 @@ impl<
             most: u32::MAX,
             way: Way::Kept,
             is_lifted: false,
-            landed: None,
+            landed_rank: None,
         }
     }
 
@@ -339,6 +339,7 @@ impl<
 
     /// Goes back to the guess, without multipliers.
     pub fn forget(&mut self) {
+        self.landed_rank = None;
         self.stages.iter_mut().for_each(Stage::forget);
         self.stages.iter_mut().take(1).for_each(|stage| stage.place = *self.problem.start);
     }
@@ -356,12 +357,14 @@ impl<
         Ok(Some(Swept { summary, end, gramian }))
     }
 
-    /// Adds the correction of the multipliers ν.
-    pub fn add_multipliers(&mut self, now: &mut Iterate<T, D>, change: &SVector<T, D>) {
+    /// Adds the correction of the multipliers ν. Returns whether other inequalities of the end push than before.
+    pub fn add_multipliers(&mut self, now: &mut Iterate<T, D>, change: &SVector<T, D>) -> bool {
         now.settings.multipliers += change;
-        if self.push(&mut now.settings.multipliers) {
+        let is_another = self.push(&mut now.settings.multipliers);
+        if is_another {
             now.rank = 0;
         }
+        is_another
     }
 
     /// Adds the curvature of ν·g of the conditions of the end to its value. Where the end then curves the price down, it goes without that

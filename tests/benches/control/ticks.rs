@@ -88,7 +88,7 @@ pub fn compare(path: &str, peers: &[String]) -> Result<(), String> {
         let at = |all: &[f64], part: usize| all.get(all.len() * part / 100).or(all.last()).copied().unwrap_or(f64::NAN);
         let unit = *unit.get_or_insert(at(&times, 50));
         let [median, most, worst] = [50, 95, 100].map(|part| at(&times, part) / unit);
-        let price: f64 = lines.iter().map(|line| line.cost).sum();
+        let price: f64 = lines.iter().filter(|line| line.k > 0).map(|line| line.cost).sum();
         let share = format!("{}/{}", times.len(), lines.iter().filter(|line| line.k > 0).count());
         println!(
             "{:<24} {share:>8} {:>8} {median:>8.2} {most:>8.2} {worst:>8.2} {price:>12.6}",

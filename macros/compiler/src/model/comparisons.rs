@@ -41,7 +41,7 @@ impl Among {
     }
 }
 
-/// The comparisons of a list, each of scalars, equations first; `None` if one has an error. They are functions of `moving`.
+/// The comparisons of a list as written, each of scalars; `None` if one has an error. They are functions of `moving`.
 pub(super) fn comparisons<'g>(
     elaborator: &mut Elaborator<'_, '_, 'g>,
     list: &ExprArray,
@@ -56,6 +56,7 @@ pub(super) fn comparisons<'g>(
         let diagnostics = elaborator.context.diagnostics;
         if rows.iter().all(is_unmoved) {
             report!(diagnostics, syntax, "`{}` {}", spell(syntax), among.lack(); help "leave it out");
+            rows.truncate(1);
             return Some(rows);
         }
         // one row of `u == vector![u.x, 0]` says nothing
@@ -69,10 +70,14 @@ pub(super) fn comparisons<'g>(
         Some(rows)
     });
     let read = read.into_list().into_iter().collect::<Option<Vec<_>>>()?;
-    let (mut all, inequalities): (Vec<_>, Vec<_>) =
-        read.into_iter().flatten().partition(|comparison| comparison.is_equation);
+    Some(read.into_iter().flatten().into_list())
+}
+
+/// Comparisons with all equations before the inequalities.
+pub(super) fn equations_first(written: Vec<Condition<'_>>) -> Vec<Condition<'_>> {
+    let (mut all, inequalities): (Vec<_>, Vec<_>) = written.into_iter().partition(|comparison| comparison.is_equation);
     all.extend(inequalities);
-    Some(all)
+    all
 }
 
 /// Whether an expression compares, or joins comparisons.

@@ -4,7 +4,7 @@ use clebsch_symbolic::{Elements, Expr, IntoList};
 use syn::Expr as Syntax;
 
 use super::closures::{chosen_discretization, optional, scalar, written};
-use super::comparisons::{Among, comparisons, conjuncts, is_comparison};
+use super::comparisons::{Among, comparisons, conjuncts, equations_first, is_comparison};
 use super::elaborate::{Elaborator, Kink};
 use super::features::{self, Feature, Found};
 use super::groups::without_cayley_map;
@@ -223,6 +223,6 @@ impl<'g> ActedSystem<'_, '_, 'g> {
             kind: if is_equation { BoundKind::Equation } else { BoundKind::Inequality },
             text,
         };
-        Some((comparisons.into_iter().map(bound).into_list(), velocities))
+        Some((equations_first(comparisons).into_iter().map(bound).into_list(), velocities))
     }
 }

@@ -5,7 +5,7 @@ use syn::Expr as Syntax;
 
 use super::EndConditions;
 use super::closures::written;
-use super::comparisons::{Among, comparisons, conjuncts};
+use super::comparisons::{Among, comparisons, conjuncts, equations_first};
 use super::elaborate::Elaborator;
 use super::slots::{END, END_OF_STATES};
 use super::typed::ActedSystem;
@@ -38,6 +38,11 @@ impl<'g> ActedSystem<'_, '_, 'g> {
                 help "leave out conditions that follow from others, or write one for both sides of an interval, as in `(q.x - 1).powi(2) <= 0.01`");
         }
         let equations = conditions.iter().filter(|condition| condition.is_equation).count();
-        Some(EndConditions { conditions, equations, velocities, written: written(closure) })
+        Some(EndConditions {
+            conditions: equations_first(conditions),
+            equations,
+            velocities,
+            written: written(closure),
+        })
     }
 }
