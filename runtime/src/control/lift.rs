@@ -44,7 +44,7 @@ const GAIN: f64 = 1e-5;
 const CLOSED: f64 = 1e-6;
 /// The corrections and gaps from which a roll-out goes on.
 const NEAR: (f64, f64) = (0.03, 1e-2);
-/// Gaps that are wide.
+/// Gaps that are wide, as the sum of all in units of the largest change of places.
 const WIDE: f64 = 1.0;
 /// Corrections and gaps for which the barrier is lowered.
 const CENTRAL: (f64, f64) = (2.0, WIDE);
@@ -105,6 +105,7 @@ struct Measure<T, const D: usize> {
 }
 
 impl<T: Real, const D: usize> Measure<T, D> {
+    /// The sum of the components of a gap, in units.
     fn of(&self, change: SVector<T, D>) -> T {
         change.component_mul(&self.units).iter().fold(T::zero(), |sum, part| sum + part.abs())
     }

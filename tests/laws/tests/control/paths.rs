@@ -1,10 +1,10 @@
 //! Plans near places that are given: the side of an obstacle, and the way around.
 
-use super::long;
 use super::targets::Unicycle;
+use super::{long, place};
 use clebsch::{Clebsch, Control, Controlled, Error, Target};
+use clebsch_tests::fixtures::unicycle::Unicycle as Forward;
 use clebsch_tests::oracle::random::Random;
-
 use nalgebra::{Matrix3, Rotation3, Vector2, Vector3, vector};
 
 const N: usize = 40;
@@ -109,5 +109,31 @@ fn places_are_checked_and_may_be_far() -> Result<(), Error> {
     let inside =
         wide.solve_along(&vector![-2.0, 0.0], Target::Place(vector![2.0, 0.1]), |_, _| Vector2::zeros(), &mut plan)?;
     assert!(inside.violation() == 0.0 && inside.gap() < 1e-12, "{inside:?}");
+    Ok(())
+}
+
+/// A car without reverse gear is planned along interpolated places, which it could not follow. Slacks that are narrow at first leave next to
+/// nothing of each correction, and one plan in ten then takes more than 60 linearisations.
+#[test]
+fn interpolated_places_lead_to_plans_soon() -> Result<(), Error> {
+    const STEPS: usize = 50;
+    let random = &mut Random::new(3505);
+    let system = Forward { turn_price: 1.0, top_turn: 7.0, time_price: 0.0, miss_price: 0.0, goal: Vector2::zeros() };
+    let control = system.control(0.02)?;
+    let start = Matrix3::identity();
+    let mut work = Vec::new();
+    for _ in 0..40 {
+        let (angle, x, y) = (3.0 * random.number(), 1.5 * random.number(), 1.5 * random.number());
+        let mut plan = [control.stage(&start).with_input(vector![angle, x.hypot(y)]); STEPS];
+        let path = |k: usize, _| {
+            let part = k as f64 / STEPS as f64;
+            place(part * angle, part * x, part * y)
+        };
+        let found = control.solve_along(&start, Target::Place(place(angle, x, y)), path, &mut plan)?;
+        assert!(found.is_minimum() && found.gap() < 1e-12 && found.violation() == 0.0, "{found:?}");
+        work.push(found.iterations());
+    }
+    work.sort_unstable();
+    assert!(work[36] <= 60, "{work:?}");
     Ok(())
 }
