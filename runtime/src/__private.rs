@@ -66,8 +66,8 @@ pub use crate::scheme::kinds::*;
 pub use crate::scheme::{At, JoinedInStorage, Kicks, Scheme, Sizes, Stages, compose, split};
 pub use crate::sphere::{push, tangent, turn_freely, turn_great_circle, turned_in_plane};
 pub use crate::steered::{
-    Link, Price, along_end, arrival_of_state, bound_prices, bounds, check_reached, conditions, displacement, endpoint,
-    forced_step, no_endpoint, pair, parted, pushed_along_end, weights,
+    Link, Price, along_end, arrival_of_state, bound_prices, bounds, check_given, check_reached, conditions,
+    displacement, endpoint, forced_step, no_endpoint, pair, parted, pushed_along_end, weights,
 };
 pub use crate::stepper::{check_on_orbit, check_state};
 pub use crate::stumpff::stumpff;

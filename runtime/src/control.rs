@@ -182,7 +182,7 @@ impl<S: Controlled<D, U, C, Scalar: Real>, B: Start<S, D, U, C>, const D: usize,
         Stage::rest(x)
     }
 
-    /// Gives the reference r_k = `reference(k, t_k)` to each step of a plan, for its price and bounds.
+    /// Gives the reference r_k = `reference(k, t_k)` to each step of a plan, for its motion, price and bounds.
     ///
     /// ```
     /// # use clebsch::{Clebsch, Controlled, Target};
@@ -261,9 +261,40 @@ impl<S: Controlled<D, U, C, Scalar: Real>, B: Start<S, D, U, C>, const D: usize,
     /// One step at the start time: f(t₀, h, x, u).
     ///
     /// # Errors
-    /// Those of a step.
+    /// Those of a step, and [`Error::NoReference`] where the motion reads a reference: see [`follow_with`](Self::follow_with).
     pub fn follow(&self, x: &S::Place, u: &SVector<S::Scalar, U>) -> Result<S::Place, Error> {
         self.system.follow(&self.constants, self.time, x, u)
+    }
+
+    /// The same with the reference of the step: f(t₀, h, x, u, r).
+    ///
+    /// ```
+    /// # use clebsch::{Clebsch, Controlled};
+    /// # use nalgebra::{Vector1, Vector2, vector};
+    /// /// A sledge with a brake, on ground that changes.
+    /// #[derive(Clebsch, Clone, Debug)]
+    /// #[clebsch(
+    ///     dynamics = |h, x: Vector2, u: Vector1, friction: Vector1| x + h * vector![x.y, u.x - friction.x * x.y],
+    ///     cost     = |h, u| h * u.norm_squared() / 2,
+    /// )]
+    /// struct Sledge {}
+    ///
+    /// let control = Sledge {}.control(0.1)?;
+    /// let (moving, none) = (Vector2::new(0.0, 2.0), Vector1::zeros());
+    /// assert_eq!(control.follow_with(&moving, &none, &vector![5.0])?.y, 1.0);
+    /// assert_eq!(control.follow_with(&moving, &none, &vector![0.0])?.y, 2.0); // on ice
+    /// # Ok::<(), clebsch::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// Those of a step, and [`Error::NoReference`] where a number of the reference is NaN or infinite and the motion reads one.
+    pub fn follow_with(
+        &self,
+        x: &S::Place,
+        u: &SVector<S::Scalar, U>,
+        reference: &<S::Constants as Referenced<S::Scalar>>::Reference,
+    ) -> Result<S::Place, Error> {
+        self.constants.at(reference, |constants| self.system.follow(constants, self.time, x, u))
     }
 
     /// The input u_k + K δ for a place `x` near x_k.

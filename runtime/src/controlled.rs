@@ -46,7 +46,7 @@ pub trait Controlled<const D: usize, const U: usize, const C: usize>: Sized {
     type Scalar: Scalar;
     /// The place that inputs steer.
     type Place: Space<Self::Scalar>;
-    /// The constants, which no step changes, and the references of prices and bounds.
+    /// The constants, which no step changes, and the references of motions, prices and bounds.
     type Constants: Referenced<Self::Scalar>;
 
     /// The name of the struct.

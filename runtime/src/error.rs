@@ -476,7 +476,7 @@ errors! {
             eigenvalue: f64,
         } =>
             "the information of the prior has the eigenvalue {eigenvalue:.3e}: it is the inverse of a covariance, and has no negative one";
-        /// Price or bounds read a reference that was not given.
+        /// A motion, a price or bounds read a reference that was not given.
         NoReference {
             /// The step whose reference is missing, counted from 0. It is `steps` for the reference of the end.
             step: usize,
@@ -484,7 +484,7 @@ errors! {
             steps: usize,
         } =>
             "reference {step} is missing or not finite: `Control::refer` gives those of the {steps} steps, counted from 0, \
-             and `Control::with_end_reference` that of the end, number {steps}";
+             and `Control::with_end_reference` that of the end, number {steps}; `Control::follow_with` takes that of a single step";
         /// No inputs were found that keep the bounds.
         Infeasible {
             /// The bound that is violated most, as it was written.

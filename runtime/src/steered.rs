@@ -18,6 +18,15 @@ pub fn check_reached<T: Scalar, X: Space<T>>(x: X) -> Result<X, Error> {
     if x.all_finite() { Ok(x) } else { Err(Error::NotFinite { name: "the place after the step" }) }
 }
 
+/// Refuses a reference that the motion of a step reads and that was not given.
+///
+/// # Errors
+/// [`Error::NoReference`], as of a plan of one step.
+#[inline]
+pub fn check_given<T: Scalar, R: Space<T>>(reference: &R) -> Result<(), Error> {
+    if reference.all_finite() { Ok(()) } else { Err(Error::NoReference { step: 0, steps: 1 }) }
+}
+
 /// (q, N) after one step under the input u.
 #[inline]
 pub fn forced_step<S: Clebsch>(

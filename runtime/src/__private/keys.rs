@@ -47,12 +47,12 @@ pub mod constraint {}
 /// Example: `space = [|dx, q, next| (next - q).norm_squared() / (2 * dx.powi(2))]`
 pub mod space {}
 
-/// The velocity that an input gives, in the basis of the group. It moves the configuration directly, without mass or momentum.
+/// The velocity that an input gives, in the basis of the group. It moves the configuration directly, without mass or momentum. Names with types behind the input are references: data of each step.
 ///
 /// Example: `controls = |u: Vector2| vector![u.x, u.y, 0]`
 pub mod controls {}
 
-/// The next configuration, by any map of a vector space. It replaces `action`. Its two typed arguments are the configuration and the input. A right-hand side of x′ = f(t, x, u) stands in the parentheses of a method: `rk4(|x: Vector2, u: Vector1| vector![x.y, u.x])`.
+/// The next configuration, by any map of a vector space. It replaces `action`. Its first two typed arguments are the configuration and the input. Those behind them are references: data of each step. A right-hand side of x′ = f(t, x, u) stands in the parentheses of a method: `rk4(|x: Vector2, u: Vector1| vector![x.y, u.x])`.
 ///
 /// Example: `dynamics = |h, x: Vector2, u: Vector1| x + h * vector![x.y, u.x]`
 pub mod dynamics {

@@ -166,7 +166,7 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, B: Start<S, D, U, C>, const D:
         let mut x = self.origin();
         for (index, stage) in self.stages.iter().enumerate() {
             let input = stage.input + pattern(amplitudes, turns, index, self.stages.len());
-            x = problem.system.follow(problem.constants, problem.time_after(index), &x, &input).ok()?;
+            x = problem.follow(stage, problem.time_after(index), &x, &input).ok()?;
         }
         let distance = problem.end(&x, T::zero(), &self.pushing).distance;
         distance.is_finite().then_some(distance)

@@ -212,12 +212,12 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, B: Start<S, D, U, C>, const D:
 
     /// Rolls out the inputs with the feedback of the last sweep, which keeps the plan near its places.
     fn land(&mut self) -> Result<(), Error> {
-        let Problem { system, constants, .. } = self.problem;
+        let problem = &self.problem;
         let mut x = self.origin();
         for (index, stage) in self.stages.iter_mut().enumerate() {
-            stage.input += stage.gain * system.displacement(&stage.place, &x);
+            stage.input += stage.gain * problem.system.displacement(&stage.place, &x);
             stage.place = x;
-            x = system.follow(constants, self.problem.time_after(index), &x, &stage.input)?;
+            x = problem.follow(stage, problem.time_after(index), &x, &stage.input)?;
         }
         self.last = x;
         Ok(())
@@ -380,18 +380,19 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, B: Start<S, D, U, C>, const D:
     /// The effect of both on the next place is a difference quotient. A step costs less than its derivatives, and a correction is judged by
     /// its plan, so that its last digits do not matter.
     fn make_linear(&mut self, change: &SVector<T, D>) -> Result<SVector<T, D>, Error> {
-        let Problem { system, constants, .. } = self.problem;
+        let problem = &self.problem;
+        let system = problem.system;
         let part = T::EPSILON.sqrt();
         let mut motion = B::change(&self.correction, change).unwrap_or(SVector::from_element(T::zero()));
         let mut stages = self.stages.iter_mut().enumerate().peekable();
         while let Some((index, stage)) = stages.next() {
-            let t = self.problem.time_after(index);
+            let t = problem.time_after(index);
             let input = stage.shift + stage.by_multiplier * change + stage.gain * motion;
             (stage.motion, stage.shift) = (motion, input);
             let following = stages.peek().map_or(self.last, |(_, next)| next.place);
-            let reached = system.follow(constants, t, &stage.place, &stage.input)?;
+            let reached = problem.follow(stage, t, &stage.place, &stage.input)?;
             let x = system.moved(&stage.place, &(motion * part));
-            let moved = system.follow(constants, t, &x, &(stage.input + input * part))?;
+            let moved = problem.follow(stage, t, &x, &(stage.input + input * part))?;
             let gap: SVector<T, D> = system.displacement(&following, &reached);
             motion = gap + (system.displacement(&following, &moved) - gap) / part;
         }
@@ -441,7 +442,7 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, B: Start<S, D, U, C>, const D:
                 price += problem.beginning.price(system, &x);
             }
             price += problem.price(stage, t, &x, &input)?;
-            reached = Some(system.follow(constants, t, &x, &input)?);
+            reached = Some(problem.follow(stage, t, &x, &input)?);
             (stage.next_place, stage.next_input) = (x, input);
         }
         let last = system.moved(&self.last, &(last_motion * fraction));

@@ -7,7 +7,7 @@ use crate::fields::{copied, debug, getters};
 use crate::{Controlled, Error, Real, Space};
 use nalgebra::{SMatrix, SVector};
 
-/// The reference of a step of `S`; `()` where price and bounds read none.
+/// The reference of a step of `S`; `()` where motion, price and bounds read none.
 pub(super) type Reference<S, const D: usize, const U: usize, const C: usize> =
     <<S as Controlled<D, U, C>>::Constants as Referenced<<S as Controlled<D, U, C>>::Scalar>>::Reference;
 
@@ -77,7 +77,7 @@ impl<S: Controlled<D, U, C, Scalar: Real>, const D: usize, const U: usize, const
         Self { input, ..self }
     }
 
-    /// The same with this reference r_k, for the price and the bounds of its step.
+    /// The same with this reference r_k, for the motion, the price and the bounds of its step.
     #[inline]
     #[must_use]
     pub fn with_reference(self, reference: Reference<S, D, U, C>) -> Self {
@@ -100,7 +100,7 @@ impl<S: Controlled<D, U, C, Scalar: Real>, const D: usize, const U: usize, const
         ref place: S::Place;
         /// The input u_k of the step from x_k to x_{k+1}.
         ref input: SVector<S::Scalar, U>;
-        /// The reference r_k of price and bounds: NaN until it is given, `()` where they read none.
+        /// The reference r_k of motion, price and bounds: NaN until it is given, `()` where they read none.
         ref reference: Reference<S, D, U, C>;
         /// The costate p_k = ∂V/∂x at x_k, V the least price from there on: a covector of the small changes of x_k.
         ref costate: SVector<S::Scalar, D>;

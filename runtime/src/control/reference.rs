@@ -1,9 +1,9 @@
-//! References: data of a plan that its prices and bounds read, given step by step.
+//! References: data of a plan that its motions, prices and bounds read, given step by step.
 
 use crate::{Scalar, Space};
 use core::fmt::Debug;
 
-/// The constants of a [`Controlled`](crate::Controlled) system, and the references that its prices and bounds read.
+/// The constants of a [`Controlled`](crate::Controlled) system, and the references that its motions, prices and bounds read.
 ///
 /// A scalar, `()` and the pair of constants and a step size have none. [`Referring`] has them. `#[derive(Clebsch)]` chooses among these.
 ///

@@ -192,11 +192,10 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, B: Start<S, D, U, C>, const D:
 
     /// The places that the inputs lead to.
     pub fn follow(&mut self) -> Result<(), Error> {
-        let Problem { system, constants, .. } = self.problem;
         let mut x = self.origin();
         for (index, stage) in self.stages.iter_mut().enumerate() {
             stage.place = x;
-            x = system.follow(constants, self.problem.time_after(index), &x, &stage.input)?;
+            x = self.problem.follow(stage, self.problem.time_after(index), &x, &stage.input)?;
         }
         self.last = x;
         check_finite("the end of the guessed plan", &x)
@@ -205,13 +204,13 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, B: Start<S, D, U, C>, const D:
     /// The end after the correction with the change δν of the multipliers of the target, whatever bounds allow.
     pub fn end_without_bounds(&self, change: &SVector<T, D>) -> Result<PlanEnd<T, D>, Error> {
         let problem = &self.problem;
-        let Problem { system, constants, .. } = *problem;
+        let system = problem.system;
         let start_change = B::change(&self.correction, change);
         let mut x = start_change.map_or(self.origin(), |by| system.moved(&self.origin(), &by));
         for (index, stage) in self.stages.iter().enumerate() {
             let displaced = system.displacement(&stage.place, &x);
             let input = stage.input + stage.shift + stage.by_multiplier * change + stage.gain * displaced;
-            x = system.follow(constants, problem.time_after(index), &x, &input)?;
+            x = problem.follow(stage, problem.time_after(index), &x, &input)?;
         }
         let end = problem.end(&x, T::zero(), &self.pushing);
         check_finite("the target at the end of the plan", &end.distance)?;
@@ -246,7 +245,7 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, B: Start<S, D, U, C>, const D:
             }
             price += problem.price(stage, t, &x, &input)?;
             (stage.next_place, stage.next_input) = (x, input);
-            x = system.follow(constants, t, &x, &input)?;
+            x = problem.follow(stage, t, &x, &input)?;
         }
         price += system.endpoint(constants, problem.end_time(), &x);
         let end = problem.end(&x, T::zero(), &self.pushing);

@@ -229,6 +229,18 @@ impl<S: Controlled<D, U, C, Scalar: Real>, B: Start<S, D, U, C>, const D: usize,
         self.time_after(self.steps)
     }
 
+    /// f with the reference of a stage, at the time t.
+    #[inline]
+    pub fn follow(
+        &self,
+        stage: &Stage<S, D, U, C>,
+        t: S::Scalar,
+        x: &S::Place,
+        u: &SVector<S::Scalar, U>,
+    ) -> Result<S::Place, Error> {
+        self.constants.at(&stage.reference, |constants| self.system.follow(constants, t, x, u))
+    }
+
     /// ℓ with the reference of a stage, at the time t.
     #[inline]
     pub fn price(

@@ -70,14 +70,15 @@ macro_rules! modules {
 
 clebsch_tests::every_scene!(modules);
 
-/// Systems that are not stepped here: `follower`, `frugal_car`, `regulator`, `telescope`, `unicycle` and `wheeled_car` are planned, in the tests of control, and
+/// Systems that are not stepped here. `follower`, `frugal_car`, `hopper`, `regulator`, `telescope`, `unicycle` and `wheeled_car` are planned, in the tests of control.
 /// `annotated_body` has private fields. `cosserat_rod`, `harmonic_map`, `sine_gordon` and `wave_map` are fields, whose tests step them on grids.
-const OTHERS: [&str; 12] = [
+const OTHERS: [&str; 13] = [
     "annotated_body",
     "cosserat_rod",
     "follower",
     "frugal_car",
     "harmonic_map",
+    "hopper",
     "rate_limited_body",
     "regulator",
     "sine_gordon",

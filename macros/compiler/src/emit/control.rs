@@ -136,7 +136,7 @@ impl SystemEmitter<'_, '_> {
         (target.conditions.each(|condition| condition.text.as_str()), target.equations)
     }
 
-    /// The types of references, where price, bounds or the price of the end read any.
+    /// The types of references, where motion, price, bounds or the price of the end read any.
     fn reference_types(&self) -> Option<[TokenStream; 2]> {
         let all = [&self.model.reference, &self.model.end_reference];
         let are_any = all.iter().any(|(_, leaves)| !leaves.is_empty());
@@ -148,13 +148,24 @@ impl SystemEmitter<'_, '_> {
     /// The references that a function reads, with the constants that they come with.
     fn references_of(&self, function: &Function, types: &ControlTypes<'_>) -> Option<TokenStream> {
         types.references.as_ref().filter(|_| function.arguments.contains("constants"))?;
+        let of_step = quote!(let runtime::Referring { constants, reference, .. } = constants;);
         Some(match function.name {
+            "follow" | "expand" | "price_of_time" if self.moves_by_reference() => {
+                quote!(#of_step runtime::check_given(reference)?;)
+            }
             "follow" => quote!(let constants = &constants.constants;),
             "endpoint" | "endpoint_expanded" | "target_expanded" => {
                 quote!(let runtime::Referring { constants, end_reference, .. } = constants;)
             }
-            _ => quote!(let runtime::Referring { constants, reference, .. } = constants;),
+            _ => of_step,
         })
+    }
+
+    /// Whether the step that inputs make reads references.
+    fn moves_by_reference(&self) -> bool {
+        let is_reference = |(input, _): (&Input, Shape)| matches!(input.role, Role::Reference(_));
+        self.kernels.find(Id::StepExpanded).is_some()
+            && self.kernels.kernel(Id::Increment).inputs().into_iter().any(is_reference)
     }
 
     /// Further words in the code of `Controlled`.

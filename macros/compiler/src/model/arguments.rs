@@ -33,7 +33,7 @@ pub(super) struct TypedArguments<'d> {
     pub input: Option<&'d Pattern>,
     /// The velocity, as the Lagrangian calls it, or else a force.
     pub velocity: Option<&'d Pattern>,
-    /// The references of prices and bounds, with their types.
+    /// The references of motions, prices and bounds, with their types.
     pub references: Introduced<'d>,
     pub diagnostics: &'d Diagnostics,
 }

@@ -80,7 +80,7 @@ impl<'g> ActedSystem<'_, '_, 'g> {
         self.context.diagnostics.refuse(features::refusal((refused, Found::at(chosen.span)), beside))
     }
 
-    /// A closure whose last argument introduces the input.
+    /// A closure that introduces the input.
     fn with_input(&mut self, closure: &Closure, slots: &'static [Slot]) -> Option<(Space<'g>, Value<'g>)> {
         let matched = self.arguments.matched(closure, slots);
         let Some(argument) = matched.argument(Slot::Input) else {

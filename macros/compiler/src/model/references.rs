@@ -1,4 +1,4 @@
-//! References: data of a plan that price and bounds read step by step, and that the price of the end reads once.
+//! References: data of a plan that motion, price and bounds read step by step, and that the price of the end reads once.
 
 use clebsch_symbolic::{Elements, Graph, IntoList, Role};
 use syn::Type;
@@ -17,19 +17,21 @@ use crate::parse::{Argument, Declaration, Pattern, joined, spell_type};
 /// The typed arguments that introduce references, in order of their first use.
 #[derive(Clone, Default)]
 pub(super) struct Introduced<'d> {
-    /// Those of price and bounds.
+    /// Those of motion, price and bounds.
     pub of_steps: Vec<&'d Argument>,
     /// Those of the price of the end and of the target. A name that a step refers to is of the same type there.
     pub of_end: Vec<&'d Argument>,
 }
 
 impl<'d> Introduced<'d> {
-    /// The arguments of prices and bounds that are of no other meaning.
+    /// The arguments of motions, prices and bounds that are of no other meaning.
     pub fn new(declaration: &'d Declaration, names: &TypedArguments<'d>) -> Introduced<'d> {
         let is_new = |argument: &&Argument| !names.is_other(&argument.pattern);
         let mut introduced = Introduced::default();
+        let motion = Some(declaration.kinetic.closure()).filter(|_| declaration.kinetic.is_steered());
         let choice = declaration.control.iter().flat_map(|choice| [Some(&choice.price), choice.bounds.as_ref()]);
-        for argument in choice.flatten().flat_map(|closure| &closure.arguments).filter(is_new) {
+        let closures = motion.into_iter().chain(choice.flatten());
+        for argument in closures.flat_map(|closure| &closure.arguments).filter(is_new) {
             if argument.ty.is_some() && find(&introduced.of_steps, &argument.pattern).is_none() {
                 introduced.of_steps.push(argument);
             }

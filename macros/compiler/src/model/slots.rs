@@ -32,9 +32,9 @@ pub(super) const LAGRANGIAN: &[Slot] = &[Slot::Time, Slot::Configuration, Slot::
 pub(super) const POTENTIAL: &[Slot] = &[Slot::Time, Slot::Configuration];
 pub(super) const FORCE: &[Slot] = &[Slot::Time, Slot::Configuration, Slot::Velocity, Slot::Input];
 pub(super) const CONSTRAINT: &[Slot] = &[Slot::Time, Slot::Configuration, Slot::Velocity];
-pub(super) const CONTROLS: &[Slot] = &[Slot::Time, Slot::Configuration, Slot::Input];
-pub(super) const DYNAMICS: &[Slot] = &[Slot::Time, Slot::Step, Slot::Configuration, Slot::Input];
-pub(super) const RIGHT_HAND_SIDE: &[Slot] = &[Slot::Time, Slot::Configuration, Slot::Input];
+pub(super) const CONTROLS: &[Slot] = &[Slot::Time, Slot::Configuration, Slot::Input, Slot::Reference];
+pub(super) const DYNAMICS: &[Slot] = &[Slot::Time, Slot::Step, Slot::Configuration, Slot::Input, Slot::Reference];
+pub(super) const RIGHT_HAND_SIDE: &[Slot] = &[Slot::Time, Slot::Configuration, Slot::Input, Slot::Reference];
 pub(super) const PRICE: &[Slot] = &[Slot::Time, Slot::Step, Slot::Configuration, Slot::Chosen, Slot::Reference];
 pub(super) const EFFORT: &[Slot] =
     &[Slot::Time, Slot::Step, Slot::Configuration, Slot::Velocity, Slot::Chosen, Slot::Reference];
@@ -84,7 +84,7 @@ pub(crate) fn arguments_of(key: &str) -> Option<String> {
     };
     let also = match key {
         "cost" => "; with `controls` and `dynamics` the input and references in place of the group element",
-        "dynamics" => "; a right-hand side takes no step",
+        "dynamics" => ". A right-hand side takes no step",
         "constraint" => "; without a velocity it is on the configuration",
         "bounds" | "endpoint" | "target" => "; with `controls` and `dynamics` no velocity",
         _ => "",
@@ -134,7 +134,7 @@ impl<'d> TypedArguments<'d> {
         if is_of_step(slots) { &self.references.of_steps } else { &self.references.of_end }
     }
 
-    /// Whether an argument of a price or of bounds has a meaning without being a reference.
+    /// Whether an argument of a step has a meaning without being a reference.
     pub(super) fn is_other(&self, pattern: &Pattern) -> bool {
         let others = [Slot::Time, Slot::Step, Slot::Configuration, Slot::Chosen];
         self.find(pattern, &others).is_some() || self.declared_velocity().is_some_and(|known| known.holds(pattern))
@@ -151,9 +151,9 @@ impl<'d> TypedArguments<'d> {
     }
 }
 
-/// Whether slots are those of a step that is priced or bounded.
+/// Whether slots are those of a step: of its motion, its price or its bounds.
 fn is_of_step(slots: &[Slot]) -> bool {
-    slots.contains(&Slot::Chosen)
+    slots.contains(&Slot::Chosen) || slots.contains(&Slot::Input)
 }
 
 /// The arguments of a closure, with the slot that each takes.
@@ -171,7 +171,16 @@ impl<'d> Matched<'d> {
         let arguments = &closure.arguments;
         let mut taken: Vec<Option<Slot>> = arguments.each(|argument| names.find(&argument.pattern, slots));
         let mut untyped = arguments.len();
-        if slots.contains(&Slot::Input) && arguments.last().is_some_and(|argument| argument.ty.is_some()) {
+        if slots.contains(&Slot::Input) && slots.contains(&Slot::Reference) {
+            // the first argument with a type; those behind it are references
+            let input = arguments.iter().position(|argument| argument.ty.is_some());
+            let names_it = |argument: &Argument| names.input.is_some_and(|known| known.matches(&argument.pattern));
+            for (position, argument) in arguments.iter().enumerate() {
+                if Some(position) == input || taken[position].is_none() && names_it(argument) {
+                    taken[position] = Some(Slot::Input);
+                }
+            }
+        } else if slots.contains(&Slot::Input) && arguments.last().is_some_and(|argument| argument.ty.is_some()) {
             untyped -= 1;
             taken[untyped] = Some(Slot::Input);
             // a second input before it, an error of its own
@@ -261,7 +270,7 @@ impl<'d> Matched<'d> {
         self.slots.iter().copied().find(|slot| !self.has(*slot))
     }
 
-    /// Whether it is of a step that is priced or bounded.
+    /// Whether it is of a step: of its motion, its price or its bounds.
     pub fn is_of_step(&self) -> bool {
         is_of_step(self.slots)
     }
@@ -416,8 +425,11 @@ impl<'d> Matched<'d> {
     fn reference_without_type(&self, position: usize) -> Option<Diagnostic> {
         let arguments = &self.closure.arguments;
         let pattern = &arguments[position].pattern;
-        let last = if is_of_step(self.slots) { Slot::Chosen } else { Slot::Configuration };
-        let is_late = self.taken[..position].contains(&Some(last));
+        let is_last = |slot: &Slot| match slot {
+            Slot::Chosen | Slot::Input => true,
+            slot => *slot == Slot::Configuration && !is_of_step(self.slots),
+        };
+        let is_late = self.taken[..position].iter().flatten().any(is_last);
         if !self.slots.contains(&Slot::Reference) || self.names.is_known(pattern) || !is_late {
             return None;
         }

@@ -29,7 +29,10 @@ pub(super) fn read(keys: &mut Keys) -> (Option<Kinetic>, Option<Choice>) {
     };
     let price = keys.closures.remove("cost");
     if price.is_none() && !keys.was_given("cost") {
-        let input = motion.arguments.last().map_or("u".into(), |argument| argument.pattern.spell());
+        // the dynamics introduce their configuration too
+        let mut typed = motion.arguments.iter().filter(|argument| argument.ty.is_some());
+        let input = typed.nth(usize::from(motion.key == "dynamics")).or(motion.arguments.last());
+        let input = input.map_or("u".into(), |argument| argument.pattern.spell());
         report!(keys.diagnostics, &motion.key, "there are `{}`, but no cost to choose them by", motion.key;
             help "write `cost = |h, {input}| h * {input}.norm_squared() / 2`");
     }
@@ -75,7 +78,7 @@ fn moved(keys: &mut Keys, mut dynamics: Closure) -> Option<Kinetic> {
         None => "|h, x: Vector2, u: Vector1| x + h * vector![x.y, u.x]".to_string(),
     };
     let typed: Vec<usize> = (0..dynamics.arguments.len()).filter(|&i| dynamics.arguments[i].ty.is_some()).into_list();
-    let &[state, _] = typed.as_slice() else {
+    let &[state, _, ..] = typed.as_slice() else {
         refuse!(keys.diagnostics, dynamics.head, "the dynamics have to introduce a configuration and an input, each with its type";
             help "write `dynamics = {example}`");
     };

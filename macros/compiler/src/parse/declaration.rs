@@ -89,8 +89,11 @@ pub enum Kinetic {
 impl Declaration {
     /// The argument that introduces the input, with its type.
     pub fn input(&self) -> Option<&Argument> {
-        let steered = Some(self.kinetic.closure()).filter(|_| self.kinetic.is_steered());
-        let mut closures = steered.into_iter().chain(&self.force).chain(&self.force_on);
+        if self.kinetic.is_steered() {
+            // typed arguments behind it are references
+            return self.kinetic.closure().arguments.iter().find(|argument| argument.ty.is_some());
+        }
+        let mut closures = self.force.iter().chain(&self.force_on);
         closures.find_map(|closure| closure.arguments.last().filter(|argument| argument.ty.is_some()))
     }
 

@@ -10,6 +10,7 @@ mod equations;
 mod estimates;
 mod kinks;
 mod paths;
+mod phases;
 mod references;
 mod right_hand_sides;
 mod targets;

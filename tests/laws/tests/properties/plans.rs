@@ -8,6 +8,7 @@ use clebsch::{
 };
 use clebsch_tests::fixtures::follower::Follower;
 use clebsch_tests::fixtures::frugal_car::FrugalCar;
+use clebsch_tests::fixtures::hopper::Hopper;
 use clebsch_tests::fixtures::regulator::Regulator;
 use clebsch_tests::fixtures::steered_body::SteeredBody;
 use clebsch_tests::fixtures::telescope::Telescope;
@@ -409,6 +410,37 @@ proptest! {
         let reached = control.solve_within(&start, Target::Free, Limits { sweeps: 0 }, &mut plan)?;
         prop_assert!((reached.price() - expected).abs() < 1e-12 * (1.0 + expected));
         prop_assert!((reached.violation() - violation).abs() < 1e-9);
+    }
+
+    /// A hopper flies as its declaration says, and each step has its own phase.
+    #[test]
+    fn phases_are_those_of_their_steps(
+        (drag, price, leg) in (0.0_f64..1.0, 0.0_f64..2.0, 0.5_f64..1.5), start in vector::<2>(1.0),
+        (inputs, stances, gusts, heights) in (vector::<STEPS>(10.0), vector::<STEPS>(1.0), vector::<STEPS>(2.0), vector::<STEPS>(1.0)),
+    ) {
+        let hopper = Hopper { drag, calm: 0.5, gravity: 9.81, price, leg, strongest: 40.0 };
+        let control = hopper.control(H)?;
+        let reference = |k: usize| (Vector1::new(stances[k]), Vector1::new(gusts[k]), Vector1::new(heights[k]));
+        let mut plan = [control.stage(&start); STEPS];
+        control.refer(&mut plan, |k, _| reference(k));
+        let (mut place, mut expected) = (start, 0.0);
+        for (k, stage) in plan.iter_mut().enumerate() {
+            let push = Vector1::new(inputs[k]);
+            *stage = stage.with_input(push);
+            let rate = |x: &Vector2<f64>| {
+                let air = gusts[k] - x.y;
+                Vector2::new(x.y, stances[k] * push.x + drag * (air * air + 0.25).sqrt() * air - 9.81)
+            };
+            let next = place + rate(&(place + rate(&place) * (H / 2.0))) * H;
+            assert_near(&control.follow_with(&place, &push, &reference(k))?, &next, 1e-13, "x⁺");
+            expected += H * (push.x.powi(2) + price * (1.0 - stances[k]) * (place.x - heights[k]).powi(2)) / 2.0;
+            prop_assert_eq!(control.follow(&place, &push), Err(Error::NoReference { step: 0, steps: 1 }));
+            prop_assert_eq!(private::check_given::<f64, _>(&reference(k)), Ok(()));
+            place = next;
+        }
+        let reached = control.solve_within(&start, Target::Free, Limits { sweeps: 0 }, &mut plan)?;
+        assert_near(reached.end(), &place, 1e-11, "the end");
+        prop_assert!((reached.price() - expected).abs() < 1e-10 * (1.0 + expected));
     }
 
     /// A later start costs its time, and changes nothing else.

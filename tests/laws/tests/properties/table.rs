@@ -212,6 +212,7 @@ pub const PROPERTIES: &[(&str, &[Property])] = &[
             "Control::refer", "Control::with_end_reference", "Stage::with_reference", "Stage::reference",
             "Referenced::at", "Referenced::with_end_reference", "Referenced::end_reference", "Referring::new",
         ]),
+        ("phases_are_those_of_their_steps", &["Control::follow_with", "check_given"]),
         ("regulators_start_anywhere", &[
             "Prior::new", "Prior::unknown", "Prior::with_slope", "Prior::place", "Prior::slope", "Prior::information", "Prior::covariance",
             "Control::with_prior", "Control::prior", "Control::arrival_cost", "Control::end_information", "Control::slide",
