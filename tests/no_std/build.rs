@@ -36,10 +36,11 @@ const DIRECTIONS: [(&str, &str); 6] = [
 const LANES: [&str; 2] = ["F64x4", "F64x8"];
 
 /// Dimensions of problems of optimal control: of places, of inputs, and the number of bounds.
-const DIMENSIONS: [(&str, &str); 16] = [
+const DIMENSIONS: [(&str, &str); 17] = [
     ("attitude_estimation.Satellite", "6, 6, 0"),
     ("follower", "3, 2, 1"),
     ("frugal_car", "3, 2, 4"),
+    ("gripping_disc", "4, 2, 2"),
     ("hopper", "2, 1, 2"),
     ("telescope", "6, 3, 0"),
     ("regulator", "2, 1, 0"),

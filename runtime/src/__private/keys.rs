@@ -27,7 +27,7 @@ pub mod potential {}
 /// Example: `symmetry = |S: SO<3>, q, F| (S * q, S * F * S.transpose())`
 pub mod symmetry {}
 
-/// A force that is no gradient, in the components of the momentum. A last argument with a type is an input, which each step is given or which `effort` chooses.
+/// A force that is no gradient, in the components of the momentum. A last argument with a type is an input, which each step is given or which `effort` chooses. With `effort`, names with types behind it are references: data of each step of a plan.
 ///
 /// Example: `force = |omega, torque: Vector3| torque - self.damping * omega`
 pub mod force {}

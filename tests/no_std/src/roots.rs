@@ -446,7 +446,7 @@ macro_rules! planning {
                                               plan: &Stages,
                                               start: &X,
                                               place: &mut X| {
-                *place = control.follow(start, &control.feedback(&plan[0], place))?;
+                *place = control.follow_with(start, &control.feedback(&plan[0], place), plan[0].reference())?;
             });
         };
     };

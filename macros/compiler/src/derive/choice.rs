@@ -186,7 +186,7 @@ impl<'a, 'g> Choice<'a, 'g> {
     /// The matrices of a kernel of a choice, as the catalogue lists them; none of other kernels.
     pub fn matrices(&self, id: Id) -> Vec<MatrixForm<'g>> {
         let (at, price, m) = (&self.at, &self.steering.price, self.formulas.model.dimension());
-        let u: usize = self.formulas.model.inputs.iter().map(|leaf| leaf.shape.len()).sum();
+        let u: usize = self.formulas.model.chosen().iter().map(|leaf| leaf.shape.len()).sum();
         // the three blocks of a symmetric matrix over motions and inputs
         let curvature = |entry: &dyn Fn(usize, usize) -> Expr<'g>| {
             [

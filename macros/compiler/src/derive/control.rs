@@ -30,10 +30,10 @@ pub struct InputStep<'g> {
 }
 
 impl<'g> SystemFormulas<'g> {
-    /// Each entry of the input.
+    /// Each entry of the input that is chosen.
     fn inputs(&self) -> Vec<Direction<'g>> {
         let mut inputs = Vec::new();
-        for leaf in &self.model.inputs {
+        for leaf in self.model.chosen() {
             let units = leaf.shape.positions().map(|(i, j)| self.model.graph.unit(leaf.shape, i, j));
             inputs.extend(units.map(|unit| vec![(leaf.symbol, unit)]));
         }

@@ -38,7 +38,7 @@ impl<'g> SystemFormulas<'g> {
         Names {
             q: tuple(self.model.configurations.iter().map(|leaf| leaf.name.clone())),
             f: tuple(self.model.factors.iter().map(|factor| factor.name.clone())),
-            u: tuple(self.model.inputs.iter().map(|leaf| leaf.name.clone())),
+            u: tuple(self.model.chosen().iter().map(|leaf| leaf.name.clone())),
             xi: letter(symbols.algebra.first()),
             mu: letter(symbols.momenta.first()),
             p: letter(symbols.covectors.first()),

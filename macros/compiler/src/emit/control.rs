@@ -97,7 +97,7 @@ impl SystemEmitter<'_, '_> {
         let is_steered = self.kernels.find(Id::StepExpanded).is_some();
         let types = ControlTypes {
             is_steered,
-            inputs: self.model.inputs.iter().map(|leaf| leaf.shape.len()).sum(),
+            inputs: self.model.chosen().iter().map(|leaf| leaf.shape.len()).sum(),
             bounds: (control.bounds.each(|bound| bound.text.as_str()), control.equations()),
             target: self.conditions_as_written(),
             references: self.reference_types(),
@@ -148,24 +148,40 @@ impl SystemEmitter<'_, '_> {
     /// The references that a function reads, with the constants that they come with.
     fn references_of(&self, function: &Function, types: &ControlTypes<'_>) -> Option<TokenStream> {
         types.references.as_ref().filter(|_| function.arguments.contains("constants"))?;
-        let of_step = quote!(let runtime::Referring { constants, reference, .. } = constants;);
+        let input = self.input_of_stepper(function);
+        let referring = quote!(let runtime::Referring { constants, reference, .. } = constants;);
         Some(match function.name {
             "follow" | "expand" | "price_of_time" if self.moves_by_reference() => {
-                quote!(#of_step runtime::check_given(reference)?;)
+                quote!(#referring runtime::check_given(reference)?; #input)
             }
             "follow" => quote!(let constants = &constants.constants;),
             "endpoint" | "endpoint_expanded" | "target_expanded" => {
                 quote!(let runtime::Referring { constants, end_reference, .. } = constants;)
             }
-            _ => of_step,
+            _ => quote!(#referring #input),
         })
+    }
+
+    /// The input of the stepper: the references that forces read are behind the input of the plan. `None` where they read none.
+    fn input_of_stepper(&self, function: &Function) -> Option<TokenStream> {
+        let given = &self.model.given;
+        if given.is_empty() {
+            return None;
+        }
+        let takes_input = function.arguments.contains("u: &Input");
+        let chosen = if takes_input { quote!(*u) } else { quote!(runtime::Space::origin()) };
+        let given =
+            given.iter().map(|access| if access.is_whole() { quote!(*reference) } else { quote!(reference #access) });
+        let input = &self.input;
+        Some(quote!(let u: &#input = &(#chosen, #(#given),*);))
     }
 
     /// Whether the step that inputs make reads references.
     fn moves_by_reference(&self) -> bool {
         let is_reference = |(input, _): (&Input, Shape)| matches!(input.role, Role::Reference(_));
-        self.kernels.find(Id::StepExpanded).is_some()
-            && self.kernels.kernel(Id::Increment).inputs().into_iter().any(is_reference)
+        let is_steered = self.kernels.find(Id::StepExpanded).is_some();
+        !self.model.given.is_empty()
+            || is_steered && self.kernels.kernel(Id::Increment).inputs().into_iter().any(is_reference)
     }
 
     /// Further words in the code of `Controlled`.

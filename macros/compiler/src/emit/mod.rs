@@ -253,7 +253,7 @@ impl<'a, 'g> SystemEmitter<'a, 'g> {
             krate: item.krate.to_token_stream(),
             scalar: &item.scalar,
             types: [configuration, element, matrix(model.dimension(), 1)],
-            input: nested_type(&model.input, |k| leaf(model.inputs[k].shape, false)),
+            input: nested_type(&model.input, |k| leaf(model.inputs[k].shape, model.inputs[k].is_quaternion)),
             dimension: model.dimension(),
             method: None,
             target: Target::new(&item.ident, &item.generics, &item.scalar, &names),

@@ -90,7 +90,7 @@ fn controlled(block: &Block<'_>, declaration: &Declaration, outline: &Outline) -
     let are_any = outline.references.iter().any(|(_, leaves)| !leaves.is_empty());
     let types = ControlTypes {
         is_steered: declaration.kinetic.is_steered(),
-        inputs: outline.input.1.iter().map(|(shape, _)| shape.len()).sum(),
+        inputs: outline.chosen,
         bounds: (vec![""; bounds], 0),
         target: (Vec::new(), 0),
         references: are_any.then(|| outline.references.each_ref().map(nested)),

@@ -1,5 +1,6 @@
 //! The two arguments of the action, whose names the other closures use, and their types.
 
+use clebsch_symbolic::IntoList;
 use syn::ext::IdentExt;
 use syn::{Generics, Type};
 
@@ -76,9 +77,15 @@ pub(super) fn of_action<'d>(
     let velocity = match &declaration.kinetic {
         Kinetic::Lagrangian(lagrangian) => lagrangian.arguments.last().map(|argument| &argument.pattern),
         _ => {
-            let forces = declaration.force.iter().chain(&declaration.force_on);
-            let untyped = |force: &'d Closure| force.arguments.iter().rfind(|argument| argument.ty.is_none());
-            forces.filter_map(untyped).map(|argument| &argument.pattern).next()
+            let mut forces = declaration.force.iter().chain(&declaration.force_on);
+            // references are behind the input, or have their types in the price or in the bounds
+            let choice = declaration.control.iter().flat_map(|choice| [Some(&choice.price), choice.bounds.as_ref()]);
+            let typed =
+                choice.flatten().flat_map(|closure| &closure.arguments).filter(|argument| argument.ty.is_some());
+            let references: Vec<&Pattern> = typed.map(|argument| &argument.pattern).into_list();
+            let is_other = |argument: &&Argument| !references.iter().any(|known| known.holds(&argument.pattern));
+            let before = |force: &'d Closure| force.arguments.iter().take_while(|argument| argument.ty.is_none());
+            forces.find_map(|force| before(force).filter(is_other).last()).map(|argument| &argument.pattern)
         }
     };
     let (group, space) = (group?, space?);

@@ -6,7 +6,7 @@ use super::arguments::sites_of;
 use super::closures::{optional, written};
 use super::features::{self, Feature, Found};
 use super::sites;
-use super::slots::{FORCE, Slot};
+use super::slots::{CHOSEN_FORCE, FORCE, Slot};
 use super::space::{Space, column};
 use super::spaces::{SpaceType, read_spaces};
 use super::typed::{ActedSystem, Velocity};
@@ -25,17 +25,24 @@ struct ReadForce<'g> {
 impl<'g> ActedSystem<'_, '_, 'g> {
     /// The forces, if there are any, with their input; `None` if a closure has an error, which was reported.
     pub fn forces(&mut self, declaration: &Declaration) -> Option<(Option<Force<'g>>, Space<'g>)> {
-        let of_group = optional(declaration.force.as_ref(), |closure| self.force(closure));
-        let on_leaves = optional(declaration.force_on.as_ref(), |closure| self.force(closure));
+        let slots = if declaration.control.is_some() { CHOSEN_FORCE } else { FORCE };
+        let of_group = optional(declaration.force.as_ref(), |closure| self.force(closure, slots));
+        let on_leaves = optional(declaration.force_on.as_ref(), |closure| self.force(closure, slots));
         let takes_input =
             |force: &Option<Option<ReadForce<'g>>>| force.iter().flatten().any(|read| read.input.is_some());
         if let Some(closure) = &declaration.force_on
             && takes_input(&of_group)
             && takes_input(&on_leaves)
         {
-            refuse!(self.context.diagnostics, closure.head, "both `force` and `force_on` take an input";
+            let error = error!(closure.head, "both `force` and `force_on` take an input";
                 help "let one of the two take all of the input, as a tuple if it has parts";
                 note "a step has one input, `stepper.step_with(&state, &input)`");
+            let name = closure.arguments.iter().find(|argument| argument.ty.is_some());
+            let reference = name.filter(|_| declaration.control.is_some()).map(|argument| argument.pattern.spell());
+            let help = reference.map(|name| {
+                format!("if `{name}` is a reference, write it here without its type, which stands in the effort")
+            });
+            return self.context.diagnostics.refuse(error.maybe_help(help));
         }
         let (of_group, on_leaves) = of_group.zip(on_leaves)?;
         let mut all = of_group.iter().chain(&on_leaves);
@@ -56,9 +63,9 @@ impl<'g> ActedSystem<'_, '_, 'g> {
         Some((force, input))
     }
 
-    fn force(&mut self, closure: &Closure) -> Option<ReadForce<'g>> {
+    fn force(&mut self, closure: &Closure, slots: &'static [Slot]) -> Option<ReadForce<'g>> {
         let diagnostics = self.context.diagnostics;
-        let matched = self.arguments.matched(closure, FORCE);
+        let matched = self.arguments.matched(closure, slots);
         let velocity = Velocity { graph: self.context.graph, factors: self.factors, diagnostics };
         let pattern = matched.argument(Slot::Velocity).map(|argument| &argument.pattern);
         let (value, velocities) = optional(pattern, |pattern| velocity.of(pattern, self.element))?.unzip();

@@ -87,6 +87,11 @@ impl Access {
         self.0.is_empty()
     }
 
+    /// A field of a tuple.
+    pub(super) fn field(position: usize) -> Access {
+        Access(vec![Part::Field(position)])
+    }
+
     /// The same access inside a part.
     #[must_use]
     pub(super) fn within(&self, part: Part) -> Access {

@@ -61,7 +61,7 @@ use self::closures::{Closures, optional};
 use self::elaborate::Context;
 use self::features::{Feature, Found};
 use self::groups::GroupNames;
-use self::references::References;
+use self::references::{Introduced, References};
 use self::sites::Sites;
 use self::space::Space;
 use self::typed::{ActedSystem, Arguments, Typed};
@@ -119,12 +119,14 @@ pub fn model<'g>(graph: &'g Graph, declaration: &Declaration, by_number: ByNumbe
         diagnostics.push(error);
         return Err(diagnostics);
     }
-    let read = |arguments, role| References::read(graph, arguments, role, names);
+    let Introduced { of_steps, of_end, of_forces } = &types.references;
+    // a choice has one vector of inputs, and references of forces are read behind it
+    let of_step = |number, leaf| if number < *of_forces { Role::Input(1 + leaf) } else { Role::Reference(leaf) };
     let references = [
-        read(&types.references.of_steps, Role::Reference as fn(usize) -> Role),
-        read(&types.references.of_end, Role::EndReference),
+        References::read(graph, of_steps, of_step, names),
+        References::read(graph, of_end, |_, leaf| Role::EndReference(leaf), names),
     ];
-    if let Some(argument) = types.references.of_end.first() {
+    if let Some(argument) = of_end.first() {
         let reference = (Feature::ReferenceOfEnd, Found::at(argument.pattern.place()).named(argument.pattern.spell()));
         diagnostics.extend(features::refusals_of(reference, |feature| features::declared(declaration, feature)));
     }
@@ -137,7 +139,12 @@ pub fn model<'g>(graph: &'g Graph, declaration: &Declaration, by_number: ByNumbe
     let formulas = ClosureValues::read(&mut context, declaration, &arguments, &typed, names);
     let Context { constants, power, .. } = context;
     let Arguments { step_size, time, references, .. } = arguments;
-    let [reference, end_reference] = references.map(|references| references.map(References::joined));
+    let given = references[0].as_ref().map_or_else(Vec::new, |references| references.first(*of_forces));
+    let formulas = formulas.zip(references[0].as_ref()).map(|(formulas, references)| ClosureValues {
+        input: references.behind(formulas.input, *of_forces),
+        ..formulas
+    });
+    let references = references.map(|references| references.map(References::joined));
     declared.check_used(&diagnostics);
     groups::check_chart(graph, &declaration.dials, typed.factors.as_deref().unwrap_or_default(), &diagnostics);
     diagnostics.propagate(())?;
@@ -145,7 +152,7 @@ pub fn model<'g>(graph: &'g Graph, declaration: &Declaration, by_number: ByNumbe
     let (Some(formulas), Some(mut factors), Some(space)) = (formulas, typed.factors, typed.space) else {
         return Err(Diagnostics::new());
     };
-    let (Some(reference), Some(end_reference)) = (reference, end_reference) else { return Err(Diagnostics::new()) };
+    let [Some(reference), Some(end_reference)] = references else { return Err(Diagnostics::new()) };
     for (factor, law) in factors.iter_mut().zip(formulas.laws) {
         (factor.side, factor.moves) = law;
     }
@@ -170,8 +177,9 @@ pub fn model<'g>(graph: &'g Graph, declaration: &Declaration, by_number: ByNumbe
         action: formulas.action,
         inputs: formulas.input.leaves,
         input: formulas.input.layout,
-        reference,
-        end_reference,
+        given,
+        reference: (reference.layout, reference.leaves),
+        end_reference: (end_reference.layout, end_reference.leaves),
         control: formulas.control,
         endpoint: formulas.endpoint,
         target: formulas.target,

@@ -1,6 +1,6 @@
 //! The part of a declaration with errors that can still be read: the types that its integrator would have.
 
-use clebsch_symbolic::{Elements, Graph, Group, Shape};
+use clebsch_symbolic::{Elements, Graph, Group, IntoList, Shape};
 use quote::ToTokens;
 
 use super::groups::GroupNames;
@@ -17,8 +17,10 @@ pub struct Outline {
     pub element: Nested,
     /// The configuration.
     pub configuration: Nested,
-    /// The input.
+    /// The input of a stepper.
     pub input: Nested,
+    /// The number of entries of the input of a plan, which has no references of forces behind it.
+    pub chosen: usize,
     /// The reference of a step, and that of the end.
     pub references: [Nested; 2],
     /// The number of components of a momentum.
@@ -31,6 +33,17 @@ pub struct Outline {
 
 /// A product: how its leaves nest, and the shape of each with whether it is a quaternion.
 pub type Nested = (Layout, Vec<(Shape, bool)>);
+
+/// A tuple of products.
+fn together(parts: &[Nested]) -> Nested {
+    let mut leaves = Vec::new();
+    let mut layouts = Vec::new();
+    for (layout, own) in parts {
+        layouts.push(layout.shifted(leaves.len()));
+        leaves.extend(own.iter().copied());
+    }
+    (Layout::Tuple(layouts), leaves)
+}
 
 /// The outline of a declaration whose action has readable types.
 pub fn outline(graph: &Graph, declaration: &Declaration) -> Option<Outline> {
@@ -48,12 +61,19 @@ pub fn outline(graph: &Graph, declaration: &Declaration) -> Option<Outline> {
     let point = || (Layout::Tuple(Vec::new()), Vec::new());
     let spaces = spaces::read_spaces(types.space, names)?;
     let input = declaration.input().and_then(|argument| spaces::read_spaces(argument.ty.as_ref()?, names));
+    let input = input.map_or_else(point, nested);
+    let chosen = input.1.iter().map(|(shape, _)| shape.len()).sum();
+    let of_forces = types.references.of_steps.iter().take(types.references.of_forces);
+    let of_forces =
+        of_forces.map(|argument| references::outlined(&[*argument], names).unwrap_or_else(point)).into_list();
+    let input = if of_forces.is_empty() { input } else { together(&[vec![input], of_forces].concat()) };
     let [of_steps, of_end] = [&types.references.of_steps, &types.references.of_end];
     let references = [of_steps, of_end].map(|arguments| references::outlined(arguments, names).unwrap_or_else(point));
     Some(Outline {
         references,
         sites: types.sites.clone(),
-        input: input.map_or_else(point, nested),
+        input,
+        chosen,
         dimension: groups.leaves.iter().map(|(group, _)| group.dimension()).sum(),
         element: (groups.layout, groups.leaves.each(of_group)),
         configuration: if declaration.dials.emit.momentum { point() } else { nested(spaces) },

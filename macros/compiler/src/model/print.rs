@@ -127,7 +127,7 @@ impl System<'_> {
     }
 
     fn print_inputs(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        self.inputs.iter().try_for_each(|leaf| writeln!(f, "  input      {}: {}", leaf.name, leaf.shape))?;
+        self.chosen().iter().try_for_each(|leaf| writeln!(f, "  input      {}: {}", leaf.name, leaf.shape))?;
         let referred = [("reference", &self.reference.1), ("at the end", &self.end_reference.1)];
         for (name, leaf) in referred.into_iter().flat_map(|(name, leaves)| leaves.iter().map(move |leaf| (name, leaf)))
         {

@@ -31,6 +31,8 @@ pub(super) const COST: &[Slot] = &[Slot::Time, Slot::Step, Slot::Configuration, 
 pub(super) const LAGRANGIAN: &[Slot] = &[Slot::Time, Slot::Configuration, Slot::Velocity];
 pub(super) const POTENTIAL: &[Slot] = &[Slot::Time, Slot::Configuration];
 pub(super) const FORCE: &[Slot] = &[Slot::Time, Slot::Configuration, Slot::Velocity, Slot::Input];
+pub(super) const CHOSEN_FORCE: &[Slot] =
+    &[Slot::Time, Slot::Configuration, Slot::Velocity, Slot::Input, Slot::Reference];
 pub(super) const CONSTRAINT: &[Slot] = &[Slot::Time, Slot::Configuration, Slot::Velocity];
 pub(super) const CONTROLS: &[Slot] = &[Slot::Time, Slot::Configuration, Slot::Input, Slot::Reference];
 pub(super) const DYNAMICS: &[Slot] = &[Slot::Time, Slot::Step, Slot::Configuration, Slot::Input, Slot::Reference];
@@ -86,6 +88,7 @@ pub(crate) fn arguments_of(key: &str) -> Option<String> {
         "cost" => "; with `controls` and `dynamics` the input and references in place of the group element",
         "dynamics" => ". A right-hand side takes no step",
         "constraint" => "; without a velocity it is on the configuration",
+        "force" | "force_on" => ". With `effort` new names with their types stand behind it (references)",
         "bounds" | "endpoint" | "target" => "; with `controls` and `dynamics` no velocity",
         _ => "",
     };
@@ -179,6 +182,10 @@ impl<'d> Matched<'d> {
                 if Some(position) == input || taken[position].is_none() && names_it(argument) {
                     taken[position] = Some(Slot::Input);
                 }
+            }
+            untyped = input.unwrap_or(untyped);
+            while untyped > 0 && taken[untyped - 1] == Some(Slot::Reference) {
+                untyped -= 1;
             }
         } else if slots.contains(&Slot::Input) && arguments.last().is_some_and(|argument| argument.ty.is_some()) {
             untyped -= 1;
@@ -293,7 +300,8 @@ impl<'d> Matched<'d> {
             let next = &self.closure.arguments[position + 1];
             let (other, other_ty) = (next.pattern.spell(), next.ty.as_ref().map(spell_type).unwrap_or_default());
             report!(diagnostics, place, "the {} has two inputs, `{name}` and `{other}`", self.closure.key;
-                help "write one, a tuple: `({name}, {other}): ({}, {other_ty})`", spell_type(ty));
+                help "write one, a tuple: `({name}, {other}): ({}, {other_ty})`", spell_type(ty);
+                note "where `effort` chooses the input, names with types behind it are references");
             return;
         }
         let is_new = slot.is_none() && !self.names.is_known(&argument.pattern);

@@ -47,10 +47,12 @@ pub struct System<'g> {
     pub configuration_names: Pattern,
     /// Φ_F(q), one expression for each leaf of the configuration.
     pub action: Vec<Expr<'g>>,
-    /// The leaves of the input u of a step; empty where nothing takes one.
+    /// The leaves of the input u of a step; empty where nothing takes one. References of forces are behind those that a plan chooses.
     pub inputs: Vec<Configuration<'g>>,
     /// How the leaves of the input nest.
     pub input: Layout,
+    /// The references that forces read, as they are reached in the reference of a step.
+    pub given: Vec<Access>,
     /// The leaves of the reference of a step, and how they nest.
     pub reference: (Layout, Vec<Configuration<'g>>),
     /// Those of the reference of the end.
@@ -106,6 +108,13 @@ pub struct Steered<'g> {
 }
 
 impl<'g> System<'g> {
+    /// The leaves of the input that a plan chooses.
+    pub fn chosen(&self) -> &[Configuration<'g>] {
+        // a choice has one vector of inputs
+        let count = if self.given.is_empty() { self.inputs.len() } else { 1 };
+        self.inputs.get(..count).unwrap_or_default()
+    }
+
     /// Whether an expression depends on the configuration.
     pub fn reads_configuration(&self, expression: Expr<'g>) -> bool {
         self.configurations.iter().any(|leaf| expression.depends_on(leaf.symbol))

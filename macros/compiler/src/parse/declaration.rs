@@ -89,12 +89,14 @@ pub enum Kinetic {
 impl Declaration {
     /// The argument that introduces the input, with its type.
     pub fn input(&self) -> Option<&Argument> {
-        if self.kinetic.is_steered() {
-            // typed arguments behind it are references
-            return self.kinetic.closure().arguments.iter().find(|argument| argument.ty.is_some());
-        }
-        let mut closures = self.force.iter().chain(&self.force_on);
-        closures.find_map(|closure| closure.arguments.last().filter(|argument| argument.ty.is_some()))
+        let steered = Some(self.kinetic.closure()).filter(|_| self.kinetic.is_steered());
+        let mut closures = steered.into_iter().chain(&self.force).chain(&self.force_on);
+        // typed arguments behind an input that is chosen are references
+        let refers = steered.is_some() || self.control.is_some();
+        closures.find_map(|closure| {
+            let is_typed = |argument: &&Argument| argument.ty.is_some();
+            if refers { closure.arguments.iter().find(is_typed) } else { closure.arguments.last().filter(is_typed) }
+        })
     }
 
     /// All closures over the arguments of the action, the action first.

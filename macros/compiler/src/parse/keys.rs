@@ -83,7 +83,7 @@ pub(super) const KEYS: [Key; 28] = [
     key("symmetry", Closures, "|S: SO<3>, q, F| (S * q, S * F * S.transpose())", "found", MECHANICS,
         "A symmetry that lies outside the declared group, such as rotations of a system of translations. The value is the pair of the moved configuration and the group element of the moved step. The macro checks it and adds its momentum to the conserved ones. `[closure, closure]` offers several."),
     key("force", Kind::Closure, "|omega, torque: Vector3| torque - self.damping * omega", "none", MECHANICS,
-        "A force that is no gradient, in the components of the momentum. A last argument with a type is an input, which each step is given or which `effort` chooses."),
+        "A force that is no gradient, in the components of the momentum. A last argument with a type is an input, which each step is given or which `effort` chooses. With `effort`, names with types behind it are references: data of each step of a plan."),
     key("force_on", Kind::Closure, "|x, thrust: Vector3| thrust", "none", MECHANICS,
         "A force as a covector of the configuration, in its shape. It takes the same arguments as `force`."),
     key("constraint", Closures, "|xi| [xi.z == 0]", "every motion is allowed", MECHANICS,

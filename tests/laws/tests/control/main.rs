@@ -11,6 +11,7 @@ mod estimates;
 mod kinks;
 mod paths;
 mod phases;
+mod phases_of_forces;
 mod references;
 mod right_hand_sides;
 mod targets;

@@ -454,12 +454,12 @@ fn motions_without_their_references_are_told() -> Result<(), Error> {
     control.solve(&start, Target::Free, &mut plan)?;
     // single steps
     let one = Error::NoReference { step: 0, steps: 1 };
-    assert_eq!(control.follow(&start, &input), Err(one.clone()));
-    assert_eq!(control.follow_with(&start, &input, &(vector![f64::INFINITY], vector![0.0])), Err(one.clone()));
+    assert_eq!(control.follow(&start, &input), Err(one));
+    assert_eq!(control.follow_with(&start, &input, &(vector![f64::INFINITY], vector![0.0])), Err(one));
     assert!(control.follow_with(&start, &input, &given)?.x.is_finite());
     let (system, constants) = (Swing {}, Swing {}.prepare(H)?);
-    assert_eq!(system.follow(&constants, 0.0, &start, &input), Err(one.clone()));
-    assert_eq!(system.expand(&constants, 0.0, &start, &input, &Vector2::zeros()).map(|_| ()), Err(one.clone()));
+    assert_eq!(system.follow(&constants, 0.0, &start, &input), Err(one));
+    assert_eq!(system.expand(&constants, 0.0, &start, &input, &Vector2::zeros()).map(|_| ()), Err(one));
     assert_eq!(system.price_of_time(&constants, 0.0, 1.0, &start, &input, &Vector2::zeros()), Err(one));
     Ok(())
 }

@@ -36,6 +36,7 @@ impl Values {
             all.extend(more.iter());
         }
         all.extend(symbols.blocks.iter().flat_map(|block| [block.coordinates, block.direction]));
+        all.extend(model.inputs.iter().map(|leaf| leaf.symbol));
         let mut values = Values(HashMap::new());
         for symbol in all {
             let data = symbol.as_symbol().expect("a symbol");
