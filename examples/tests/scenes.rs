@@ -49,7 +49,7 @@ const SCENES: [(&str, &str); 19] = [
 ];
 
 /// Scenes whose runs by default take a second or more without optimisation: `other_flags_hold_all_their_claims` makes shorter ones.
-const LONG: [&str; 29] = [
+const LONG: [&str; 30] = [
     "attitude_estimation",
     "spacecraft",
     "spin_chain",
@@ -65,6 +65,7 @@ const LONG: [&str; 29] = [
     "slew",
     "unicycle",
     "plate_ball",
+    "trailer",
     "inertia_estimation",
     "ensemble",
     "rattleback",
@@ -158,12 +159,13 @@ fn motions_are_written_as_pages() {
 
 /// Scenes of plans, which short runs do not suit, and those of constraints and fields, which have no steps of order 1.
 /// They are a name, flags, and the columns of the CSV file.
-const PLANS: [(&str, &[&str], &str); 17] = [
+const PLANS: [(&str, &[&str], &str); 18] = [
     (
         "slew",
         &["--least", "effort"],
         "step,time,R11,R12,R13,R21,R22,R23,R31,R32,R33,pi1,pi2,pi3,omega1,omega2,omega3,u1,u2,u3",
     ),
+    ("trailer", &[], "step,time,x,y,heading,xt,yt,headingt,fold,v,omega,thrust,torque"),
     ("rolling_ball", &[], "step,time,x,y,vx,vy,w1,w2,w3"),
     ("sleigh", &[], "step,time,x,y,heading,omega,v,omega1,omega2,omega3"),
     ("rattleback", &[], "step,time,R11,R12,R13,R21,R22,R23,R31,R32,R33,x1,x2,x3,w1,w2,w3"),
@@ -276,6 +278,7 @@ fn other_flags_hold_all_their_claims() {
         ("double_pendulum", &["--steps", "8"]),
         ("chain", &["--links", "5", "--steps", "8"]),
         ("attitude_estimation", &["--steps", "24"]),
+        ("trailer", &["--goal", "3,0,0", "--step-size", "1", "--steps", "8"]),
     ]);
 }
 
@@ -338,6 +341,9 @@ fn long_runs_hold_all_their_claims() {
         ("slew", &["--discretization", "cayley", "--to", "0,0,1,90", "--steps", "100"]),
         ("plate_ball", &["--turn", "0,0,1,90"]),
         ("plate_ball", &["--radius", "1", "--goal", "2,1", "--steps", "50", "--step-size", "0.1"]),
+        ("trailer", &["--goal", "-1,2,0", "--fold", "50"]),
+        ("trailer", &["--goal", "3,0,0", "--step-size", "0.2", "--steps", "40"]),
+        ("trailer", &["--steps", "80", "--step-size", "0.2", "--goals", "4"]),
         ("quadrotor", &["--step-size", "0.01", "--steps", "120"]),
         ("attitude_estimation", &["--seed", "2", "--window", "90", "--stride", "3"]),
         ("mpc", &["--gust", "0.02", "--seed", "2"]),
@@ -470,6 +476,11 @@ fn mistakes_are_explained() {
         ("plate_ball", &["--turn", "0,0,0,3"], "an axis needs a direction"),
         ("plate_ball", &["--turn", "1,0,0,0"], "another place or another attitude is needed"),
         ("plate_ball", &["--radius", "-1"], "`-1` is not above zero"),
+        ("trailer", &["--order", "1"], "steps with a constraint have order 2"),
+        ("trailer", &["--goal", "1,2"], "3 numbers separated by commas are needed, 2 were given"),
+        ("trailer", &["--goal", "0,0,360"], "a place other than the start is needed"),
+        ("trailer", &["--fold", "91"], "`91` is more than 90"),
+        ("trailer", &["--thrust", "0"], "`0` is not above zero"),
         ("rolling_ball", &["--order", "1"], "steps with a constraint have order 2"),
         ("rolling_ball", &["--table", "0"], "the table has to turn"),
         ("rolling_ball", &["--step-size", "0.1"], "was not reached"),

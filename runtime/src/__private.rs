@@ -12,6 +12,7 @@ pub use crate::conserved::conserved;
 pub use crate::constraint::edge::{
     ConstrainedSubstep, ConstraintAtEnd, ConstraintAtStart, PassedEdge, slopes_with_constraint, with_constraint,
 };
+pub use crate::constraint::link::{ConstrainedLink, Reactions, independent, tangent_projector};
 pub use crate::constraint::{
     Correction, Violation, check_place, constrained, multipliers, placed, reactions, violation,
 };
@@ -67,9 +68,9 @@ pub use crate::scheme::{At, JoinedInStorage, Kicks, Scheme, Sizes, Stages, compo
 pub use crate::sphere::{push, tangent, turn_freely, turn_great_circle, turned_in_plane};
 pub use crate::steered::{
     Link, Price, along_end, arrival_of_state, bound_prices, bounds, check_given, check_reached, conditions,
-    displacement, endpoint, forced_step, no_endpoint, pair, parted, pushed_along_end, weights,
+    displacement, endpoint, forced_step, no_endpoint, pair, parted, placed_state, pushed_along_end, weights,
 };
-pub use crate::stepper::{check_on_orbit, check_state};
+pub use crate::stepper::{check_constraint, check_on_orbit, check_state};
 pub use crate::stumpff::stumpff;
 pub use crate::sums::{Compensated, Plain, accumulate};
 pub use crate::sylvester::Sylvester;

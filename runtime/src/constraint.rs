@@ -1,6 +1,7 @@
 //! Constraints A ξ = b on the velocity: violations, the momenta that obey them, and states from velocities.
 
 pub(crate) mod edge;
+pub(crate) mod link;
 
 use crate::linear::entry;
 use crate::parts::{F, Mu, Q, T};

@@ -249,9 +249,17 @@ impl<S: Controlled<D, U, C, Scalar: Real>, B: Start<S, D, U, C>, const D: usize,
     /// The same with plans that start near a prior place, at the price φ₀ of their start. [`solve`](Self::solve) then takes a guess of the
     /// start, and finds it together with the inputs. The plan has it in its first [`stage`](Stage::place).
     ///
+    /// A system with a constraint has none yet, since its starts have to obey it: a build then fails.
+    ///
     /// # Errors
     /// [`Error::NotFinite`], [`Error::NotSymmetric`], [`Error::NegativeInformation`], and those of a place.
     pub fn with_prior(self, prior: Prior<S::Place, S::Scalar, D>) -> Result<Estimator<S, D, U, C>, Error> {
+        const {
+            assert!(
+                !S::IS_CONSTRAINED,
+                "the start of a system with a constraint cannot be found yet: leave out `with_prior`, and give the start"
+            );
+        }
         self.system.check_place(prior.place())?;
         prior.check()?;
         let Self { system, step_size, constants, time, .. } = self;
@@ -316,8 +324,8 @@ impl<S: Controlled<D, U, C, Scalar: Real>, B: Start<S, D, U, C>, const D: usize,
     /// Every bound holds up to round-off of its own terms, whatever the sizes of the others. One with a = −∞, from an infinite parameter, is none.
     ///
     /// # Errors
-    /// * [`Error::PathLength`], [`Error::NotFinite`], [`Error::OffOrbit`], [`Error::OutsideMomentumSpace`],
-    ///   [`Error::NoReference`], [`Error::NoTarget`] for the arguments;
+    /// * [`Error::PathLength`], [`Error::NotFinite`], [`Error::OffOrbit`], [`Error::OutsideMomentumSpace`], [`Error::OffConstraint`],
+    ///   [`Error::ConstraintViolated`], [`Error::DependentConstraints`], [`Error::NoReference`], [`Error::NoTarget`] for the arguments;
     /// * [`Error::Uncontrollable`] where inputs do not move the end towards the target;
     /// * [`Error::Infeasible`] and [`Error::TargetMissed`] where bounds cannot be satisfied, or leave no way to the target;
     /// * [`Error::NoExtremal`] where the work was not enough;
@@ -332,6 +340,7 @@ impl<S: Controlled<D, U, C, Scalar: Real>, B: Start<S, D, U, C>, const D: usize,
         plan: &'p mut [Stage<S, D, U, C>],
     ) -> Result<Optimum<'p, S, D, U, C>, Error> {
         self.check(start, &target, plan)?;
+        self.check_goal(&target, plan.len())?;
         let solved = Plan::new(self.problem(start, &target, plan.len()), plan).attempt()?;
         Ok(Optimum { stages: plan, ..solved })
     }
@@ -376,6 +385,7 @@ impl<S: Controlled<D, U, C, Scalar: Real>, B: Start<S, D, U, C>, const D: usize,
         plan: &'p mut [Stage<S, D, U, C>],
     ) -> Result<Optimum<'p, S, D, U, C>, Error> {
         self.check(start, &target, plan)?;
+        self.check_goal(&target, plan.len())?;
         let solved = Plan::new(self.problem(start, &target, plan.len()), plan).attempt_along(path)?;
         Ok(Optimum { stages: plan, ..solved })
     }
@@ -425,6 +435,7 @@ impl<S: Controlled<D, U, C, Scalar: Real>, B: Start<S, D, U, C>, const D: usize,
         plan: &'p mut [Stage<S, D, U, C>],
     ) -> Result<Optimum<'p, S, D, U, C>, Error> {
         self.check(start, &target, plan)?;
+        self.check_goal(&target, plan.len())?;
         let problem = self.problem(start, &target, plan.len());
         let reached = Plan { most: limits.sweeps, ..Plan::new(problem, plan) }.attempt_once()?;
         Ok(Optimum { stages: plan, ..reached })
@@ -507,12 +518,20 @@ impl<S: Controlled<D, U, C, Scalar: Real>, B: Start<S, D, U, C>, const D: usize,
         Problem { system, constants, h: *h, time: *time, steps, start, beginning, target, lengths }
     }
 
+    /// The target obeys the constraint at the end of so many steps.
+    fn check_goal(&self, target: &Target<S::Place>, steps: usize) -> Result<(), Error> {
+        let Some(goal) = target.place() else { return Ok(()) };
+        let end = self.time + self.step_size * S::Scalar::from_f64(steps as f64);
+        self.system.check_constraint(&self.constants, end, goal, matches!(target, Target::Place(_)))
+    }
+
     /// Start, target and guess are finite and where places are.
     fn check(&self, start: &S::Place, target: &Target<S::Place>, plan: &[Stage<S, D, U, C>]) -> Result<(), Error> {
         if plan.is_empty() {
             return Err(Error::PathLength { nodes: 0, per_step: 1 });
         }
         self.system.check_place(start)?;
+        self.system.check_constraint(&self.constants, self.time, start, true)?;
         target.place().map_or(Ok(()), |goal| self.system.check_place(goal))?;
         if matches!(target, Target::Conditions) && S::TARGET.is_empty() {
             return Err(Error::NoTarget);

@@ -74,6 +74,58 @@ pub trait Controlled<const D: usize, const U: usize, const C: usize>: Sized {
     /// [`Error::NotFinite`], [`Error::OffOrbit`], [`Error::OutsideMomentumSpace`].
     fn check_place(&self, x: &Self::Place) -> Result<(), Error>;
 
+    /// Whether steps read references; if they do not, [`follow`](Self::follow) is called with any.
+    #[doc(hidden)]
+    const REFERS_IN_STEPS: bool = true;
+    /// Whether a constraint acts in steps.
+    #[doc(hidden)]
+    const IS_CONSTRAINED: bool = false;
+
+    /// Whether a place obeys the constraint at the time t, with its momentum or without; every place as provided.
+    ///
+    /// # Errors
+    /// [`Error::OffConstraint`], [`Error::ConstraintViolated`], [`Error::DependentConstraints`].
+    #[doc(hidden)]
+    fn check_constraint(
+        &self,
+        _constants: &Self::Constants,
+        _t: Self::Scalar,
+        _x: &Self::Place,
+        _moves: bool,
+    ) -> Result<(), Error> {
+        Ok(())
+    }
+
+    /// A place that obeys the constraint at the time t, next to a place; x itself as provided, and where there is none nearby.
+    #[doc(hidden)]
+    fn constrained_place(&self, _constants: &Self::Constants, _t: Self::Scalar, x: &Self::Place) -> Self::Place {
+        *x
+    }
+
+    /// The projector to the changes of a place that a constraint allows at the time t; `None` as provided, where all are allowed.
+    #[doc(hidden)]
+    fn tangent_projector(
+        &self,
+        _constants: &Self::Constants,
+        _t: Self::Scalar,
+        _x: &Self::Place,
+    ) -> Option<SMatrix<Self::Scalar, D, D>> {
+        None
+    }
+
+    /// The projector to independent changes of a place under a constraint at the time t, as many as it allows. Each change is in units of
+    /// one by its length. `None` as provided, where all changes are independent.
+    #[doc(hidden)]
+    fn independent(
+        &self,
+        _constants: &Self::Constants,
+        _t: Self::Scalar,
+        _x: &Self::Place,
+        _lengths: &SVector<Self::Scalar, D>,
+    ) -> Option<SMatrix<Self::Scalar, D, D>> {
+        None
+    }
+
     /// The system with the step size `h`, checked, to solve problems of optimal control with.
     ///
     /// ```text

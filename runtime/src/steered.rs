@@ -46,6 +46,18 @@ where
     check_reached((q, S::Scheme::momentum(&q, &held)))
 }
 
+/// The state that obeys the constraint at the time t, next to (q, N); this one where there is none nearby.
+pub fn placed_state<S: Clebsch>(
+    system: &S,
+    constants: &S::Constants,
+    t: S::Scalar,
+    (q, mu): &(S::Configuration, S::Momentum),
+) -> (S::Configuration, S::Momentum) {
+    let placed = system.placed(constants, t, q);
+    let placed = placed.and_then(|q| Ok((q, system.constrained(constants, t, &q, mu)?)));
+    placed.unwrap_or((*q, *mu))
+}
+
 /// The shortest η with GᵀG η = Gᵀ(q⁺ − q).
 #[inline]
 pub fn displacement<T: Scalar, const M: usize>(metric: &SMatrix<T, M, M>, approach: &SVector<T, M>) -> SVector<T, M> {
@@ -212,7 +224,19 @@ impl<T: Scalar, const M: usize, const U: usize> Link<T, M, U> {
         costate: &SVector<T, D>,
         price: &SVector<T, M>,
     ) -> Option<Self> {
-        let tangent = of_edge(edge)?;
+        Self::over(edge, None, (before, after), costate, price)
+    }
+
+    /// The same with Q of a constraint, which takes from a change of N the part that its force balances.
+    #[inline]
+    pub(crate) fn over<const D: usize>(
+        edge: &Carried<T, M>,
+        balance: Option<SMatrix<T, M, M>>,
+        (before, after): (&SMatrix<T, M, U>, &SMatrix<T, M, U>),
+        costate: &SVector<T, D>,
+        price: &SVector<T, M>,
+    ) -> Option<Self> {
+        let tangent = of_edge(edge, balance)?;
         let motion_by_input = -times(&tangent.motion_by_momentum, before);
         let momentum_by_input = after + times(&edge.after_by_end, &motion_by_input);
         let alpha: SVector<T, M> = costate.block(0, 0);
@@ -287,7 +311,7 @@ impl<T: Scalar, const M: usize, const U: usize> Link<T, M, U> {
 
     /// How η, ζ and the inputs change with (η, ν) and with u.
     #[inline(always)]
-    fn directions<const W: usize, const D: usize>(&self) -> (SMatrix<T, W, D>, SMatrix<T, W, U>) {
+    pub(crate) fn directions<const W: usize, const D: usize>(&self) -> (SMatrix<T, W, D>, SMatrix<T, W, U>) {
         let tangent = &self.tangent;
         let carried = tangent.motion_by_motion - self.adjoint;
         let by_place = embedded(&SMatrix::<T, M, M>::identity(), 0, 0)
@@ -295,6 +319,13 @@ impl<T: Scalar, const M: usize, const U: usize> Link<T, M, U> {
             + embedded(&tangent.motion_by_momentum, M, M);
         let by_input = embedded(&self.motion_by_input, M, 0) + embedded(&SMatrix::<T, U, U>::identity(), 2 * M, 0);
         (by_place, by_input)
+    }
+
+    /// How N⁺ changes with (η, ν) and with u.
+    #[inline(always)]
+    pub(crate) fn momentum<const D: usize>(&self) -> (SMatrix<T, M, D>, SMatrix<T, M, U>) {
+        let Tangent { momentum_by_motion, momentum_by_momentum, .. } = &self.tangent;
+        (embedded(momentum_by_motion, 0, 0) + embedded(momentum_by_momentum, 0, M), self.momentum_by_input)
     }
 
     /// The step without its price.

@@ -20,7 +20,7 @@ use crate::{
     Clebsch, Clock, Conserves, Constrained, CotangentState, Declared, Error, Mask, Method, Scalar, Space, State, Time,
 };
 use core::fmt::Debug;
-use num_traits::Zero;
+use num_traits::{One, Zero};
 
 /// A system, a step size and the constants of its steps, computed once.
 ///
@@ -292,6 +292,24 @@ pub fn check_state<S: Clebsch>(system: &S, q: &S::Configuration, mu: &S::Momentu
     // a plan starts at a time that is not known here
     let is_autonomous = size_of::<S::Time>() == 0;
     if is_autonomous { system.check_kinetic_energy(Zero::zero(), q) } else { Ok(()) }
+}
+
+/// Whether q obeys the constraint at the time t, and (q, N) if it moves. A violation may move it by a part √ε of 1 + |q| in a step: a
+/// body at rest has no velocity to compare with.
+pub fn check_constraint<S: Clebsch>(
+    system: &S,
+    constants: &S::Constants,
+    (t, h): (S::Scalar, S::Scalar),
+    (q, mu): &(S::Configuration, S::Momentum),
+    moves: bool,
+) -> Result<(), Error> {
+    system.check_place(t, q)?;
+    if !moves {
+        return Ok(());
+    }
+    let violation = system.constraint_defect(constants, t, q, mu)?;
+    let slight = S::Scalar::EPSILON.sqrt() * (S::Scalar::one() + q.max_abs());
+    if (violation.largest * h.abs()).at_most(slight).all() { Ok(()) } else { violation.check() }
 }
 
 /// Whether q is on its orbit, and N is finite. Up to √ε of its largest component, N is a momentum that motions of q can have.

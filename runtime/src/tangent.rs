@@ -167,11 +167,15 @@ pub(crate) fn times<T: Scalar, const R: usize, const M: usize, const K: usize>(
 }
 
 /// The tangent map of an edge, by the implicit function theorem on F⁻ℓd = N. It is η′ = Ad η + ζ with ζ = (∂F⁻ℓd/∂η′)⁻¹
-/// (ν − ∂F⁻ℓd η), ∂/∂η at fixed F.
+/// (ν − ∂F⁻ℓd η), ∂/∂η at fixed F. With a constraint Qν takes the place of ν.
 #[inline]
-pub(crate) fn of_edge<T: Scalar, const M: usize>(edge: &Carried<T, M>) -> Option<Tangent<T, M>> {
+pub(crate) fn of_edge<T: Scalar, const M: usize>(
+    edge: &Carried<T, M>,
+    balance: Option<SMatrix<T, M, M>>,
+) -> Option<Tangent<T, M>> {
     let inverse = divided(&edge.before_by_end, &SMatrix::identity())?;
-    Some(by_inverse(edge, &inverse, inverse))
+    let by_momentum = balance.map_or(inverse, |balance| times(&inverse, &balance));
+    Some(by_inverse(edge, &inverse, by_momentum))
 }
 
 /// The tangent map of an edge with (∂F⁻ℓd/∂η′)⁻¹, and ∂ζ/∂ν.

@@ -36,8 +36,9 @@ const DIRECTIONS: [(&str, &str); 6] = [
 const LANES: [&str; 2] = ["F64x4", "F64x8"];
 
 /// Dimensions of problems of optimal control: of places, of inputs, and the number of bounds.
-const DIMENSIONS: [(&str, &str); 17] = [
+const DIMENSIONS: [(&str, &str); 19] = [
     ("attitude_estimation.Satellite", "6, 6, 0"),
+    ("driven_sleigh", "6, 2, 1"),
     ("follower", "3, 2, 1"),
     ("frugal_car", "3, 2, 4"),
     ("gripping_disc", "4, 2, 2"),
@@ -52,6 +53,7 @@ const DIMENSIONS: [(&str, &str); 17] = [
     ("plate_ball.Ball", "5, 2, 0"),
     ("quadrotor.Quadrotor", "12, 4, 8"),
     ("slew_least_effort.SteeredBody", "6, 3, 6"),
+    ("trailer.TractorTrailer", "12, 2, 5"),
     ("unicycle.Forward", "3, 2, 3"),
     ("unicycle.Free", "3, 2, 0"),
 ];

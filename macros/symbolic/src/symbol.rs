@@ -43,6 +43,8 @@ pub enum Role {
     Momentum(usize),
     /// The multipliers of the momentum equation of a step.
     Multiplier,
+    /// The multipliers of a constraint in a step and those of its equations in a price, by number.
+    Reaction(usize),
     /// The multipliers of bounds.
     Weight,
     /// max(a, 0) in a price, by the number of a.

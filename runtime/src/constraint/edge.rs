@@ -77,24 +77,30 @@ pub trait ConstrainedSubstep<const K: usize, const M: usize, const R: usize, con
         kappa: &SVector<T<Self>, R>,
     ) -> ConstraintAtEnd<T<Self>, M, R>;
 
-    /// The derivatives of Aᵀλ and of ψ by the quantities.
+    /// The derivatives of Aᵀλ and of ψ by the quantities; of none as provided.
     fn slopes_at_start(
         &self,
-        c: &B::Constants,
-        t: T<Self>,
-        ends: Ends<'_, Self>,
-        kappa: &SVector<T<Self>, R>,
-    ) -> ConstraintSlopes<T<Self>, M, R, P>;
+        _c: &B::Constants,
+        _t: T<Self>,
+        _ends: Ends<'_, Self>,
+        _kappa: &SVector<T<Self>, R>,
+    ) -> ConstraintSlopes<T<Self>, M, R, P> {
+        const { assert!(P == 0, "there are quantities") }
+        (SMatrix::zeros(), SMatrix::zeros())
+    }
 
-    /// The derivatives of Aᵀμ and of A Σ⁻¹N⁺ − b by the quantities.
+    /// The derivatives of Aᵀμ and of A Σ⁻¹N⁺ − b by the quantities; of none as provided.
     fn slopes_at_end(
         &self,
-        c: &B::Constants,
-        t: T<Self>,
-        next: &Q<Self>,
-        mu: &Mu<Self>,
-        kappa: &SVector<T<Self>, R>,
-    ) -> ConstraintSlopes<T<Self>, M, R, P>;
+        _c: &B::Constants,
+        _t: T<Self>,
+        _next: &Q<Self>,
+        _mu: &Mu<Self>,
+        _kappa: &SVector<T<Self>, R>,
+    ) -> ConstraintSlopes<T<Self>, M, R, P> {
+        const { assert!(P == 0, "there are quantities") }
+        (SMatrix::zeros(), SMatrix::zeros())
+    }
 }
 
 /// An edge as a step passes it.
@@ -107,50 +113,50 @@ pub struct PassedEdge<T, const M: usize> {
 }
 
 /// P = AᵀS⁻¹ with A Σ⁻¹.
-struct Balance<T, const M: usize, const R: usize> {
-    lift: SMatrix<T, M, R>,
+pub(super) struct Balance<T, const M: usize, const R: usize> {
+    pub lift: SMatrix<T, M, R>,
     by_inertia: SMatrix<T, R, M>,
 }
 
 impl<T: Scalar, const M: usize, const R: usize> Balance<T, M, R> {
     /// `None` where S is singular.
-    fn new(rows: &SMatrix<T, R, M>, by_inertia: &SMatrix<T, R, M>) -> Option<Self> {
+    pub fn new(rows: &SMatrix<T, R, M>, by_inertia: &SMatrix<T, R, M>) -> Option<Self> {
         let metric = times(by_inertia, &rows.transpose());
         let lift = divided(&metric, rows)?.transpose();
         Some(Self { lift, by_inertia: *by_inertia })
     }
 
     /// Q a + P b
-    fn of<const K: usize>(&self, a: &SMatrix<T, M, K>, b: &SMatrix<T, R, K>) -> SMatrix<T, M, K> {
+    pub fn of<const K: usize>(&self, a: &SMatrix<T, M, K>, b: &SMatrix<T, R, K>) -> SMatrix<T, M, K> {
         a + times(&self.lift, &(b - times(&self.by_inertia, a)))
     }
 
     /// Q
-    fn projection(&self) -> SMatrix<T, M, M> {
+    pub fn projection(&self) -> SMatrix<T, M, M> {
         SMatrix::identity() - times(&self.lift, &self.by_inertia)
     }
 }
 
 /// Both ends of an edge with the forces of the constraint.
-struct Sides<S: Clebsch, const M: usize, const R: usize> {
+pub(super) struct Sides<S: Clebsch, const M: usize, const R: usize> {
     /// λ and μ
-    multipliers: [SVector<T<S>, R>; 2],
+    pub multipliers: [SVector<T<S>, R>; 2],
     /// N⁺
-    momentum: Mu<S>,
-    start: ConstraintAtStart<T<S>, M, R>,
-    end: ConstraintAtEnd<T<S>, M, R>,
-    leaving: Balance<T<S>, M, R>,
-    landing: Balance<T<S>, M, R>,
+    pub momentum: Mu<S>,
+    pub start: ConstraintAtStart<T<S>, M, R>,
+    pub end: ConstraintAtEnd<T<S>, M, R>,
+    pub leaving: Balance<T<S>, M, R>,
+    pub landing: Balance<T<S>, M, R>,
 }
 
 /// The place of an edge: the constants, and the time at which the step starts.
-type Place<'a, S, B> = (&'a <B as Method<S>>::Constants, T<S>);
+pub(super) type Place<'a, S, B> = (&'a <B as Method<S>>::Constants, T<S>);
 
 /// The derivatives of the momenta before and after an edge, one column for each quantity.
 type Slopes<S, const M: usize, const P: usize> = (SMatrix<T<S>, M, P>, SMatrix<T<S>, M, P>);
 
 /// The constraint in a step from the momentum N over an edge. `None` where rows depend on each other.
-fn sides<S, B, const K: usize, const M: usize, const R: usize, const P: usize>(
+pub(super) fn sides<S, B, const K: usize, const M: usize, const R: usize, const P: usize>(
     system: &S,
     (c, t): Place<'_, S, B>,
     ends: Ends<'_, S>,
@@ -186,21 +192,27 @@ where
     S: ConstrainedSubstep<K, M, R, P, B>,
     B: Method<S>,
 {
-    let Sides { momentum, start, end, leaving, landing, .. } = sides(system, (c, t), ends, mu)?;
-    // the end moves with the start, by Ad
-    let push = times(&end.push, &edge.adjoint);
-    let velocity = times(&end.velocity, &edge.adjoint);
-    Some(PassedEdge {
-        edge: Carried {
-            momentum,
+    let sides = sides(system, (c, t), ends, mu)?;
+    Some(PassedEdge { edge: sides.joined(edge), balance: Some(sides.leaving.projection()) })
+}
+
+impl<S: Clebsch<Momentum = SVector<<S as Clebsch>::Scalar, M>>, const M: usize, const R: usize> Sides<S, M, R> {
+    /// The derivatives of an edge with those of its constraint.
+    #[inline]
+    pub fn joined(&self, edge: &Carried<T<S>, M>) -> Carried<T<S>, M> {
+        let Self { momentum, start, end, leaving, landing, .. } = self;
+        // the end moves with the start, by Ad
+        let push = times(&end.push, &edge.adjoint);
+        let velocity = times(&end.velocity, &edge.adjoint);
+        Carried {
+            momentum: *momentum,
             adjoint: edge.adjoint,
             before: leaving.of(&(edge.before - start.push), &start.between),
             after: landing.of(&(edge.after + push), &-velocity),
             before_by_end: leaving.of(&edge.before_by_end, &start.between_by_end),
             after_by_end: landing.of(&(edge.after_by_end + end.push), &-end.velocity),
-        },
-        balance: Some(leaving.projection()),
-    })
+        }
+    }
 }
 
 /// The slopes of the momenta of an edge, with those of its constraint.

@@ -24,6 +24,8 @@ pub(super) struct PlanEnd<T, const D: usize> {
     pub lack: SVector<T, D>,
     /// E: the lengths of δ, projected to those that the target fixes.
     pub slope: SMatrix<T, D, D>,
+    /// The slopes of conditions along all changes, those that a constraint forbids too: the force of ν on the end has its part there. Else E.
+    pub all_slopes: SMatrix<T, D, D>,
     /// A basis of conditions that are independent, the columns S B, and its dual, S⁻¹ B. The columns of B are orthonormal, and S has the
     /// reciprocal sizes of conditions. `None` where changes are the conditions.
     ///
@@ -80,6 +82,7 @@ impl<S: Controlled<D, U, C, Scalar: Real>, B: Start<S, D, U, C>, const D: usize,
     /// The end of a plan where conditions are the target. An inequality counts as an equation where it pushes or is violated, and else as none.
     fn end_of(
         &self,
+        x: &S::Place,
         conditions: &TargetExpansion<S::Scalar, D>,
         largest: S::Scalar,
         pushing: &[bool; D],
@@ -90,7 +93,10 @@ impl<S: Controlled<D, U, C, Scalar: Real>, B: Start<S, D, U, C>, const D: usize,
         let is_satisfied = |i: usize| conditions.values[i] <= round_off::<S::Scalar>() * sizes[i];
         let counts = |i: usize| i < S::EQUATIONS || pushing[i] || !is_satisfied(i);
         let lack = SVector::<S::Scalar, D>::from_fn(|i, _| if counts(i) { -conditions.values[i] } else { zero });
-        let slope = SMatrix::<S::Scalar, D, D>::from_fn(|i, j| if counts(i) { conditions.slope[(i, j)] } else { zero });
+        let all_slopes =
+            SMatrix::<S::Scalar, D, D>::from_fn(|i, j| if counts(i) { conditions.slope[(i, j)] } else { zero });
+        let tangent = self.system.tangent_projector(self.constants, self.end_time(), x);
+        let slope = tangent.map_or(all_slopes, |tangent| all_slopes * tangent);
         let gap = |i: usize| if lack[i] == zero { zero } else { lack[i].abs() / sizes[i] };
         let relative = (0..D).fold(zero, |most, i| larger(most, gap(i)));
         let square = lack.dot(&lack);
@@ -106,7 +112,7 @@ impl<S: Controlled<D, U, C, Scalar: Real>, B: Start<S, D, U, C>, const D: usize,
         let inverse = SMatrix::<_, D, D>::from_fn(|i, j| unit(i) * inverse[(i, j)] * unit(j));
         let motion = slope.tr_mul(&(inverse * lack));
         PlanEnd {
-            pull: slope.tr_mul(&lack),
+            pull: all_slopes.tr_mul(&lack),
             // without the part that no change closes: equations may follow from others, as those of unit vectors do
             lack: slope * motion,
             motion,
@@ -115,6 +121,7 @@ impl<S: Controlled<D, U, C, Scalar: Real>, B: Start<S, D, U, C>, const D: usize,
             distance,
             scale: if relative > zero { distance / relative } else { one },
             slope,
+            all_slopes,
             basis: Some([basis, dual]),
         }
     }
@@ -123,7 +130,7 @@ impl<S: Controlled<D, U, C, Scalar: Real>, B: Start<S, D, U, C>, const D: usize,
     /// exact in flat spaces and for rotations about one axis.
     pub fn end(&self, x: &S::Place, largest: S::Scalar, pushing: &[bool; D]) -> PlanEnd<S::Scalar, D> {
         if let Some(conditions) = self.conditions(x, &SVector::zeros()) {
-            return self.end_of(&conditions, larger(largest, x.max_abs()), pushing);
+            return self.end_of(x, &conditions, larger(largest, x.max_abs()), pushing);
         }
         let Self { target, lengths, .. } = self;
         let (zero, one) = (S::Scalar::zero(), S::Scalar::one());
@@ -131,16 +138,24 @@ impl<S: Controlled<D, U, C, Scalar: Real>, B: Start<S, D, U, C>, const D: usize,
         let arrival = target.place().map_or(none, |goal| self.system.arrival(x, goal));
         let goal = target.place().unwrap_or(x);
         let Arrival { residual, slope } = &arrival;
+        let independent = self.system.independent(self.constants, self.end_time(), x, lengths);
         let asked = if matches!(target, Target::Configuration(_)) { S::MOTIONS } else { D };
         let is_asked = |i: usize| if i < asked { one } else { zero };
         // as lengths: the projector to the changes that the target fixes, and the smallest that closes the gap
-        let spectrum = Spectrum::of(&SMatrix::<_, D, D>::from_fn(|i, j| {
-            slope[(i, j)] / (lengths[i] * lengths[j]) * is_asked(i) * is_asked(j)
-        }));
+        let mut scaled =
+            SMatrix::<_, D, D>::from_fn(|i, j| slope[(i, j)] / (lengths[i] * lengths[j]) * is_asked(i) * is_asked(j));
+        let mut lack = SVector::<_, D>::from_fn(|i, _| residual[i] / lengths[i] * is_asked(i));
+        if let Some(independent) = &independent {
+            (scaled, lack) = (independent * scaled * independent, independent * lack);
+        }
+        let spectrum = Spectrum::of(&scaled);
         let least = S::Scalar::EPSILON.sqrt() * spectrum.largest();
         let projector = spectrum.map(|value| if value <= least { zero } else { one });
+        // conditions that a constraint makes dependent
+        let column = |k: usize| if spectrum.values[k] <= least { zero } else { one };
+        let basis = independent.map(|_| SMatrix::<_, D, D>::from_fn(|i, k| column(k) * spectrum.vectors[(i, k)]));
         let inverse = spectrum.map(|value| if value <= least { zero } else { value.recip() });
-        let mut lack = inverse * SVector::<_, D>::from_fn(|i, _| residual[i] / lengths[i] * is_asked(i));
+        let mut lack: SVector<_, D> = inverse * lack;
         let square = |from: usize, to: usize| {
             let asked = residual.iter().take(to).skip(from);
             asked.fold(zero, |sum, entry| sum + *entry * *entry)
@@ -153,11 +168,13 @@ impl<S: Controlled<D, U, C, Scalar: Real>, B: Start<S, D, U, C>, const D: usize,
         if let Some(factor) = arc_per_chord(larger(zero, along).sqrt(), across) {
             lack.iter_mut().take(S::MOTIONS).for_each(|lack| *lack *= factor);
         }
+        let slope_of_target = SMatrix::from_fn(|i, j| projector[(i, j)] * lengths[j]);
         PlanEnd {
             lack,
             motion: lack.component_div(lengths),
-            basis: None,
-            slope: SMatrix::from_fn(|i, j| projector[(i, j)] * lengths[j]),
+            basis: basis.map(|basis| [basis, basis]),
+            slope: slope_of_target,
+            all_slopes: slope_of_target,
             pull: SVector::from_fn(|i, _| residual[i] * is_asked(i)),
             metric: SMatrix::from_fn(|i, j| slope[(i, j)] * is_asked(i) * is_asked(j)),
             squares: [chord, momentum],

@@ -22,7 +22,7 @@ use super::start::Start;
 use super::sweep::{Plan, Problem, Swept};
 use crate::newton::Curvature;
 use crate::space::{larger, plus};
-use crate::{Controlled, Error, Real};
+use crate::{Controlled, Error, Real, Space};
 use nalgebra::{SMatrix, SVector};
 
 /// The most sweeps from one guess.
@@ -44,6 +44,8 @@ const GAIN: f64 = 1e-5;
 const CLOSED: f64 = 1e-6;
 /// The corrections and gaps from which a roll-out goes on.
 const NEAR: (f64, f64) = (0.03, 1e-2);
+/// Changes of places that are round-off, in units in the last place of their size.
+const ROUNDING: f64 = 256.0;
 /// Gaps that are wide, as the sum of all in units of the largest change of places.
 const WIDE: f64 = 1.0;
 /// Corrections and gaps for which the barrier is lowered.
@@ -170,8 +172,10 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, B: Start<S, D, U, C>, const D:
     pub fn lift_along(&mut self, mut path: impl FnMut(usize, T) -> S::Place) -> Result<bool, Error> {
         let Problem { system, .. } = self.problem;
         for index in 1..=self.stages.len() {
-            let place = path(index, self.problem.time_after(index));
+            let t = self.problem.time_after(index);
+            let place = path(index, t);
             system.check_place(&place)?;
+            let place = system.constrained_place(self.problem.constants, t, &place);
             match self.stages.get_mut(index) {
                 Some(stage) => stage.place = place,
                 None => self.last = place,
@@ -196,13 +200,15 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, B: Start<S, D, U, C>, const D:
 
     /// Bends the places of a plan so that its end reaches the target, by and by.
     fn reach(&mut self) {
-        let Problem { system, .. } = &self.problem;
         let motion = self.end().motion;
         let steps = T::from_f64((PARTS * self.stages.len()) as f64);
         // small motions, one after the other: a large retraction need not go as far as the exponential
         let bent = |place: &S::Place, index: usize| {
             let part = motion * (T::from_f64(index as f64) / steps);
-            (0..PARTS).fold(*place, |place, _| system.moved(&place, &part))
+            let t = self.problem.time_after(index);
+            // a given start is where it is
+            let parts = if index == 0 { 0 } else { PARTS };
+            (0..parts).fold(*place, |place, _| self.problem.moved(t, &place, &part))
         };
         for (index, stage) in self.stages.iter_mut().enumerate() {
             stage.place = bent(&stage.place, index);
@@ -409,7 +415,10 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, B: Start<S, D, U, C>, const D:
             SVector::from_fn(|i, _| larger(largest[i], change[i].abs()))
         });
         let (zero, one) = (T::zero(), T::one());
-        let units = largest.map(|size| if size > zero && size.is_finite() { size.recip() } else { zero });
+        // forbidden changes are round-off, and one by that would outweigh all others
+        let size = self.stages.iter().fold(self.last.max_abs(), |size, stage| larger(size, stage.place.max_abs()));
+        let least = if S::IS_CONSTRAINED { T::from_f64(ROUNDING) * T::EPSILON * size } else { zero };
+        let units = largest.map(|size| if size > least && size.is_finite() { size.recip() } else { zero });
         Measure { units, relaxed: if self.is_relaxed() { one } else { zero } }
     }
 
@@ -428,7 +437,11 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, B: Start<S, D, U, C>, const D:
         let mut reached: Option<S::Place> = None;
         for (index, stage) in self.stages.iter_mut().enumerate() {
             let t = self.problem.time_after(index);
-            let x = system.moved(&stage.place, &(stage.motion * fraction));
+            let change = stage.motion * fraction;
+            let x = match index {
+                0 => system.moved(&stage.place, &change),
+                _ => problem.moved(t, &stage.place, &change),
+            };
             let input = stage.input + stage.shift * fraction;
             if let Some(reached) = &reached {
                 gaps += measure.of(system.displacement(&x, reached));
@@ -445,7 +458,7 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, B: Start<S, D, U, C>, const D:
             reached = Some(problem.follow(stage, t, &x, &input)?);
             (stage.next_place, stage.next_input) = (x, input);
         }
-        let last = system.moved(&self.last, &(last_motion * fraction));
+        let last = problem.moved(problem.end_time(), &self.last, &(last_motion * fraction));
         if let Some(reached) = &reached {
             gaps += measure.of(system.displacement(&last, reached));
         }

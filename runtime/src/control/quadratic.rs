@@ -66,7 +66,7 @@ impl<T: Real, const D: usize> Value<T, D> {
             Some(price) => (-price.component_mul(&end.pull), SMatrix::from_fn(|i, j| price[i] * end.metric[(i, j)])),
             None => {
                 let force = settings.multipliers - settings.weight * end.lack;
-                (end.slope.tr_mul(&force), end.slope.tr_mul(&(settings.weight * end.slope)))
+                (end.all_slopes.tr_mul(&force), end.slope.tr_mul(&(settings.weight * end.slope)))
             }
         };
         Self {
@@ -93,6 +93,12 @@ impl<T: Real, const D: usize> Value<T, D> {
         self.by_multiplier = transport.tr_mul(&self.by_multiplier);
         self.violation = transport.tr_mul(&self.violation);
         lack
+    }
+
+    /// Leaves out the curvature along changes that a constraint forbids: no plan makes them, and convex it need not be there.
+    #[cold]
+    pub(super) fn restrict(&mut self, tangent: &SMatrix<T, D, D>) {
+        self.hessian = tangent.tr_mul(&(self.hessian * tangent));
     }
 
     /// Whether P is positive semidefinite, but for parts √ε of its diagonal.

@@ -229,6 +229,12 @@ impl<S: Controlled<D, U, C, Scalar: Real>, B: Start<S, D, U, C>, const D: usize,
         self.time_after(self.steps)
     }
 
+    /// The place that a small change moves `x` to, where the constraint holds at the time t.
+    #[inline]
+    pub fn moved(&self, t: S::Scalar, x: &S::Place, change: &SVector<S::Scalar, D>) -> S::Place {
+        self.system.constrained_place(self.constants, t, &self.system.moved(x, change))
+    }
+
     /// f with the reference of a stage, at the time t.
     #[inline]
     pub fn follow(
@@ -238,7 +244,11 @@ impl<S: Controlled<D, U, C, Scalar: Real>, B: Start<S, D, U, C>, const D: usize,
         x: &S::Place,
         u: &SVector<S::Scalar, U>,
     ) -> Result<S::Place, Error> {
-        self.constants.at(&stage.reference, |constants| self.system.follow(constants, t, x, u))
+        if S::REFERS_IN_STEPS {
+            self.constants.at(&stage.reference, |constants| self.system.follow(constants, t, x, u))
+        } else {
+            self.system.follow(self.constants, t, x, u)
+        }
     }
 
     /// ℓ with the reference of a stage, at the time t.
@@ -388,9 +398,17 @@ impl<
         };
         let is_wrong = |value: &Value<T, D>| settings.is_guarded() && !value.is_convex();
         let mut is_bent = false;
+        let problem = &self.problem;
+        let tangent = problem.system.tangent_projector(problem.constants, problem.end_time(), &self.last);
+        if let Some(tangent) = &tangent {
+            value.restrict(tangent);
+        }
         if let Some(conditions) = self.problem.conditions(&self.last, &force).filter(|_| !settings.is_straight) {
             let straight = value.hessian;
             value.hessian += conditions.curvature;
+            if let Some(tangent) = &tangent {
+                value.restrict(tangent);
+            }
             if is_wrong(value) {
                 (value.hessian, is_bent) = (straight, true);
             }
@@ -475,6 +493,7 @@ impl<
                 let costate = if is_straight { SVector::zeros() } else { value.costate };
                 problem.expand(stage, t, &costate)
             };
+            let tangent = system.tangent_projector(problem.constants, t, &stage.place);
             // its model, with the curvature of its bounds or without
             let mut model = |value: &Value<T, D>, step: &Expansion<S::Place, T, D, U>, is_straight: bool| {
                 let mut step = *step;
@@ -488,7 +507,10 @@ impl<
                     bounds_places |= bounds.by_place.iter().any(|slope| *slope != zero);
                 }
                 let violated = bounded.as_ref().map_or(zero, |bounded| bounded.violated);
-                let (policy, before) = Policy::of(&step, bounded, value, settings.curvature);
+                let (policy, mut before) = Policy::of(&step, bounded, value, settings.curvature);
+                if let Some(tangent) = &tangent {
+                    before.restrict(tangent);
+                }
                 Ok::<_, Error>((policy, before, violated))
             };
             let mut step = expand(&value, settings.is_straight)?;

@@ -70,11 +70,12 @@ macro_rules! modules {
 
 clebsch_tests::every_scene!(modules);
 
-/// Systems that are not stepped here. `follower`, `frugal_car`, `gripping_disc`, `hopper`, `regulator`, `telescope`, `unicycle` and `wheeled_car` are planned, in the tests of control.
+/// Systems that are not stepped here. `driven_sleigh`, `follower`, `frugal_car`, `gripping_disc`, `hopper`, `regulator`, `telescope`, `unicycle` and `wheeled_car` are planned, in the tests of control.
 /// `annotated_body` has private fields. `cosserat_rod`, `harmonic_map`, `sine_gordon` and `wave_map` are fields, whose tests step them on grids.
-const OTHERS: [&str; 14] = [
+const OTHERS: [&str; 15] = [
     "annotated_body",
     "cosserat_rod",
+    "driven_sleigh",
     "follower",
     "frugal_car",
     "gripping_disc",

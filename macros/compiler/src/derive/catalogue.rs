@@ -366,6 +366,8 @@ catalogue! {
     ByInput = unlisted("", Hot);
     /// The second derivatives of β·F⁺ℓd + κ·F⁻ℓd along the motions that leave F as it is, those of q⁺ alone, and the inputs.
     Bend = unlisted("", Hot);
+    /// The derivatives along the motions of both ends of the slopes with respect to the multipliers of a constraint and to N⁺.
+    Crossed = unlisted("", Hot);
     /// ± ½ μ·[E_i, E_j].
     Bracket = unlisted("", Hot);
     /// Where forces take the inputs: ℓ, ∂ℓ/∂η, ∂ℓ/∂u and the second derivatives.

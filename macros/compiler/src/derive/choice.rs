@@ -215,6 +215,7 @@ impl<'a, 'g> Choice<'a, 'g> {
             (Id::Bend, StepOfChoice::Forced(bend)) => {
                 vec![at.entries(Shape::square(2 * m + u), |i, j| symmetric(&bend.curvature, i, j))]
             }
+            (Id::Crossed, StepOfChoice::Forced(bend)) if !bend.crossed.is_empty() => vec![at.columns(&bend.crossed)],
             (Id::Bracket, StepOfChoice::Forced(bend)) => {
                 vec![at.entries(Shape::square(m), |i, j| bend.bracket[i][j])]
             }

@@ -11,7 +11,7 @@ use clebsch_symbolic::{Block, Chart, Elements, Expr, IntoList, Property, Role, S
 use super::SystemFormulas;
 use super::choice::{Direction, EndTarget, Endpoint, Jet, OnEdge, Steering};
 use super::exact::{by_inertia, inertia_inverse};
-use super::variation::Source;
+use super::variation::{ReactionTerms, Source};
 use super::{Energy, cayley, force};
 use crate::model::{Discretization, EndPrice, Factor, Motion, Side, Steered, System};
 
@@ -301,17 +301,25 @@ pub struct Bend<'g> {
     pub after_by_input: Vec<Expr<'g>>,
     /// β·∂F⁺ℓd + κ·∂F⁻ℓd along h and t.
     pub by_time: [Expr<'g>; 2],
+    /// Where a constraint acts, the derivatives along η and ζ of the slopes with respect to its multipliers λ and ν and to N⁺.
+    pub crossed: Vec<Expr<'g>>,
 }
 
-/// The derivatives of an edge for a choice of the inputs of forces.
+/// The derivatives of an edge for a choice of the inputs of forces. A constraint adds its terms to β·F⁺ℓd + κ·F⁻ℓd.
 pub(super) fn bend<'g>(
     formulas: &SystemFormulas<'g>,
     (before, after): (Expr<'g>, Expr<'g>),
     ends: Vec<Direction<'g>>,
+    constraint: Option<ReactionTerms<'g>>,
 ) -> Bend<'g> {
     let (symbols, inputs) = (&formulas.symbols, formulas.inputs());
     let costate = formulas.model.graph.below(&symbols.momenta);
-    let function = costate.dot(after) + symbols.multiplier.dot(before);
+    let mut function = costate.dot(after) + symbols.multiplier.dot(before);
+    let mut crossed = Vec::new();
+    if let Some(ReactionTerms { terms, slopes }) = constraint {
+        function = function + terms;
+        crossed = ends.each(|direction| slopes.differential(direction));
+    }
     let columns = |momentum: Expr<'g>| inputs.each(|input| momentum.differential(input));
     Bend {
         bracket: bracket(&formulas.model, costate),
@@ -319,6 +327,7 @@ pub(super) fn bend<'g>(
         before_by_input: columns(before),
         after_by_input: columns(after),
         by_time: formulas.by_time(function),
+        crossed,
     }
 }
 

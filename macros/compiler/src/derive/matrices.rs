@@ -100,15 +100,16 @@ impl<'g> MechanicsFormulas<'g> {
             let [start, end] = constraint.rows.map(|rows| rows.map(|rows| at.whole(rows)).to_vec());
             let at_start = constraint.at_start.each_ref().map(along_motions);
             let at_end = constraint.at_end.each_ref().map(along_motions);
-            let slopes = constraint.slopes.each_ref();
-            let [slopes_at_start, slopes_at_end] =
-                slopes.map(|slopes| slopes.each_ref().map(|columns| at.columns(columns)).to_vec());
-            [
+            let mut kernels = vec![
                 (Id::ConstraintAtStart(index), [start.as_slice(), &at_start].concat()),
                 (Id::ConstraintAtEnd(index), [end.as_slice(), &at_end].concat()),
-                (Id::SlopesAtStart(index), slopes_at_start),
-                (Id::SlopesAtEnd(index), slopes_at_end),
-            ]
+            ];
+            if variation.slopes.is_some() {
+                let slopes = constraint.slopes.each_ref();
+                let of_both = slopes.map(|slopes| slopes.each_ref().map(|columns| at.columns(columns)).to_vec());
+                kernels.extend([Id::SlopesAtStart(index), Id::SlopesAtEnd(index)].into_iter().zip(of_both));
+            }
+            kernels
         }));
         kernels
     }

@@ -12,6 +12,7 @@ use crate::diagnostic::Diagnostics;
 use crate::model::features::{self, Feature, Found};
 use crate::model::{Mechanics, Side, System};
 pub use constraint::ConstraintDerivatives;
+pub(super) use constraint::ReactionTerms;
 
 /// ℓd of an edge with its first and second derivatives, as functions of q, F and q⁺. Components are those of all factors, and each
 /// derivative is a vector that is linear in η, the symbols of the algebra.
@@ -145,7 +146,10 @@ impl<'g> Source<'_, 'g> {
             carried: [model.graph.below(&adjoint), first.differential(&together), last.differential(&together)],
             constraint: constraint.map(|constraint| self.constraint(constraint, &together, ends)),
             slopes: (!self.quantities.is_empty()).then(|| both([first, last], slopes)),
-            bend: model.control.as_ref().map(|_| control::bend(system, (first, last), self.ends())),
+            bend: model.control.as_ref().map(|_| {
+                let reactions = constraint.map(|constraint| self.reactions(constraint, ends));
+                control::bend(system, (first, last), self.ends(), reactions)
+            }),
         }
     }
 

@@ -2,15 +2,15 @@
 
 use clebsch_symbolic::{Elements, Role, Shape, both};
 use proc_macro2::TokenStream;
-use quote::quote;
+use quote::{format_ident, quote};
 
-use super::SystemEmitter;
 use super::block::{Block, leaf, matrix};
 use super::function::{Function, Words};
 use super::functions::{
     BOUNDED, BOUNDED_ON_EDGE, ENDED, EXPANDED, EXPANDED_ON_EDGE, FORCED, PRICED, PRICED_ON_EDGE, SOFT, STEERED,
 };
-use super::scope::{nested_type, size};
+use super::scope::{REACTIONS, nested_type, size};
+use super::{SystemEmitter, flag};
 use crate::derive::Id;
 use crate::lower::Input;
 
@@ -25,6 +25,10 @@ pub(super) struct ControlTypes<'a> {
     pub target: (Vec<&'a str>, usize),
     /// The types of the references of a step and of the end, where there are any.
     pub references: Option<[TokenStream; 2]>,
+    /// Whether a constraint acts in steps.
+    pub is_constrained: bool,
+    /// Whether steps read references.
+    pub refers_in_steps: bool,
 }
 
 impl ControlTypes<'_> {
@@ -34,8 +38,10 @@ impl ControlTypes<'_> {
         block: &Block<'_>,
         functions: impl FnOnce(&Words<'_>) -> TokenStream,
     ) -> TokenStream {
-        let ControlTypes { is_steered, inputs, bounds: (bounds, equal), target: (target, equations), references } =
-            self;
+        let ControlTypes { is_steered, inputs, bounds: (bounds, equal), references, .. } = self;
+        let (target, equations) = &self.target;
+        let is_constrained = self.is_constrained.then(|| flag("IS_CONSTRAINED", true));
+        let refers = (references.is_some() && !self.refers_in_steps).then(|| flag("REFERS_IN_STEPS", false));
         let equal = (*equal > 0).then(|| {
             let equal = size(*equal);
             quote!(const EQUAL_BOUNDS: ::core::primitive::usize = #equal;)
@@ -64,6 +70,7 @@ impl ControlTypes<'_> {
                 "EndpointExpansion" => quote!(runtime::EndpointExpansion<T, #d>),
                 "TargetExpansion" => quote!(runtime::TargetExpansion<T, #d>),
                 "Costates" => matrix(dimension, 1),
+                "Changes" => matrix(dimension, dimension),
                 "Input" => matrix(*inputs, 1),
                 "Bounds" => matrix(bounds.len(), 1),
                 _ => return None,
@@ -77,6 +84,8 @@ impl ControlTypes<'_> {
                 const NAME: &'static ::core::primitive::str = #name;
                 const BOUNDS: [&'static ::core::primitive::str; #c] = [#(#bounds),*];
                 #equal
+                #is_constrained
+                #refers
                 const MOTIONS: ::core::primitive::usize = #motions;
                 #target
 
@@ -101,6 +110,8 @@ impl SystemEmitter<'_, '_> {
             bounds: (control.bounds.each(|bound| bound.text.as_str()), control.equations()),
             target: self.conditions_as_written(),
             references: self.reference_types(),
+            is_constrained: self.reactions.is_some(),
+            refers_in_steps: self.moves_by_reference(),
         };
         let scope = self.scope_of_system();
         let functions = |words: &Words<'_>| {
@@ -119,8 +130,15 @@ impl SystemEmitter<'_, '_> {
             ];
             let written = tables.map(|table| {
                 self.functions(table, (0, 0), &words, |function, kernel| {
+                    if function.kernel == Id::Crossed && kernel.is_none() {
+                        return None;
+                    }
                     let body = function.written(&scope, kernel, &words)?;
                     let body = body.after(self.references_of(function, &types));
+                    let body = match self.titled_with_constraint(function) {
+                        Some(title) => body.titled(title),
+                        None => body,
+                    };
                     let is_short = ["follow", "price", "bounds"].contains(&function.name);
                     Some(if is_short { body.inlined(quote!(#[inline])) } else { body })
                 })
@@ -128,6 +146,22 @@ impl SystemEmitter<'_, '_> {
             quote!(#(#written)*)
         };
         Some(types.implementation(self, functions))
+    }
+
+    /// The documentation of second derivatives where a constraint acts in steps.
+    fn titled_with_constraint(&self, function: &Function) -> Option<&'static str> {
+        self.reactions?;
+        match function.name {
+            "expand" => Some(
+                "The forced step with its derivatives, and the second derivatives of ℓ + λ·(η′, N⁺). With the multipliers of all equations of the step \
+                 they are those of α·η′ + β·(F⁺ℓd + A⁺ᵀν) + ρ·(A⁺Σ⁻¹N⁺ − b) + κ·(F⁻ℓd − Aᵀλ − N) + σ·ψ. η′ contributes ± ½ α·[Ad η, ζ].",
+            ),
+            "bounds_expanded" if self.on_edge.bounds => Some(
+                "The bounds with their derivatives, and the second derivatives of z·a, those of z·a + κ·(F⁻ℓd − Aᵀλ − N) + σ·ψ with the \
+                 multipliers κ and σ of the step.",
+            ),
+            _ => None,
+        }
     }
 
     /// The conditions of the end, and the number of equations among them.
@@ -154,7 +188,9 @@ impl SystemEmitter<'_, '_> {
             "follow" | "expand" | "price_of_time" if self.moves_by_reference() => {
                 quote!(#referring runtime::check_given(reference)?; #input)
             }
-            "follow" => quote!(let constants = &constants.constants;),
+            "follow" | "check_constraint" | "constrained_place" | "tangent_projector" | "independent" => {
+                quote!(let constants = &constants.constants;)
+            }
             "endpoint" | "endpoint_expanded" | "target_expanded" => {
                 quote!(let runtime::Referring { constants, end_reference, .. } = constants;)
             }
@@ -275,10 +311,59 @@ impl SystemEmitter<'_, '_> {
                     let (before, after): (runtime::SMatrix<T, #m, #u>, runtime::SMatrix<T, #m, #u>) = { #locals (#before, #after) };
                 }
             }
-            "Linked" => linked(quote!(new(&edge, &before, &after, costate))),
-            "Pushed" => linked(quote!(priced(&edge, &before, &after, costate, &pushed))),
+            "Linked" => {
+                self.linked(types, quote!(new(&edge, &before, &after, costate)), quote!(runtime::Space::origin()))
+            }
+            "Pushed" => self.linked(types, quote!(priced(&edge, &before, &after, costate, &pushed)), quote!(pushed)),
+            // the changes of the multipliers of a constraint, with its own terms
+            "Reacting" => match self.kernels.find(Id::Crossed) {
+                Some(kernel) if !kernel.vanishes() => {
+                    let crossed = body(Id::Crossed);
+                    quote!(let link = link.crossed(&#crossed);)
+                }
+                _ => TokenStream::new(),
+            },
+            "Rows" => {
+                let [equations, quantities, places] = self.reactions?;
+                let m = self.dimension;
+                let [m, d, r, p, k] = [m, 2 * m, equations, quantities, places].map(size);
+                quote!(runtime::Declared, #m, #d, #r, #p, #k)
+            }
+            "Landed" if self.reactions.is_some() => quote!(landed),
+            "Landed" => quote!(edge.momentum),
             _ => return None,
         })
+    }
+
+    /// The linearised step over an edge, with the costate at its end and the multipliers of its equation. It is `made` without a constraint.
+    fn linked(&self, types: &ControlTypes<'_>, made: TokenStream, pushed: TokenStream) -> TokenStream {
+        let refused = quote!(ok_or(runtime::Error::SingularTangent { step_size: runtime::Scalar::to_f64(h) })?);
+        let Some([equations, quantities, _]) = self.reactions else {
+            return quote! {
+                let link = runtime::Link::#made.#refused;
+                let (mu, kappa) = (&link.costate, &link.multiplier);
+            };
+        };
+        let m = self.dimension;
+        let [r, p, m, d, u] = [equations, quantities, m, 2 * m, types.inputs].map(size);
+        let names = REACTIONS.map(|name| format_ident!("{name}"));
+        let inverse = self.kernels_read_inverse([Id::Bend, Id::Crossed, Id::PriceOfTime]);
+        let inverse = inverse.then(|| quote!(let inertia_inverse = &constants.inertia_inverse;));
+        quote! {
+            let link = runtime::ConstrainedLink::<T, #m, #d, #u, #r>::new::<Self, runtime::Declared, #p>(
+                self, (constants, t), ((q, d, next, u), n), &edge, (&before, &after), (costate, &#pushed),
+            ).#refused;
+            let (mu, kappa) = (link.costate, link.multiplier);
+            let runtime::Reactions { #(#names),* } = link.reactions;
+            #inverse
+        }
+    }
+
+    /// Whether some of these kernels read Σ⁻¹ of the constants.
+    fn kernels_read_inverse(&self, kernels: [Id; 3]) -> bool {
+        let is_inverse = |(input, _): (&Input, Shape)| input.role == Role::InertiaInverse;
+        let found = kernels.into_iter().filter_map(|kernel| self.kernels.find(kernel));
+        found.flat_map(|kernel| kernel.inputs()).any(is_inverse)
     }
 
     /// Whether the price of the end takes the velocity there.
@@ -308,13 +393,5 @@ impl SystemEmitter<'_, '_> {
         let (locals, [price, by_time]) = (scope.locals(kernel), both([0, 1], |k| scope.scalar(kernel, k)));
         let [slope, curvature] = both([2, 3], |k| scope.output(kernel, k));
         Some(quote!(#locals runtime::endpoint(#price, #by_time, &#slope, &#curvature)))
-    }
-}
-
-/// The linearised step over an edge, with the costate at its end and the multipliers of its equation.
-fn linked(made: TokenStream) -> TokenStream {
-    quote! {
-        let link = runtime::Link::#made.ok_or(runtime::Error::SingularTangent { step_size: runtime::Scalar::to_f64(h) })?;
-        let (mu, kappa) = (&link.costate, &link.multiplier);
     }
 }

@@ -492,6 +492,18 @@ functions! {
     FORCED(false) {
         fn prepare(&self, h: T) -> Result<Constants, Error> { Id::Constants } = { runtime::Ok(Prepared) }
         fn check_place(&self, x: &(Q, Mu)) -> Result<(), Error> { Id::Membership } = { runtime::check_state(self, &x.0, &x.1) }
+        fn check_constraint(&self, constants: &Constants, t: T, x: &(Q, Mu), moves: Bool) -> Result<(), Error> { Id::Crossed => } = {
+            runtime::check_constraint(self, &constants.0, (t, constants.1), x, moves)
+        }
+        fn constrained_place(&self, constants: &Constants, t: T, x: &(Q, Mu)) -> (Q, Mu) { Id::Crossed => } = {
+            runtime::placed_state(self, &constants.0, t, x)
+        }
+        fn tangent_projector(&self, constants: &Constants, t: T, x: &(Q, Mu)) -> Option<Changes> { Id::Crossed => } = {
+            runtime::tangent_projector::<Self, Rows>(self, &constants.0, t - constants.1, x)
+        }
+        fn independent(&self, constants: &Constants, t: T, x: &(Q, Mu), lengths: &Costates) -> Option<Changes> { Id::Crossed => } = {
+            runtime::independent::<Self, Rows>(self, &constants.0, t - constants.1, x, lengths)
+        }
         /// The forced step.
         fn follow(&self, constants: &Constants, t: T, x: &(Q, Mu), u: &Input) -> Result<(Q, Mu), Error> { Id::Increment => Id::Controls } = {
             runtime::forced_step(self, &constants.0, t, x, u)
@@ -530,6 +542,7 @@ functions! {
         } = {
             Crossed Linked
             let curvature: Curvature = Bend;
+            Reacting
             let mu = &link.driving;
             let bracket: Square = Bracket;
             let price = {
@@ -538,7 +551,7 @@ functions! {
                     price: Number0, by_motion: Value1, by_input: Value2, motions: Value3, mixed: Value4, inputs: Value5,
                 }
             };
-            let next = runtime::check_reached((*next, edge.momentum))?;
+            let next = runtime::check_reached((*next, Landed))?;
             runtime::Ok(link.expansion(next, &curvature, &bracket, &price))
         }
         /// d/dh (ℓ + λ·(η′, N⁺)), the start of the step moving with h.
@@ -563,9 +576,10 @@ functions! {
             let pushed = runtime::along_end(&slope);
             Pushed
             let curvature: Curvature = Bend;
+            Reacting
             let mu = &link.driving;
             let bracket: Square = Bracket;
-            let next = runtime::check_reached((*next, edge.momentum))?;
+            let next = runtime::check_reached((*next, Landed))?;
             runtime::Ok(link.expansion_of_edge(next, &curvature, &bracket, (price, &slope, &bend)))
         }
         /// d/dh (ℓ + λ·(η′, N⁺)), the start of the step moving with h.
@@ -624,6 +638,7 @@ functions! {
             let pushed = runtime::pushed_along_end(&slopes, z);
             Pushed
             let curvature: Curvature = Bend;
+            Reacting
             runtime::Ok(link.bounds(values, &slopes, &(curvature + bend)))
         }
     }

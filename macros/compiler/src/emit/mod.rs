@@ -133,6 +133,9 @@ struct SystemEmitter<'a, 'g> {
     kernels: &'a KernelTable,
     /// The functions of inputs that take the velocity of a step.
     on_edge: OnEdge,
+    /// Where a constraint acts in steps, three numbers: its equations, the quantities that steps are differentiated by, and the equations on
+    /// places.
+    reactions: Option<[usize; 3]>,
     /// For each component of η, the chart coordinate of exp η to first order, as numerator and denominator.
     slopes_of_retraction: Vec<(i64, i64)>,
     keeps_matrices: bool,
@@ -168,6 +171,10 @@ impl<'a, 'g> Emitter<'a, 'g> {
         let system = SystemEmitter {
             keeps_matrices: program.form.keeps_matrices(),
             is_of_field: model.field.is_some(),
+            reactions: formulas.constraint.as_ref().map(|constraint| {
+                let places = constraint.places.as_ref().map_or(0, |places| places.rows.shape().rows);
+                [constraint.rows.shape().rows, formulas.quantities.len(), places]
+            }),
             ..system
         };
         Emitter { system, program, formulas, model }
@@ -266,6 +273,7 @@ impl<'a, 'g> SystemEmitter<'a, 'g> {
             rows,
             kernels,
             on_edge: formulas.steering.as_ref().map(|steering| steering.on_edge).unwrap_or_default(),
+            reactions: None,
             slopes_of_retraction: formulas.slopes_of_retraction(),
             keeps_matrices: false,
             is_of_field: false,

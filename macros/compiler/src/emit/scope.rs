@@ -161,6 +161,11 @@ impl Scope<'_, '_> {
                 quote!(spacing[#direction])
             }
             Role::Multiplier => quote!(kappa #index),
+            Role::Reaction(number) => {
+                // by construction: there are as many
+                let name = REACTIONS.get(number).map(|name| format_ident!("{name}"));
+                quote!(#name #index)
+            }
             Role::Weight => quote!(z #index),
             Role::ChartWeight(number) => {
                 let number = size(number);
@@ -307,6 +312,9 @@ impl Scope<'_, '_> {
         list(entries.iter().map(|entry| self.code(entry, false)))
     }
 }
+
+/// The names of the multipliers of a constraint.
+pub(super) const REACTIONS: [&str; 5] = ["lambda", "nu", "landed", "sigma", "rho"];
 
 /// More entries are no longer told apart in a row.
 const LONGEST_ROW: usize = 8;

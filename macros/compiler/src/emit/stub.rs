@@ -94,6 +94,8 @@ fn controlled(block: &Block<'_>, declaration: &Declaration, outline: &Outline) -
         bounds: (vec![""; bounds], 0),
         target: (Vec::new(), 0),
         references: are_any.then(|| outline.references.each_ref().map(nested)),
+        is_constrained: false,
+        refers_in_steps: true,
     };
     let step = if types.is_steered { [STEERED, &[]] } else { [FORCED, EXPANDED] };
     let functions = step.into_iter().chain([PRICED, BOUNDED, ENDED]).flatten();

@@ -139,6 +139,11 @@ impl Kernel {
         self.outputs.iter().flat_map(|(_, entries)| entries)
     }
 
+    /// Whether all of its entries are zero.
+    pub fn vanishes(&self) -> bool {
+        self.entries().all(|entry| matches!(entry, Code::Number(value) if value.is_zero()))
+    }
+
     /// Looks at the code of its terms and outputs, and at all parts of it.
     pub(super) fn visit<'a>(&'a self, see: &mut dyn FnMut(&'a Code)) {
         self.locals.iter().chain(self.entries()).for_each(|code| code.visit(see));

@@ -119,6 +119,7 @@ const OF_STEERING: Names<Id> = &[
 const OF_CHOICE: Names<Id> = &[
     ("by_input", Id::ByInput),
     ("bend", Id::Bend),
+    ("crossed", Id::Crossed),
     ("bracket", Id::Bracket),
     ("price", Id::Price),
     ("price_expanded", Id::PriceExpanded),

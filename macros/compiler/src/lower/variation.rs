@@ -45,6 +45,9 @@ impl<'g> Maker<'_, 'g> {
             self.orbit_metric();
         } else {
             [Id::ByInput, Id::Bend, Id::Bracket].into_iter().for_each(|id| made(self, id));
+            if !choice.matrices(Id::Crossed).is_empty() {
+                made(self, Id::Crossed);
+            }
         }
         self.add(Id::Approach, |scalars, _| stack(scalars, &choice.steering.approach, Hoisting::Nothing));
         self.rows([Id::Price]);

@@ -88,7 +88,7 @@ impl<'g> ActedSystem<'_, '_, 'g> {
                 return None;
             }
             refuse!(self.context.diagnostics, closure.head, "the {} introduce no input", closure.key;
-                help "give its type to the last argument, as in `u: Vector2`");
+                help "write the input behind the configuration, with its type, as in `u: Vector2`");
         };
         let input = self.read_input(argument)?;
         let scope = self.arguments.scope(&matched, &[(Slot::Input, Some(input.value()))]);

@@ -37,11 +37,9 @@ impl<'g> ActedSystem<'_, '_, 'g> {
             let error = error!(closure.head, "both `force` and `force_on` take an input";
                 help "let one of the two take all of the input, as a tuple if it has parts";
                 note "a step has one input, `stepper.step_with(&state, &input)`");
-            let name = closure.arguments.iter().find(|argument| argument.ty.is_some());
-            let reference = name.filter(|_| declaration.control.is_some()).map(|argument| argument.pattern.spell());
-            let help = reference.map(|name| {
-                format!("if `{name}` is a reference, write it here without its type, which stands in the effort")
-            });
+            let help = declaration.control.is_some().then_some(
+                "if one of them is a reference, write it there without its type, which stands in the effort",
+            );
             return self.context.diagnostics.refuse(error.maybe_help(help));
         }
         let (of_group, on_leaves) = of_group.zip(on_leaves)?;

@@ -177,7 +177,10 @@ impl<'d> Matched<'d> {
         if slots.contains(&Slot::Input) && slots.contains(&Slot::Reference) {
             // the first argument with a type; those behind it are references
             let input = arguments.iter().position(|argument| argument.ty.is_some());
-            let names_it = |argument: &Argument| names.input.is_some_and(|known| known.matches(&argument.pattern));
+            // given twice, an error of its own
+            let names_it = |argument: &Argument| {
+                input.is_some() && names.input.is_some_and(|known| known.matches(&argument.pattern))
+            };
             for (position, argument) in arguments.iter().enumerate() {
                 if Some(position) == input || taken[position].is_none() && names_it(argument) {
                     taken[position] = Some(Slot::Input);
@@ -426,7 +429,7 @@ impl<'d> Matched<'d> {
         let head = arguments.iter().map(|argument| argument.pattern.spell());
         Some(error!(arguments[last].pattern.place(), "`{input}` is new in the {key} and has no type";
             help "write `|{}: Vector3|`, with the type of the input", joined(head);
-            note "an input is the last argument, with its type; the velocity before it has none"))
+            note "an input stands behind the velocity, with its type; the velocity has none"))
     }
 
     /// The error for a new name behind all others, in a closure that may read references.

@@ -5,6 +5,7 @@
 #![allow(missing_docs)]
 
 mod closed_forms;
+mod constraints;
 mod derivatives;
 mod equations;
 mod estimates;

@@ -4,12 +4,13 @@ use crate::arbitrary::{cases, definite, matrix, vector};
 use crate::bodies::H;
 use crate::runner::proptest;
 use clebsch::__private::{
-    At, ConstrainedSubstep, Correction, Parts, Scheme, Substep, VariedSubstep, Violation, check_place, constrained,
-    multipliers, placed, reactions, slopes_with_constraint, violation, with_constraint,
+    At, ConstrainedLink, ConstrainedSubstep, Correction, Parts, Price, Scheme, Substep, VariedSubstep, Violation,
+    check_constraint, check_place, constrained, independent, multipliers, pair, placed, placed_state, reactions,
+    slopes_with_constraint, tangent_projector, violation, with_constraint,
 };
-use clebsch::{Clebsch, Constrained, Declared, Error, Method, Reacting};
+use clebsch::{Clebsch, Constrained, Controlled, Declared, Error, Method, Reacting, Variational};
 use clebsch_tests::oracle::near::assert_near;
-use nalgebra::{Matrix1, Matrix1x3, Matrix2, Matrix2x3, Matrix3, Vector1, Vector3};
+use nalgebra::{Matrix1, Matrix1x3, Matrix2, Matrix2x3, Matrix3, Matrix3x2, SMatrix, Vector1, Vector2, Vector3};
 use proptest::prelude::*;
 
 const NEAR: f64 = 1e-12;
@@ -54,6 +55,21 @@ pub struct Driven {
     constraint = |t, x| [x.norm_squared() == 1 + self.growth * t],
 )]
 pub struct Bead {
+    pub growth: f64,
+}
+
+/// A mass on a sphere with a force as input, which plans choose.
+#[derive(Clebsch, Clone, Debug)]
+#[clebsch(
+    action     = |a: Translation<3>, x: Vector3| x + a,
+    lagrangian = |v| self.mass * v.norm_squared() / 2,
+    force      = |v, u: Vector2| vector![u.x, u.y, 0] - v.norm_squared() * v / 9,
+    constraint = |t, x| [x.norm_squared() == 1 + self.growth * t],
+    effort     = |h, u| h * u.norm_squared() / 2,
+    emit       = [tangent],
+)]
+pub struct Pushed {
+    pub mass: f64,
     pub growth: f64,
 }
 
@@ -263,5 +279,95 @@ proptest! {
                 .expect("independent rows");
         let by_time = (end.by_inertia * after.column(11))[0];
         prop_assert!((by_time - 0.7).abs() < NEAR / H);
+    }
+
+    /// The projectors of plans leave states on the constraint, to first order, and known. Places come to it, and only those on it pass.
+    #[test]
+    fn plans_move_on_constraints(
+        mass in 0.5_f64..2.0, growth in -0.2_f64..0.2, t in 0.5_f64..1.0, x in vector::<3>(1.0), mu in vector::<3>(1.0),
+        (eta, nu) in (vector::<3>(1.0), vector::<3>(1.0)), far in 0.1_f64..0.5,
+    ) {
+        prop_assume!(x.norm() > 0.2);
+        let system = Pushed { mass, growth };
+        let constants = system.prepare(H)?;
+        let near = (x.normalize() * (1.0 + growth * t).sqrt() * 1.01, mu);
+        let on = system.constrained_place(&constants, t, &near);
+        prop_assert_eq!(placed_state(&system, &constants.0, t, &near), on);
+        prop_assert_eq!(system.check_constraint(&constants, t, &on, true), Ok(()));
+        prop_assert_eq!(check_constraint(&system, &constants.0, (t, H), &on, true), Ok(()));
+        let off = (on.0 * (1.0 + far), on.1);
+        let refused = system.check_constraint(&constants, t, &off, false);
+        let is_off = matches!(refused, Err(Error::OffConstraint { .. }));
+        prop_assert!(is_off, "{:?}", refused);
+        let leaving = (on.0, on.1 + on.0 * far);
+        prop_assert_eq!(system.check_constraint(&constants, t, &leaving, false), Ok(()));
+        let refused = system.check_constraint(&constants, t, &leaving, true);
+        let is_violated = matches!(refused, Err(Error::ConstraintViolated { .. }));
+        prop_assert!(is_violated, "{:?}", refused);
+
+        let projector = system.tangent_projector(&constants, t, &on).expect("independent rows");
+        let direct = tangent_projector::<_, Declared, 3, 6, 1, 6, 1>(&system, &constants.0, t - H, &on);
+        assert_near(&direct.expect("independent rows"), &projector, 1e-15, "P");
+        assert_near(&(projector * projector), &projector, 1e-12, "PP");
+        let delta = projector * pair::<f64, 3, 6>(&eta, &nu);
+        for epsilon in [1e-3, 1e-4] {
+            let moved = system.moved(&on, &(delta * epsilon));
+            let placed = system.constrained_place(&constants, t, &moved);
+            let apart = (placed.0 - moved.0).norm() + (placed.1 - moved.1).norm();
+            prop_assert!(apart < 40.0 * epsilon * epsilon, "{} at {}", apart, epsilon);
+        }
+        let lengths = pair::<f64, 3, 6>(&Vector3::new(1.0, 2.0, 3.0), &Vector3::repeat(1.0));
+        let known = system.independent(&constants, t, &on, &lengths).expect("independent rows");
+        let direct = independent::<_, Declared, 3, 6, 1, 6, 1>(&system, &constants.0, t - H, &on, &lengths);
+        assert_near(&direct.expect("independent rows"), &known, 1e-15, "the projector to what is known");
+        assert_near(&known.transpose(), &known, 1e-13, "the transpose");
+        assert_near(&(known * known), &known, 1e-12, "its square");
+        // no change on the constraint is lost
+        let seen = known * delta.component_mul(&lengths);
+        prop_assert!(seen.norm() > 1e-3 * delta.norm(), "{} of {}", seen.norm(), delta.norm());
+    }
+
+    /// A linearised step of a plan is that of the stepper, and prices of an edge and bounds go through the same derivatives.
+    #[test]
+    fn plans_have_the_derivatives_of_constrained_steps(
+        mass in 0.5_f64..2.0, growth in -0.2_f64..0.2, x in vector::<3>(1.0), mu in vector::<3>(1.0),
+        u in vector::<2>(1.0), costate in matrix::<6, 1>(1.0), slope in matrix::<8, 1>(1.0),
+    ) {
+        prop_assume!(x.norm() > 0.2);
+        let system = Pushed { mass, growth };
+        let stepper = system.clone().into_stepper(H)?;
+        let state = stepper.project(x.normalize(), mu)?;
+        let (next, tangent) = stepper.step_tangent_with(&state, &u)?;
+        let (q, mu, after) = (*state.configuration(), state.momentum(), *next.configuration());
+        let constants = system.prepare(H)?;
+        let step = system.expand(&constants, 0.0, &(q, mu), &u, &costate)?;
+        let of_places = step.by_place.fixed_view::<3, 3>(3, 0).into_owned();
+        assert_near(&of_places, &tangent.momentum_by_motion, NEAR, "∂ν′/∂η");
+
+        let d = after - q;
+        let ends = (&q, &d, &after, &u);
+        let edge = Variational::carried(&system, &constants.0, 0, 0.0, ends);
+        let push = Matrix3x2::identity() * H / 2.0;
+        let (kick, price) = (-push, Vector3::zeros());
+        let link = ConstrainedLink::<f64, 3, 6, 2, 1>::new::<_, Declared, 6>(
+            &system, (&constants.0, 0.0), (ends, &mu), &edge, (&kick, &push), (&costate, &price),
+        );
+        let link = link.expect("a regular step").crossed(&SMatrix::<f64, 5, 6>::zeros());
+        let none = Price {
+            price: 0.0, by_motion: Vector3::zeros(), by_input: Vector2::zeros(),
+            motions: Matrix3::zeros(), mixed: SMatrix::zeros(), inputs: SMatrix::zeros(),
+        };
+        let (flat, bracket) = (SMatrix::<f64, 8, 8>::zeros(), Matrix3::zeros());
+        let plain = link.expansion((), &flat, &bracket, &none);
+        assert_near(&plain.by_place, &step.by_place, NEAR, "A");
+        assert_near(&plain.by_input, &step.by_input, NEAR, "B");
+        let priced = link.expansion_of_edge((), &flat, &bracket, (1.0, &slope, &flat));
+        let bounded = link.bounds(Vector1::new(2.0), &slope.transpose(), &flat);
+        assert_near(&priced.price_by_place, &bounded.by_place.transpose(), NEAR, "the slope along places");
+        assert_near(&priced.price_by_input, &bounded.by_input.transpose(), NEAR, "the slope along inputs");
+        // along motions that leave F as it is, those of q⁺ alone, and inputs: ζ = η′ − η
+        let zeta = step.by_place.fixed_view::<3, 6>(0, 0) - SMatrix::<f64, 3, 6>::identity();
+        let expected = SMatrix::<f64, 3, 6>::identity().tr_mul(&slope.fixed_rows::<3>(0)) + zeta.tr_mul(&slope.fixed_rows::<3>(3));
+        assert_near(&priced.price_by_place, &expected, NEAR, "the slope of an edge");
     }
 }

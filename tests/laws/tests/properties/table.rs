@@ -46,6 +46,8 @@ pub const PROPERTIES: &[(&str, &[Property])] = &[
         ("velocities_obey_constraints",      &["Stepper::state_moving", "Stepper::project_at", "Constrained::momentum_of_velocity", "Clebsch::constrained", "Clebsch::constraint_defect", "Method::constrained", "Method::constraint_defect"]),
         ("places_obey_constraints",          &["check_place", "Clebsch::check_place"]),
         ("places_come_to_constraints",       &["placed", "Clebsch::placed", "Method::placed"]),
+        ("plans_move_on_constraints", &["Controlled::constrained_place", "placed_state", "Controlled::check_constraint", "check_constraint", "Controlled::tangent_projector", "tangent_projector", "Controlled::independent", "independent"]),
+        ("plans_have_the_derivatives_of_constrained_steps", &["ConstrainedLink::new", "ConstrainedLink::crossed", "ConstrainedLink::expansion", "ConstrainedLink::expansion_of_edge", "ConstrainedLink::bounds"]),
         ("edges_have_the_slopes_of_constraints", &["ConstrainedSubstep::end", "ConstrainedSubstep::at_start", "ConstrainedSubstep::at_end", "ConstrainedSubstep::slopes_at_start", "ConstrainedSubstep::slopes_at_end", "with_constraint", "slopes_with_constraint"]),
         ("constraints_push_along_their_rows", &["Substep::reaction", "Substep::projection", "Scheme::step_pushed", "Stepper::step_with_reactions", "Reacting::multipliers", "multipliers"]),
         ("reactions_hold_motions_on_constraints", &["Stepper::reactions", "Stepper::reactions_under", "Stepper::step_with_reactions_under", "Reacting::reactions_of_motion", "reactions"]),

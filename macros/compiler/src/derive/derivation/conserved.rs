@@ -25,8 +25,12 @@ pub(super) fn forces(formulas: &MechanicsFormulas<'_>) -> String {
     }
     if model.control.is_some() {
         let bounds = bounds(model).map_or("without bounds".to_string(), |bounds| format!("within {bounds}"));
+        let equations = match formulas.constraint {
+            Some(_) => "momentum equation and of its constraint",
+            None => "momentum equation",
+        };
         text += &format!(
-            "`control` chooses inputs of least price {bounds}: the step is differentiated twice, by the multipliers of its momentum equation.\n"
+            "`control` chooses inputs of least price {bounds}: the step is differentiated twice, by the multipliers of its {equations}.\n"
         );
         let OnEdge { price, bounds } = formulas.steering.as_ref().map(|steering| steering.on_edge).unwrap_or_default();
         let taken = match (price, bounds) {

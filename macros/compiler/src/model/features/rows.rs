@@ -15,7 +15,7 @@ const WITHOUT_MATRICES: &[Feature] =
 
 /// The refused features, the others, the message, the reason, and the replacement.
 #[rustfmt::skip]
-pub(super) const ROWS: [Row; 88] = [
+pub(super) const ROWS: [Row; 87] = [
     // inputs move the configuration
     row(&[Dynamics], &[Controls],
         "there are `controls` and `dynamics`, but one thing moves a configuration", "",
@@ -93,10 +93,6 @@ pub(super) const ROWS: [Row; 88] = [
         "it differentiates forces, and an opaque potential gives a value and a gradient, no second derivatives",
         "write the potential as a closure, or leave out the word"),
     // constraints
-    row(&[Constraint], &[Effort],
-        "the inputs of a system with a constraint cannot be chosen yet",
-        "a plan has the multipliers of all of its steps as further unknowns",
-        "leave out `effort`, or the constraint"),
     row(&[Boundary], &[Constraint],
         "{refused} is not for a system with a constraint yet",
         "the multipliers of places would be further unknowns of a path, and the motion of wheels makes no action critical",
