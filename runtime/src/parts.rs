@@ -140,9 +140,17 @@ pub trait Substep<const K: usize, M: Method<Self> = Declared>: Parts<M> {
         None
     }
 
-    /// Aᵀλ, the force of the constraint at the solution x for the momentum μ.
+    /// Aᵀλ, the force of the constraint at the solution x for the momentum μ and the input u.
     #[inline(always)]
-    fn reaction(&self, c: &M::Constants, t: T<Self>, q: &Q<Self>, mu: &Mu<Self>, x: &X<Self, M>) -> Option<Mu<Self>> {
+    fn reaction(
+        &self,
+        c: &M::Constants,
+        t: T<Self>,
+        q: &Q<Self>,
+        mu: &Mu<Self>,
+        x: &X<Self, M>,
+        u: &U<Self>,
+    ) -> Option<Mu<Self>> {
         None
     }
 

@@ -85,7 +85,7 @@ pub(super) fn substep<S: Substep<K, M>, M: Method<S>, const K: usize>(
     let target = with(mu, rest_apart::<S, M, K>(at, q), &mut at_rest, |mu, rest| plus(*mu, Some(*rest)));
     let x = system.solve(constants, t, q, target, u)?;
     let motion = system.motion(&x, || system.increment(&x));
-    let reaction = system.reaction(constants, t, q, target, &x);
+    let reaction = system.reaction(constants, t, q, target, &x, u);
     reaction.iter().for_each(&mut pushed);
     let mu = with(mu, reaction, &mut held_back, |mu, push| add(mu, push, &mut rests.1));
     let force = system.moving_force(constants, t, q, &x, u);

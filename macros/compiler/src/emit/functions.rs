@@ -260,7 +260,7 @@ functions! {
         /// The part of the impulse at the start of a step that depends on the velocity.
         fn moving_force(&self, c: &C, t: T, q: &Q, x: &X, u: &U) -> Option<Mu> { Id::MovingForce(0) => Id::Force }
         /// The force of the constraint, from the momentum that was solved for.
-        fn reaction(&self, c: &C, t: T, q: &Q, mu: &Mu, x: &X) -> Option<Mu> { Id::Reaction(0) }
+        fn reaction(&self, c: &C, t: T, q: &Q, mu: &Mu, x: &X, u: &U) -> Option<Mu> { Id::Reaction(0) }
         /// The change of the momentum after the move that brings it to the constraint at q⁺.
         fn projection(&self, c: &C, t: T, q: &Q, mu: &Mu) -> Option<Mu> { Id::Projection(0) }
         /// The impulse of the force at the end of a step.

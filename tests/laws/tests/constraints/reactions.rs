@@ -30,6 +30,30 @@ mod declared {
     /// Compositions of five steps.
     pub struct Fourth;
 
+    /// A mass on a rod, slowed by an input.
+    #[derive(Clebsch, Clone, Debug)]
+    #[clebsch(
+        action     = |a: Translation<2>, x: Vector2| x + a,
+        lagrangian = |v| self.mass * v.norm_squared() / 2,
+        force      = |v, drag: Vector1| -drag.x * v,
+        constraint = |x, v| [v.y == self.slope * v.x],
+    )]
+    pub struct OnRod {
+        pub mass: f64,
+        pub slope: f64,
+    }
+
+    /// The same on a line, without a rod.
+    #[derive(Clebsch, Clone, Debug)]
+    #[clebsch(
+        action     = |a: Translation<1>, x: Vector1| x + a,
+        lagrangian = |v| self.mass * v.norm_squared() / 2,
+        force      = |v, drag: Vector1| -drag.x * v,
+    )]
+    pub struct OnLine {
+        pub mass: f64,
+    }
+
     /// Spatial momenta: the group acts from the left. A linear term in the velocity and a potential act too.
     #[derive(Clebsch, Clone, Debug)]
     #[clebsch(
@@ -236,6 +260,24 @@ fn reactions_know_forces_and_inputs() -> Result<(), Error> {
     }
     let refused = stepper.reactions_under(&state, &Vector1::new(f64::NAN));
     assert_eq!(refused, Err(Error::NotFinite { name: "the input" }));
+    Ok(())
+}
+
+/// A mass on a slanted rod, which an input slows down, moves as one on a line does. The force of the rod knows the input.
+#[test]
+fn an_input_may_slow_a_guided_mass() -> Result<(), Error> {
+    let (mass, slope, drag) = (1.3, 0.75_f64, Vector1::new(0.8));
+    let length = slope.hypot(1.0);
+    let (rod, line) =
+        (declared::OnRod { mass, slope }.into_stepper(0.1)?, declared::OnLine { mass }.into_stepper(0.1)?);
+    let mut guided = rod.state_moving(Vector2::zeros(), Vector2::new(1.0, slope))?;
+    let mut free = line.state(Vector1::zeros(), Vector1::new(mass * length))?;
+    for _ in 0..20 {
+        (guided, free) = (rod.step_with(&guided, &drag)?, line.step_with(&free, &drag)?);
+        let along = guided.configuration().norm();
+        assert!((along - free.configuration().x).abs() < 1e-13, "{along} is not {}", free.configuration().x);
+        assert!((guided.momentum().norm() - free.momentum().x).abs() < 1e-13);
+    }
     Ok(())
 }
 

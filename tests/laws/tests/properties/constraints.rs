@@ -164,7 +164,7 @@ proptest! {
         let start = stepper.state_moving(x, Vector3::new(v.x, v.y, x.y * v.x))?;
         let kicked = start.momentum() + Substep::<0>::start_kick(&system, &constants, 0.0, &x).expect("a kick");
         let moved = Substep::<0>::solve(&system, &constants, 0.0, &x, &kicked, &())?;
-        let push = Substep::<0>::reaction(&system, &constants, 0.0, &x, &kicked, &moved).expect("a force");
+        let push = Substep::<0>::reaction(&system, &constants, 0.0, &x, &kicked, &moved, &()).expect("a force");
         let row = |x: &Vector3<f64>| Vector3::new(-x.y, 0.0, 1.0);
         prop_assert!(push.cross(&row(&x)).norm() < NEAR);
         assert_near(&(kicked + push), &(mass * moved / H), NEAR, "the momentum of the step");
