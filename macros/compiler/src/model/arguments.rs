@@ -79,7 +79,8 @@ pub(super) fn of_action<'d>(
         _ => {
             let mut forces = declaration.force.iter().chain(&declaration.force_on);
             // references are behind the input, or have their types in the price or in the bounds
-            let choice = declaration.control.iter().flat_map(|choice| [Some(&choice.price), choice.bounds.as_ref()]);
+            let choice =
+                declaration.choice().into_iter().flat_map(|choice| [Some(&choice.price), choice.bounds.as_ref()]);
             let typed =
                 choice.flatten().flat_map(|closure| &closure.arguments).filter(|argument| argument.ty.is_some());
             let references: Vec<&Pattern> = typed.map(|argument| &argument.pattern).into_list();

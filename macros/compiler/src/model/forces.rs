@@ -25,7 +25,7 @@ struct ReadForce<'g> {
 impl<'g> ActedSystem<'_, '_, 'g> {
     /// The forces, if there are any, with their input; `None` if a closure has an error, which was reported.
     pub fn forces(&mut self, declaration: &Declaration) -> Option<(Option<Force<'g>>, Space<'g>)> {
-        let slots = if declaration.control.is_some() { CHOSEN_FORCE } else { FORCE };
+        let slots = if declaration.choice().is_some() { CHOSEN_FORCE } else { FORCE };
         let of_group = optional(declaration.force.as_ref(), |closure| self.force(closure, slots));
         let on_leaves = optional(declaration.force_on.as_ref(), |closure| self.force(closure, slots));
         let takes_input =
@@ -37,7 +37,7 @@ impl<'g> ActedSystem<'_, '_, 'g> {
             let error = error!(closure.head, "both `force` and `force_on` take an input";
                 help "let one of the two take all of the input, as a tuple if it has parts";
                 note "a step has one input, `stepper.step_with(&state, &input)`");
-            let help = declaration.control.is_some().then_some(
+            let help = declaration.choice().is_some().then_some(
                 "if one of them is a reference, write it there without its type, which stands in the effort",
             );
             return self.context.diagnostics.refuse(error.maybe_help(help));

@@ -31,8 +31,9 @@ impl<'d> Introduced<'d> {
         let is_new = |argument: &&Argument| !names.is_other(&argument.pattern);
         let mut introduced = Introduced::default();
         let motion = Some(declaration.kinetic.closure()).filter(|_| declaration.kinetic.is_steered());
-        let choice = declaration.control.iter().flat_map(|choice| [Some(&choice.price), choice.bounds.as_ref()]);
-        let forces = || declaration.force.iter().chain(&declaration.force_on).filter(|_| declaration.control.is_some());
+        let choice = declaration.choice().into_iter().flat_map(|choice| [Some(&choice.price), choice.bounds.as_ref()]);
+        let forces =
+            || declaration.force.iter().chain(&declaration.force_on).filter(|_| declaration.choice().is_some());
         // the first type in a force is that of its input
         let behind_input = |closure: &'d Closure| {
             let typed = closure.arguments.iter().position(|argument| argument.ty.is_some());

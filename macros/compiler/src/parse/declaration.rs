@@ -40,6 +40,8 @@ pub struct Declaration {
     pub spaces: Vec<Closure>,
     /// The price and the bounds of a choice of inputs; `None` if there is no choice.
     pub control: Option<Choice>,
+    /// In the declaration of a method, the choice of its system. Nothing is derived from it, but it introduces references of forces.
+    pub choice_of_system: Option<Choice>,
     /// The price of the end.
     pub endpoint: Option<Closure>,
     /// The conditions of the end.
@@ -92,11 +94,16 @@ impl Declaration {
         let steered = Some(self.kinetic.closure()).filter(|_| self.kinetic.is_steered());
         let mut closures = steered.into_iter().chain(&self.force).chain(&self.force_on);
         // typed arguments behind an input that is chosen are references
-        let refers = steered.is_some() || self.control.is_some();
+        let refers = steered.is_some() || self.choice().is_some();
         closures.find_map(|closure| {
             let is_typed = |argument: &&Argument| argument.ty.is_some();
             if refers { closure.arguments.iter().find(is_typed) } else { closure.arguments.last().filter(is_typed) }
         })
+    }
+
+    /// The choice of inputs of the system, which its methods do not make.
+    pub fn choice(&self) -> Option<&Choice> {
+        self.control.as_ref().or(self.choice_of_system.as_ref())
     }
 
     /// All closures over the arguments of the action, the action first.
@@ -173,6 +180,7 @@ pub(super) fn assemble(input: &DeriveInput, mut keys: Keys, fields: Vec<Field>) 
         constraints,
         spaces,
         control,
+        choice_of_system: None,
         endpoint,
         target,
         symmetries,

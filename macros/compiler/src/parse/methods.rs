@@ -93,7 +93,8 @@ impl Declaration {
             krate: system.krate.clone(),
             ..method.dials.clone()
         };
-        Declaration { dials, control: None, endpoint: None, target: None, methods: Vec::new(), ..self.clone() }
+        let system = Declaration { endpoint: None, target: None, methods: Vec::new(), ..self.clone() };
+        Declaration { dials, control: None, choice_of_system: self.control.clone(), ..system }
     }
 
     /// The same system without derivatives of its steps.

@@ -21,6 +21,7 @@ use nalgebra::{DMatrix, DVector, Matrix2, Matrix3, Quaternion, Vector1, Vector2,
     },
     bounds     = |omega, torque, wind| [torque.x <= self.top + wind.x.powi(2), omega.norm_squared() <= 9],
     endpoint   = |R, omega, wanted| ((R - wanted).norm_squared() + omega.norm_squared()) / 2,
+    method Fourth = (order = 4),
 )]
 struct Wheeled {
     #[clebsch(symmetric)]
@@ -29,6 +30,9 @@ struct Wheeled {
     drag: f64,
     top: f64,
 }
+
+/// Compositions of five steps.
+struct Fourth;
 
 /// The same with fields.
 #[derive(Clebsch, Clone, Debug)]
@@ -151,6 +155,31 @@ fn steps_of_plans_are_those_of_the_stepper() -> Result<(), Error> {
         let next = stepper.step_with(&stepper.state(x.0, x.1)?, &(torque, of_force, turn, wind))?;
         let followed = control.follow_with(&x, &torque, &(of_force, turn, wind, Matrix3::identity()))?;
         assert!((followed.0 - next.configuration()).amax() < 1e-14 && (followed.1 - next.momentum()).amax() < 1e-14);
+    }
+    Ok(())
+}
+
+/// A method takes the references of forces as the declared steps do, and comes nearer to the motion.
+#[test]
+fn methods_read_the_references_of_forces() -> Result<(), Error> {
+    let random = &mut Random::new(9212);
+    for _ in 0..5 {
+        let of_force = (random.vector::<1>(), random.rotation::<3>(1.0));
+        let input = (random.vector::<3>(), of_force, quaternion(random), random.vector::<3>());
+        let x = (random.rotation::<3>(1.0), random.vector::<3>());
+        let declared = |parts: usize| {
+            let stepper = body().into_stepper(H / parts as f64)?;
+            let mut state = stepper.state(x.0, x.1)?;
+            for _ in 0..parts {
+                state = stepper.step_with(&state, &input)?;
+            }
+            Ok::<_, Error>(state.momentum())
+        };
+        let stepper = body().into_stepper_by::<Fourth>(H)?;
+        let fourth = stepper.step_with(&stepper.state(x.0, x.1)?, &input)?.momentum();
+        let motion = declared(256)?;
+        let [coarse, fine] = [declared(1)?, fourth].map(|momentum| (momentum - motion).norm());
+        assert!(fine < 0.1 * coarse, "{fine:e} of {coarse:e}");
     }
     Ok(())
 }
