@@ -193,6 +193,13 @@ fn planar(random: &mut Random) -> Matrix3<f64> {
     super::place(3.0 * random.number(), random.number(), random.number())
 }
 
+fn chart_of_masses() -> Chart<(Vector3<f64>, Vector3<f64>), 6> {
+    Chart {
+        moved: |(x, n), delta| (x + delta.fixed_rows::<3>(0), n + delta.fixed_rows::<3>(3)),
+        coordinates: |(x, n), (y, m)| all(&[(y - x).as_slice(), (m - n).as_slice()]),
+    }
+}
+
 fn chart_of_sleighs() -> Chart<(Matrix3<f64>, Vector3<f64>), 6> {
     Chart {
         moved: |(q, n), delta| (moved(q, &delta.fixed_rows::<3>(0).into()), n + delta.fixed_rows::<3>(3)),
@@ -275,10 +282,7 @@ fn derivatives_of_a_board_are_differences() {
 #[test]
 fn derivatives_on_a_moving_sphere_are_differences() {
     let random = &mut Random::new(3504);
-    let chart = Chart::<(Vector3<f64>, Vector3<f64>), 6> {
-        moved: |(x, n), delta| (x + delta.fixed_rows::<3>(0), n + delta.fixed_rows::<3>(3)),
-        coordinates: |(x, n), (y, m)| all(&[(y - x).as_slice(), (m - n).as_slice()]),
-    };
+    let chart = chart_of_masses();
     for _ in 0..long(8) {
         let pivot = random.vector::<3>();
         let system = Charge { mass: 1.3, charge: 0.5, pivot, length: 2.0, growth: 0.3, drag: 0.2 };
@@ -290,10 +294,7 @@ fn derivatives_on_a_moving_sphere_are_differences() {
 #[test]
 fn derivatives_with_a_wheel_and_a_moving_inertia_are_differences() {
     let random = &mut Random::new(3505);
-    let chart = Chart::<(Vector3<f64>, Vector3<f64>), 6> {
-        moved: |(x, n), delta| (x + delta.fixed_rows::<3>(0), n + delta.fixed_rows::<3>(3)),
-        coordinates: |(x, n), (y, m)| all(&[(y - x).as_slice(), (m - n).as_slice()]),
-    };
+    let chart = chart_of_masses();
     for _ in 0..long(8) {
         let system = Mechanism { growth: 0.3, coupling: 0.4, drag: 0.2 };
         check::<_, 6, 1, 0>(&system, &chart, &(random.vector(), random.vector()), random);
