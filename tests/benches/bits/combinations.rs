@@ -1,14 +1,14 @@
 //! Combinations of dials that no fixture has, each with small systems: sums, forms of code, orders, charts, solvers, lanes and single precision.
 
-#[path = "../../tests/compositions/systems.rs"]
+#[path = "../../laws/tests/compositions/systems.rs"]
 mod compositions;
-#[path = "../../tests/exact/systems.rs"]
+#[path = "../../laws/tests/exact/systems.rs"]
 mod exact;
 #[path = "combinations/forms.rs"]
 mod forms;
 #[path = "../../laws/tests/lanes/systems.rs"]
 mod lanes;
-#[path = "../../tests/summation/systems.rs"]
+#[path = "../../laws/tests/summation/systems.rs"]
 mod summation;
 
 use crate::lift::Lift;

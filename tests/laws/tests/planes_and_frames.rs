@@ -224,7 +224,7 @@ fn moved_frame<const N: usize, const K: usize, const D: usize>(
         let (x, v) = (part(y, 0), part(y, N * K));
         both(&v, &acceleration(&x, &v, &slope(&x), mass))
     };
-    part(&motion(field, both(&x, &v), 1.0, 500), 0)
+    part(&motion(field, both(&x, &v), 1.0, 200), 0)
 }
 
 /// P = XXᵀ for a frame X with XᵀẊ = 0, ½m|Ẋ|² = ¼m|Ṗ|², in the potential tr XᵀAX.
@@ -304,7 +304,7 @@ fn steps_of_frames_from(seed: u64) {
             let h = 0.1;
             let stepper = system.stepper(h).expect("a regular system");
             let mut states = vec![stepper.state(x, momentum).expect("a state")];
-            for step in 0..100 {
+            for step in 0..if cfg!(feature = "heavy") { 100 } else { 40 } {
                 states.push(stepper.step(&states[step]).expect("a step"));
             }
             for three in states.windows(3) {

@@ -1,10 +1,14 @@
-//! Fields in many steps or sweeps: implicit steps, rest, threads, and the longest stable step.
-//!
-//! Those of a few steps are in `tests/laws/tests/fields`.
+//! Fields at rest on large grids. The other tests of fields are in `tests/laws/tests/fields`.
 
 #![allow(missing_docs)]
 
-mod midpoint;
+#[path = "../../laws/tests/fields/cycles.rs"]
+mod cycles;
 mod relaxation;
-mod stability;
-mod threads;
+#[path = "../../laws/tests/fields/squares.rs"]
+mod squares;
+
+/// Sites along a side of the squares, films and crystals of `cycles`.
+const SQUARES: [usize; 5] = [16, 17, 32, 50, 65];
+const FILMS: [usize; 3] = [20, 33, 64];
+const CRYSTALS: [usize; 2] = [17, 33];

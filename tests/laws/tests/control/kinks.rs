@@ -154,9 +154,10 @@ fn kinks_of_places_and_inputs_are_those_of_further_inputs() -> Result<(), Error>
 fn a_dear_soft_bound_is_a_hard_one() -> Result<(), Error> {
     let random = &mut Random::new(4403);
     let mut limited = 0;
+    let enough = if cfg!(feature = "heavy") { 2 } else { 1 };
     for _ in 0..6 {
-        // two of them are enough without the feature `heavy`
-        if limited > 1 && !cfg!(feature = "heavy") {
+        // one of them is enough without the feature `heavy`
+        if limited >= enough && !cfg!(feature = "heavy") {
             break;
         }
         let (inertia, slow) = (random.inertia::<3>(), 1.2);
@@ -182,7 +183,7 @@ fn a_dear_soft_bound_is_a_hard_one() -> Result<(), Error> {
             }
         }
     }
-    assert!(limited > 1, "{limited}");
+    assert!(limited >= enough, "{limited}");
     Ok(())
 }
 
@@ -232,7 +233,7 @@ fn a_kink_with_a_negative_price_is_refused() -> Result<(), Error> {
 #[test]
 fn the_best_time_counts_fuel() -> Result<(), Error> {
     let random = &mut Random::new(4407);
-    for _ in 0..4 {
+    for _ in 0..if cfg!(feature = "heavy") { 4 } else { 2 } {
         let (hurry, fuel) = (random.between(0.5, 2.0), random.between(0.2, 2.0));
         let goal = Target::Place(Vector2::new(random.between(0.5, 2.0), 0.0));
         let start = Vector2::zeros();

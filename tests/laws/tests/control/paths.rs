@@ -122,7 +122,7 @@ fn interpolated_places_lead_to_plans_soon() -> Result<(), Error> {
     let control = system.control(0.02)?;
     let start = Matrix3::identity();
     let mut work = Vec::new();
-    for _ in 0..40 {
+    for _ in 0..if cfg!(feature = "heavy") { 40 } else { 10 } {
         let (angle, x, y) = (3.0 * random.number(), 1.5 * random.number(), 1.5 * random.number());
         let mut plan = [control.stage(&start).with_input(vector![angle, x.hypot(y)]); STEPS];
         let path = |k: usize, _| {
@@ -134,6 +134,6 @@ fn interpolated_places_lead_to_plans_soon() -> Result<(), Error> {
         work.push(found.iterations());
     }
     work.sort_unstable();
-    assert!(work[36] <= 60, "{work:?}");
+    assert!(work[work.len() * 9 / 10] <= 60, "{work:?}");
     Ok(())
 }

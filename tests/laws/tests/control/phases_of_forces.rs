@@ -186,6 +186,7 @@ fn methods_read_the_references_of_forces() -> Result<(), Error> {
 
 #[test]
 fn references_that_stay_the_same_give_the_plans_of_fields() -> Result<(), Error> {
+    const N: usize = if cfg!(feature = "heavy") { 16 } else { 8 };
     let random = &mut Random::new(9203);
     for _ in 0..long(4) {
         let Wheeled { inertia, weight, drag, top } = body();

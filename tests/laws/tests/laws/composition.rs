@@ -129,7 +129,7 @@ fn measured_orders_of_the_particle() {
         let pull = -x * (stiffness * x.norm_squared());
         SVector::<f64, 4>::new(y[2] / mass, y[3] / mass, pull.x, pull.y)
     };
-    let exact = motion(force, SVector::<f64, 4>::new(x.x, x.y, p.x, p.y), 1.0, 5000);
+    let exact = motion(force, SVector::<f64, 4>::new(x.x, x.y, p.x, p.y), 1.0, 200);
     let error = |x: &Vector2<f64>, p: &Vector2<f64>| distance(&SVector::<f64, 4>::new(x.x, x.y, p.x, p.y), &exact);
     assert_order("composed particle", &errors(&particle(), (x, p), error), 2.0);
     assert_order("first-order particle", &errors(&first, (x, p), error), 1.0);
@@ -147,7 +147,7 @@ fn measured_orders_of_the_top() {
         let torque = body::gravity_torque(top.weight, &top.center, &r) + pi.cross(&omega);
         stack(&(r * hat(&omega)), &torque)
     };
-    let exact = motion(velocity, stack(&r, &pi), 1.0, 5000);
+    let exact = motion(velocity, stack(&r, &pi), 1.0, 200);
     let error = |r: &Matrix3<f64>, pi: &Vector3<f64>| distance(&stack(r, pi), &exact);
     assert_order("composed top", &errors(&top, (r, pi), error), 2.0);
     assert_order("first-order top", &errors(&first_order(top.clone()), (r, pi), error), 1.0);

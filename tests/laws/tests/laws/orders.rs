@@ -61,7 +61,7 @@ fn exact_body(
         let omega = inverse * pi;
         flat(&[(r * hat(&omega)).as_slice(), (pi.cross(&omega) + torque(&r)).as_slice()])
     };
-    motion(velocity, flat(&[r.as_slice(), pi.as_slice()]), 1.0, 8000)
+    motion(velocity, flat(&[r.as_slice(), pi.as_slice()]), 1.0, 200)
 }
 
 #[test]
@@ -96,9 +96,9 @@ fn spherical_pendulums() {
         move |q: &Vector3<f64>, n: &Vector3<f64>| distance(&flat(&[q.as_slice(), (n / scale).as_slice()]), &exact)
     };
     let n_of_half = n * 0.25;
-    let exact = motion(velocity(0.25, 2.0), flat(&[q.as_slice(), n_of_half.as_slice()]), 1.0, 8000);
+    let exact = motion(velocity(0.25, 2.0), flat(&[q.as_slice(), n_of_half.as_slice()]), 1.0, 200);
     assert_order(&pendulum, (q, n_of_half), error(exact, 1.0));
-    let exact = motion(velocity(1.0, 9.81), flat(&[q.as_slice(), n.as_slice()]), 1.0, 8000);
+    let exact = motion(velocity(1.0, 9.81), flat(&[q.as_slice(), n.as_slice()]), 1.0, 200);
     assert_order(&PaperPendulum { gravity: 9.81 }, (q, n * 2.0), error(exact, 2.0));
 }
 
@@ -161,7 +161,7 @@ fn neumann() {
         let acceleration = -q * w.norm_squared() - (g - q * q.dot(&g));
         flat(&[w.as_slice(), acceleration.as_slice()])
     };
-    let exact = motion(velocity, flat(&[q.as_slice(), w.as_slice()]), 1.0, 8000);
+    let exact = motion(velocity, flat(&[q.as_slice(), w.as_slice()]), 1.0, 200);
     let momentum = |q: Vector4<f64>, w: Vector4<f64>| -> Vector6<f64> {
         components(&((w * q.transpose() - q * w.transpose()) / 2.0))
     };
@@ -200,7 +200,7 @@ fn two_pendulums() {
         flat(&[v[0].as_slice(), v[1].as_slice(), f[0].as_slice(), f[1].as_slice()])
     };
     let start = flat(&[q[0].as_slice(), q[1].as_slice(), n[0].as_slice(), n[1].as_slice()]);
-    let exact = motion(velocity, start, 1.0, 8000);
+    let exact = motion(velocity, start, 1.0, 200);
     let error = |q: &(Vector3<f64>, Vector3<f64>), mu: &Vector6<f64>| {
         distance(&flat(&[q.0.as_slice(), q.1.as_slice(), mu.as_slice()]), &exact)
     };
@@ -236,7 +236,7 @@ fn two_bodies() {
         flat(&[v.as_slice(), w.as_slice(), pull.as_slice(), (-pull).as_slice()])
     };
     let start = flat(&[x[0].as_slice(), x[1].as_slice(), p[0].as_slice(), p[1].as_slice()]);
-    let exact = motion(velocity, start, 1.0, 8000);
+    let exact = motion(velocity, start, 1.0, 200);
     let error = |x: &[Vector3<f64>; 2], mu: &Vector6<f64>| {
         distance(&flat(&[x[0].as_slice(), x[1].as_slice(), mu.as_slice()]), &exact)
     };

@@ -110,7 +110,7 @@ fn covariances_of_three_variables_move_in_a_potential() {
         SVector::from_fn(|k, _| if k < 9 { v[(k / 3, k % 3)] } else { slope[(k % 9 / 3, k % 3)] })
     };
     let start = SVector::from_fn(|k, _| if k < 9 { p[(k / 3, k % 3)] } else { velocity[(k % 9 / 3, k % 3)] });
-    let end = motion(field, start, 1.0, 2000);
+    let end = motion(field, start, 1.0, 200);
     let exact = SMatrix::<f64, 3, 3>::from_fn(|i, j| end[3 * i + j]);
     let system = Divergence { pull };
     let start = (p, system.momentum_map(&p, &covector(&p, &velocity)));

@@ -16,7 +16,7 @@ use nalgebra::{Matrix2, Matrix3, SMatrix, SVector, Vector3};
 
 /// How long motions are followed; steps of the exact motion in this time, and of the coarsest one.
 const DURATION: f64 = 1.5;
-const FINE: usize = 12_800;
+const FINE: usize = 8 * COARSE;
 const COARSE: usize = 100;
 
 /// A pendulum whose gravity is driven, by drift, then kick.

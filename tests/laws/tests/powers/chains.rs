@@ -58,7 +58,7 @@ fn slopes(y: &SVector<f64, 9>) -> SVector<f64, 9> {
 macro_rules! measured {
     ($name:ident, $counts:expr) => {{
         let start = SVector::<f64, 9>::from_fn(|k, _| if k < SITES { START[k] } else { 0.0 });
-        let exact = motion(slopes, start, 1.0, 20_000);
+        let exact = motion(slopes, start, 1.0, 400);
         let errors = $counts.map(|count: u32| {
             let chain = $name::<SITES> { cubic: CUBIC, swing: SWING, drag: DRAG };
             let stepper = chain.into_stepper(1.0 / f64::from(count)).unwrap();

@@ -76,7 +76,7 @@ fn reaches(pendulum: &SphericalPendulum, start: SVector<f64, 6>, plane: f64) -> 
         let (v, torque) = (mu.cross(&q) / inertia, -weight * q.cross(&Vector3::z()));
         SVector::from_column_slice(&[v.x, v.y, v.z, torque.x, torque.y, torque.z])
     };
-    let beyond = |time: f64| motion(velocity, start, time, 4000)[0] - plane;
+    let beyond = |time: f64| motion(velocity, start, time, 200)[0] - plane;
     let (mut before, mut time) = (0.3, 0.4);
     for _ in 0..12 {
         let (a, b) = (beyond(before), beyond(time));

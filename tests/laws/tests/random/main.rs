@@ -146,7 +146,7 @@ fn planes_and_frames_integrate_as_the_oracle_does() {
 #[test]
 fn adjoints_of_coupled_costs_end() {
     const SEEDS: [u64; 5] = [920_257, 920_321, 920_286, 930_161, 940_047];
-    let taken = if cfg!(feature = "heavy") { 5 } else { 3 };
+    let taken = if cfg!(feature = "heavy") { 5 } else { 2 };
     let found: Vec<_> = SEEDS.into_iter().take(taken).map(|seed| check(&problem(seed), seed)).collect();
     let failures: Vec<String> = found.iter().filter_map(|one| one.clone().err()).collect();
     report(&failures);

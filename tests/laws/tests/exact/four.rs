@@ -60,7 +60,7 @@ fn followed(d: &Vector4<f64>, (r, mu): (Matrix4<f64>, Vector6<f64>), duration: f
         SVector::<f64, 22>::from_iterator(turned.iter().chain(&change).copied())
     };
     let y = SVector::<f64, 22>::from_iterator(r.iter().chain(mu.iter()).copied());
-    let end = motion(rate, y, duration, 32_000);
+    let end = motion(rate, y, duration, 2000);
     (Matrix4::from_column_slice(&end.as_slice()[..16]), end.fixed_rows::<6>(16).into_owned())
 }
 

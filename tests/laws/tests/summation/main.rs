@@ -1,6 +1,6 @@
 //! Steps with compensated sums: errors of rounding are those of the increments, not of the state.
 //!
-//! `cargo test --release -p clebsch-tests --features heavy --test summation -- --nocapture` prints the errors of plain and of compensated sums.
+//! `cargo test --release -p clebsch-laws --features heavy --test summation -- --nocapture` prints the errors of plain and of compensated sums.
 
 #![allow(missing_docs)]
 

@@ -159,11 +159,11 @@ fn representations_agree() -> Result<(), Error> {
     Ok(())
 }
 
-/// The invariants after 10⁵ steps of a fifth of a radian: orbit, vertical momentum and energy are at round-off. Their
+/// The invariants after 5000 steps of a fifth of a radian, with `heavy` after 10⁵: orbit, vertical momentum and energy are at round-off. Their
 /// sum grows like the root of the number of steps.
 #[test]
 fn invariants_stay_at_rounding() -> Result<(), Error> {
-    const STEPS: u32 = 100_000;
+    const STEPS: u32 = if cfg!(feature = "heavy") { 100_000 } else { 5000 };
     let top = CollocatedTop { moments: Vector3::new(1.0, 1.5, 2.0), weight: 1.0 };
     let stepper = top.into_stepper(0.1)?;
     let q = Quaternion::new(0.25_f64.cos(), 0.25_f64.sin(), 0.0, 0.0);

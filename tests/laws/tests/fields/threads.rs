@@ -30,6 +30,7 @@ struct Line;
 
 /// More sites than one share has.
 const SIZES: [[usize; 2]; 3] = [[97, 131], [3, 4500], [4500, 3]];
+const STEPS: u64 = if cfg!(feature = "heavy") { 10 } else { 2 };
 const SIDES: [Sides; 2] = [Sides::Periodic, Sides::Open(Side::Free, Side::Fixed)];
 
 #[test]
@@ -47,13 +48,13 @@ fn threads_have_the_same_bits() -> Result<(), SiteError> {
         let alike = alike.stepper(0.1)?;
         let sheet = alike.state(heights.clone(), vec![Vector1::zeros(); sites])?;
         let (mut one, mut two, mut three) = (start.clone(), sheet.clone(), sheet.clone());
-        waves.advance(&mut one, 10)?;
-        alike.advance(&mut two, 10)?;
-        various.advance(&mut three, 10)?;
+        waves.advance(&mut one, STEPS)?;
+        alike.advance(&mut two, STEPS)?;
+        various.advance(&mut three, STEPS)?;
         let (mut a, mut b, mut c) = (start, sheet.clone(), sheet);
-        waves.par_advance(&mut a, 10)?;
-        alike.par_advance(&mut b, 10)?;
-        various.par_advance(&mut c, 10)?;
+        waves.par_advance(&mut a, STEPS)?;
+        alike.par_advance(&mut b, STEPS)?;
+        various.par_advance(&mut c, STEPS)?;
         assert!(a == one && b == two && c == three, "{sizes:?} {sides:?}");
     }
     Ok(())

@@ -39,6 +39,7 @@ macro_rules! bodies {
         }
 
         /// A free body in four dimensions.
+        #[cfg(feature = "heavy")]
         #[derive(Clebsch, Clone, Debug)]
         #[clebsch(
             action = |F: SO<4>, R: SO<4>| R * F,
@@ -111,7 +112,7 @@ macro_rules! systems {
 #[cfg(not(feature = "heavy"))]
 systems!(first, 1: pendulum);
 #[cfg(not(feature = "heavy"))]
-systems!(second, 2: pendulum bodies);
+systems!(second, 2: pendulum);
 #[cfg(feature = "heavy")]
 systems!(first, 1: pendulum bodies measured);
 #[cfg(feature = "heavy")]

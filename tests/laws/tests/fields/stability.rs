@@ -114,7 +114,8 @@ fn largest_eigenvalue(inertia: &DVector<f64>, size: f64, energy: impl Fn(&DVecto
 /// A free rod of unit length with a round section, straight and at rest: the bound holds, and is at most 1.1 times the frequency.
 #[test]
 fn the_bound_of_rods_holds_and_is_near() -> Result<(), SiteError> {
-    for (sections, thickness) in [(10, 0.3), (10, 0.1), (10, 0.02), (6, 0.05)] {
+    let rods = [(6, 0.05), (10, 0.3), (10, 0.1), (10, 0.02)];
+    for (sections, thickness) in rods.into_iter().take(if cfg!(feature = "heavy") { 4 } else { 1 }) {
         let (ds, area) = (1.0 / sections as f64, thickness * thickness);
         let second = area * area / 12.0;
         // E = ρ = 1, G = 0.4

@@ -239,6 +239,9 @@ fn momenta_are_slopes_of_the_discrete_lagrangian() -> Result<(), SiteError> {
     Ok(())
 }
 
+/// Explicit steps in one implicit step, where they stand for the exact motion.
+const FINER: u64 = if cfg!(feature = "heavy") { 2000 } else { 500 };
+
 type Implicit<S, P> = MidpointStepper<S, P>;
 type Explicit<S, P> = FieldStepper<S, Grid<f64, 1>, P>;
 
@@ -254,9 +257,9 @@ fn check<S, P: Population, const M: usize>(
     let largest = |a: &[S::Configuration], b: &[S::Configuration]| {
         a.iter().zip(b).map(|(a, b)| distance(a, b)).fold(0.0, f64::max)
     };
-    let fine: Explicit<S, P> = domain.clone().stepper(h / 2000.0).unwrap();
+    let fine: Explicit<S, P> = domain.clone().stepper(h / FINER as f64).unwrap();
     let mut exact = fine.state(q.clone(), mu.clone()).unwrap();
-    fine.advance(&mut exact, 16_000).unwrap();
+    fine.advance(&mut exact, 8 * FINER).unwrap();
     let after = |parts: u32| {
         let stepper: Implicit<S, P> = domain.clone().midpoint(h / f64::from(parts)).unwrap();
         let mut state = stepper.state(q.clone(), mu.clone()).unwrap();
@@ -367,9 +370,10 @@ fn loads_and_damping_act_at_the_midpoint() -> Result<(), SiteError> {
         (0..steps).try_for_each(|_| stepper.step_with(&mut state, &loads))?;
         Ok(state.configuration().clone())
     };
-    let fine = pushed(0.4).stepper(0.4 / 20_000.0)?;
+    let steps = 10 * FINER;
+    let fine = pushed(0.4).stepper(0.4 / steps as f64)?;
     let mut exact = fine.state(curve(sites, dx), wave(sites, 0.02))?;
-    (0..20_000).try_for_each(|_| fine.step_with(&mut exact, &loads))?;
+    (0..steps).try_for_each(|_| fine.step_with(&mut exact, &loads))?;
     let far = |q: &[Matrix4<f64>]| q.iter().zip(exact.configuration()).map(|(a, b)| (a - b).amax()).fold(0.0, f64::max);
     let errors = [far(&after(0.02, 20)?), far(&after(0.01, 40)?)];
     assert!((3.8..4.2).contains(&(errors[0] / errors[1])), "{errors:?}");
@@ -386,7 +390,7 @@ fn long_steps_conserve_momenta() -> Result<(), SiteError> {
         let stepper = domain.clone().midpoint(times * stable)?;
         let mut state = stepper.state(unstretched(sites, dx), wave(sites, 0.002))?;
         let (momenta, energy) = (stepper.conserved(&state)?, stepper.energy(&state)?);
-        for _ in 0..300 {
+        for _ in 0..if cfg!(feature = "heavy") { 300 } else { 100 } {
             stepper.step(&mut state)?;
             assert!(state.iterations() <= most, "{times}: {} iterations", state.iterations());
             let change = stepper.energy(&state)? / energy - 1.0;
