@@ -262,7 +262,7 @@ impl<T: Scalar, V: Columns<T>, const N: usize> Columns<T> for [V; N] {
 
     #[inline]
     fn entry(&self, k: usize) -> Option<T> {
-        let width = V::FORM.width();
+        let width = const { V::FORM.width() };
         self.get(k.checked_div(width)?)?.entry(k.checked_rem(width)?)
     }
 }
@@ -285,7 +285,7 @@ macro_rules! tuple {
             #[inline]
             fn entry(&self, mut k: usize) -> Option<T> {
                 $(
-                    let width = $name::FORM.width();
+                    let width = const { $name::FORM.width() };
                     if k < width {
                         return self.$index.entry(k);
                     }

@@ -61,7 +61,11 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: usize
         let t = self.time + T::from_f64(plan.len() as f64) * self.step_size;
         let curvature = self.system.endpoint_expanded(&self.constants, t, &place).curvature;
         let all = information + curvature;
-        Ok(if inverse(&all).is_some() { all } else { information + positive(&curvature) })
+        Ok(if inverse(&all).is_some() {
+            all
+        } else {
+            information + positive(&curvature, &SVector::from_element(T::one()))
+        })
     }
 
     /// Moves the window of an estimate on by so many steps: the plan, its time and its prior. The steps that leave the plan
@@ -93,11 +97,11 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, B: Start<S, D, U, C>, const D:
         let straight = self.expand(stage, t, &SVector::zeros())?;
         let before = Value::of_hessian(information);
         let mut carried = *information;
-        for step in [exact, straight, convex(&straight)] {
+        for step in [exact, straight, convex(&straight, &self.lengths)] {
             let backward = backward(&step).ok_or_else(singular)?;
             let (policy, after) = Policy::of(&backward, None, &before, Curvature::exact(T::zero()));
             carried = after.hessian;
-            if policy.negative == 0 && after.is_convex() {
+            if policy.negative == 0 && after.is_convex(&self.lengths) {
                 break;
             }
         }

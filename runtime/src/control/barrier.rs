@@ -284,10 +284,10 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, B: Start<S, D, U, C>, const D:
                 true => (stage.motion, stage.shift),
                 false => (displacement, stage.shift + stage.by_multiplier * change + stage.gain * displacement),
             };
-            let (far, wide) = (displaced.max_abs(), input.max_abs());
+            let (far, wide) = (displaced.component_mul(&problem.lengths).max_abs(), input.max_abs());
             let most = SVector::from_fn(|i, _| {
-                let (by_place, by_input) = (bounds.by_place.row(i).into_owned(), bounds.by_input.row(i).into_owned());
-                by_place.max_abs() * far + by_input.max_abs() * wide
+                let by_place = bounds.by_place.row(i).transpose().component_div(&problem.lengths);
+                by_place.max_abs() * far + bounds.by_input.row(i).into_owned().max_abs() * wide
             });
             visit(stage, bounds.by_place * displaced + bounds.by_input * input, most);
             if !self.is_lifted {
@@ -333,10 +333,10 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, B: Start<S, D, U, C>, const D:
             let (t, x, u) = (self.problem.time_after(index), &stage.place, &stage.input);
             // bounds of a step that cannot be made are not satisfied
             let Ok(bounds) = self.problem.bounds_expanded(stage, t, &stage.limits.multipliers) else { return true };
-            let place = x.max_abs();
+            let sizes = self.problem.sizes(x);
             // Written so that NaN is a violation.
             !(0..C).all(|i| {
-                let by_place = (0..D).fold(zero, |sum, j| sum + bounds.by_place[(i, j)].abs() * place);
+                let by_place = (0..D).fold(zero, |sum, j| sum + bounds.by_place[(i, j)].abs() * sizes[j]);
                 let terms = (0..U).fold(by_place, |sum, j| sum + (bounds.by_input[(i, j)] * u[j]).abs());
                 match stage.limits.kinds[i] {
                     Kind::Soft(_) => true,

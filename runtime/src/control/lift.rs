@@ -22,7 +22,7 @@ use super::start::Start;
 use super::sweep::{Plan, Problem, Swept};
 use crate::newton::Curvature;
 use crate::space::{larger, plus};
-use crate::{Controlled, Error, Real, Space};
+use crate::{Controlled, Error, Real};
 use nalgebra::{SMatrix, SVector};
 
 /// The most sweeps from one guess.
@@ -127,17 +127,20 @@ impl<X, T: Real> Proposal<X, T> {
 struct Filter<T> {
     entries: [(T, T); 16],
     count: usize,
+    /// The size of prices.
+    magnitude: T,
 }
 
 impl<T: Real> Filter<T> {
     const fn new(zero: T) -> Self {
-        Self { entries: [(zero, zero); 16], count: 0 }
+        Self { entries: [(zero, zero); 16], count: 0, magnitude: zero }
     }
 
     fn accepts(&self, gaps: T, price: T, now: (T, T)) -> bool {
         let gain = T::from_f64(GAIN);
-        let improves =
-            |&(before, dearer): &(T, T)| gaps <= before * (T::one() - gain) || price <= dearer - gain * before;
+        let improves = |&(before, dearer): &(T, T)| {
+            gaps <= before * (T::one() - gain) || price <= dearer - gain * before * self.magnitude
+        };
         improves(&now) && self.entries.iter().take(self.count).all(improves)
     }
 
@@ -254,6 +257,7 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, B: Start<S, D, U, C>, const D:
             let Some(before) = at else {
                 // the first sweep is made without bounds, and tells the sizes of changes and of prices
                 now.settings.weight = gramian.weight(&summary.gramian, &now.settings.weight);
+                filter.magnitude = summary.magnitude + decrement.abs();
                 let begun;
                 (measure, begun) = match places {
                     Places::Bent => self.begin_lifted(&mut now, &last_motion, summary.repair())?,
@@ -416,9 +420,11 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, B: Start<S, D, U, C>, const D:
         });
         let (zero, one) = (T::zero(), T::one());
         // forbidden changes are round-off, and one by that would outweigh all others
-        let size = self.stages.iter().fold(self.last.max_abs(), |size, stage| larger(size, stage.place.max_abs()));
+        let size_of = |x: &S::Place| self.problem.size(x);
+        let size = self.stages.iter().fold(size_of(&self.last), |size, stage| larger(size, size_of(&stage.place)));
         let least = if S::IS_CONSTRAINED { T::from_f64(ROUNDING) * T::EPSILON * size } else { zero };
-        let units = largest.map(|size| if size > least && size.is_finite() { size.recip() } else { zero });
+        let is_change = |i: usize| largest[i] * self.problem.lengths[i] > least && largest[i].is_finite();
+        let units = SVector::from_fn(|i, _| if is_change(i) { largest[i].recip() } else { zero });
         Measure { units, relaxed: if self.is_relaxed() { one } else { zero } }
     }
 

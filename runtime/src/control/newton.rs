@@ -137,7 +137,7 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, B: Start<S, D, U, C>, const D:
                 }
                 Verdict::Price => return Err(self.failure(&end, size)),
                 Verdict::Stir if stirs == STIRS => {
-                    return Err(Error::Uncontrollable { distance: end.distance.to_f64() });
+                    return Err(Error::Uncontrollable { distance: end.gap.to_f64() });
                 }
                 Verdict::Stir => {
                     stirs += 1;
@@ -250,7 +250,7 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, B: Start<S, D, U, C>, const D:
 
     /// The end of a plan; round-off of its gap is relative to the largest place.
     pub fn end(&self) -> PlanEnd<T, D> {
-        let largest = self.stages.iter().fold(T::zero(), |max, stage| larger(max, stage.place.max_abs()));
+        let largest = self.stages.iter().fold(T::zero(), |max, stage| larger(max, self.problem.size(&stage.place)));
         self.problem.end(&self.last, largest, &self.pushing)
     }
 
@@ -310,7 +310,7 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, B: Start<S, D, U, C>, const D:
             step_size: self.problem.h,
             price: summary.price + self.price_of_violations(),
             residual: summary.residual,
-            gap: end.distance,
+            gap: end.gap,
             violation: self.violation(),
             negative: end.gramian(&summary.gramian).index(summary.negative, now.rank),
             iterations: self.sweeps,
@@ -346,7 +346,7 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, B: Start<S, D, U, C>, const D:
         // where the target is reached, equations may have stopped the search
         match self.infeasible(end.is_reached().then_some(T::EPSILON.sqrt())) {
             Some(error) => error,
-            None if !end.is_reached() => Error::TargetMissed { distance: end.distance.to_f64(), iterations },
+            None if !end.is_reached() => Error::TargetMissed { distance: end.gap.to_f64(), iterations },
             None => Error::NoExtremal { correction: size.to_f64(), iterations },
         }
     }

@@ -101,13 +101,14 @@ impl<T: Real, const D: usize> Value<T, D> {
         self.hessian = tangent.tr_mul(&(self.hessian * tangent));
     }
 
-    /// Whether P is positive semidefinite, but for parts √ε of its diagonal.
-    pub fn is_convex(&self) -> bool {
-        let largest = self.hessian.diagonal().max_abs();
+    /// Whether P is positive semidefinite, but for parts √ε of its diagonal, for changes of these lengths.
+    pub fn is_convex(&self, lengths: &SVector<T, D>) -> bool {
+        let squares = lengths.component_mul(lengths);
+        let largest = self.hessian.diagonal().component_div(&squares).max_abs();
         let mut shifted = self.hessian;
         for i in 0..D {
             let entry = shifted[(i, i)];
-            shifted[(i, i)] = entry + T::EPSILON.sqrt() * entry.abs() + T::EPSILON * largest;
+            shifted[(i, i)] = entry + T::EPSILON.sqrt() * entry.abs() + T::EPSILON * largest * squares[i];
         }
         largest == T::zero() || Ldl::positive(&rows(&shifted)).is_some()
     }
@@ -177,13 +178,13 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: usize
         &self,
         step: &Expansion<S::Place, T, D, U>,
         costate: &SVector<T, D>,
+        sizes: &SVector<T, D>,
         pushed: Option<SVector<T, U>>,
     ) -> SVector<T, U> {
-        let place = self.place.max_abs();
         let part = rounding::<T>();
         SVector::from_fn(|i, _| {
             let carried = |sum, j: usize| sum + (step.by_input[(j, i)] * costate[j]).abs();
-            let by_place = |sum, j: usize| sum + step.mixed_curvature[(i, j)].abs() * place;
+            let by_place = |sum, j: usize| sum + step.mixed_curvature[(i, j)].abs() * sizes[j];
             let by_input = |sum, j: usize| sum + (step.input_curvature[(i, j)] * self.input[j]).abs();
             let forces = (0..D).fold(step.price_by_input[i].abs(), carried);
             let moved = (0..U).fold((0..D).fold(T::zero(), by_place), by_input);

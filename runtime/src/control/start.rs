@@ -9,6 +9,7 @@
 //! Sources: Rao, Rawlings and Mayne, *Constrained state estimation for nonlinear discrete-time systems* (2003), for arrival costs.
 //! Bryson and Ho, *Applied Optimal Control* (1975), chapter 13, for smoothing.
 
+use super::end::sizes;
 use super::lift::Gap;
 use super::quadratic::{Pivot, Value, rounding};
 use super::sweep::{PlanSummary, Settings, positive};
@@ -49,10 +50,11 @@ pub trait Beginning<S: Controlled<D, U, C, Scalar: Real>, const D: usize, const 
     /// φ₀
     fn price(&self, system: &S, x: &S::Place) -> S::Scalar;
 
-    /// Eliminates the start, after all steps.
+    /// Eliminates the start, after all steps, for changes of these lengths.
     fn eliminate(
         &self,
         system: &S,
+        lengths: &SVector<S::Scalar, D>,
         x: &S::Place,
         value: &Value<S::Scalar, D>,
         settings: &Settings<S::Scalar, D>,
@@ -100,6 +102,7 @@ impl<S: Controlled<D, U, C, Scalar: Real>, const D: usize, const U: usize, const
     fn eliminate(
         &self,
         _: &S,
+        _: &SVector<S::Scalar, D>,
         _: &S::Place,
         _: &Value<S::Scalar, D>,
         _: &Settings<S::Scalar, D>,
@@ -222,6 +225,7 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: usize
     fn eliminate(
         &self,
         system: &S,
+        lengths: &SVector<T, D>,
         x: &S::Place,
         value: &Value<T, D>,
         settings: &Settings<T, D>,
@@ -240,7 +244,7 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: usize
             summary.straightened += 1;
         }
         if settings.is_guarded() && at.negative() > 0 {
-            at = pivot(&positive(&straight));
+            at = pivot(&positive(&straight, lengths));
         }
         let gradient = slope + value.costate;
         let (shift, by_multiplier) = (at.against(&gradient), at.against(&value.by_multiplier));
@@ -253,9 +257,9 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: usize
         summary.negative += at.negative();
         summary.yielding -= value.violation.dot(&at.against(&value.violation));
         if settings.is_last {
-            let place = x.max_abs();
+            let sizes = sizes::<S, D, U, C>(x, lengths);
             let terms = |i: usize| {
-                let moved = (0..D).fold(T::zero(), |sum, j| sum + value.hessian[(i, j)].abs() * place);
+                let moved = (0..D).fold(T::zero(), |sum, j| sum + value.hessian[(i, j)].abs() * sizes[j]);
                 slope[i].abs() + value.costate[i].abs() + rounding::<T>() * moved
             };
             summary.terms = (0..D).fold(summary.terms, |most, i| larger(most, terms(i)));

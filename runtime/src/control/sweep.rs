@@ -37,8 +37,10 @@ pub(super) struct Problem<'a, S: Controlled<D, U, C, Scalar: Real>, B, const D: 
     pub start: &'a S::Place,
     pub beginning: &'a B,
     pub target: &'a Target<S::Place>,
-    /// The units of changes of the end.
+    /// The lengths of changes of a place. A momentum is as long as the way that it moves the system in a few times of the plan.
     pub lengths: SVector<S::Scalar, D>,
+    /// One by the sizes of the conditions that the target declares.
+    pub units: SVector<S::Scalar, D>,
 }
 
 /// Whether a search ends where the first correction whose model reaches the target leads astray.
@@ -112,10 +114,15 @@ fn span<T: Real, const M: usize>(curvature: &SMatrix<T, M, M>, sizes: &SVector<T
     curvatures.iter().zip(sizes.iter()).fold(T::zero(), |sum, (curvature, size)| sum + curvature.abs() * *size * *size)
 }
 
-/// A symmetric matrix without its negative eigenvalues.
+/// A symmetric matrix without its negative eigenvalues, for changes of these lengths.
 #[cold]
-pub(super) fn positive<T: Real, const M: usize>(matrix: &SMatrix<T, M, M>) -> SMatrix<T, M, M> {
-    Spectrum::of(matrix).map(|value| larger(value, T::zero()))
+pub(super) fn positive<T: Real, const M: usize>(
+    matrix: &SMatrix<T, M, M>,
+    lengths: &SVector<T, M>,
+) -> SMatrix<T, M, M> {
+    let scaled = SMatrix::<T, M, M>::from_fn(|i, j| matrix[(i, j)] / (lengths[i] * lengths[j]));
+    let positive = Spectrum::of(&scaled).map(|value| larger(value, T::zero()));
+    SMatrix::from_fn(|i, j| positive[(i, j)] * lengths[i] * lengths[j])
 }
 
 /// A step whose price curves up along all changes of place and input. Far from a solution a price of places curves down on a group: a sum of
@@ -124,6 +131,7 @@ pub(super) fn positive<T: Real, const M: usize>(matrix: &SMatrix<T, M, M>) -> SM
 #[cold]
 pub(super) fn convex<X: Copy, T: Real, const D: usize, const U: usize>(
     step: &Expansion<X, T, D, U>,
+    lengths: &SVector<T, D>,
 ) -> Expansion<X, T, D, U> {
     let spectrum = Spectrum::of(&step.input_curvature);
     let least = T::EPSILON * spectrum.largest();
@@ -133,7 +141,7 @@ pub(super) fn convex<X: Copy, T: Real, const D: usize, const U: usize>(
     let inverse = spectrum.map(|value| if priced(value) { value.abs().recip() } else { T::zero() });
     let by_inputs = mixed.tr_mul(&(inverse * mixed));
     Expansion {
-        place_curvature: positive(&(step.place_curvature - by_inputs)) + by_inputs,
+        place_curvature: positive(&(step.place_curvature - by_inputs), lengths) + by_inputs,
         // an input without any curvature would have no limit
         input_curvature: spectrum.map(|value| value.abs()),
         mixed_curvature: mixed,
@@ -329,10 +337,13 @@ impl<
 > Plan<'a, S, B, D, U, C>
 {
     /// The guess that the stages hold.
-    pub fn new(problem: Problem<'a, S, B, D, U, C>, stages: &'a mut [Stage<S, D, U, C>]) -> Self {
+    pub fn new(mut problem: Problem<'a, S, B, D, U, C>, stages: &'a mut [Stage<S, D, U, C>]) -> Self {
         let last = *problem.start;
         let (bounds, pushing) = (T::zero(), [false; D]);
-        stages.iter_mut().take(1).for_each(|stage| stage.place = last);
+        for stage in stages.iter_mut().take(1) {
+            stage.place = last;
+            problem.find_units(stage);
+        }
         Self {
             problem,
             stages,
@@ -396,7 +407,7 @@ impl<
             Some(_) => SVector::zeros(),
             None => settings.multipliers - settings.weight * end.lack,
         };
-        let is_wrong = |value: &Value<T, D>| settings.is_guarded() && !value.is_convex();
+        let is_wrong = |value: &Value<T, D>| settings.is_guarded() && !value.is_convex(&self.problem.lengths);
         let mut is_bent = false;
         let problem = &self.problem;
         let tangent = problem.system.tangent_projector(problem.constants, problem.end_time(), &self.last);
@@ -414,7 +425,7 @@ impl<
             }
         }
         if is_wrong(value) {
-            (value.hessian, is_bent) = (positive(&value.hessian), true);
+            (value.hessian, is_bent) = (positive(&value.hessian, &self.problem.lengths), true);
         }
         is_bent
     }
@@ -469,7 +480,7 @@ impl<
         let mut summary = PlanSummary {
             price: endpoint.price,
             magnitude: endpoint.price.abs(),
-            most_span: span(&endpoint.curvature, &SVector::from_element(self.last.max_abs())),
+            most_span: span(&endpoint.curvature, &problem.sizes(&self.last)),
             descent: zero,
             residual: zero,
             terms: zero,
@@ -514,7 +525,7 @@ impl<
                 Ok::<_, Error>((policy, before, violated))
             };
             let mut step = expand(&value, settings.is_straight)?;
-            summary.most_span += span(&step.place_curvature, &SVector::from_element(stage.place.max_abs()));
+            summary.most_span += span(&step.place_curvature, &problem.sizes(&stage.place));
             summary.most_span += span(&step.input_curvature, &stage.input);
             if self.is_lifted {
                 summary.lack += value.cross(&Gap::of(system, &following, &step.next));
@@ -523,13 +534,17 @@ impl<
             if settings.is_last {
                 let expanded = || problem.bounds_expanded(stage, t, &stage.limits.multipliers);
                 let forces = is_bounded.then(expanded).transpose()?.map(|bounds| stage.limits.forces(&bounds.by_input));
-                summary.terms = larger(summary.terms, stage.terms(&step, &value.costate, forces).max_abs());
+                summary.terms = larger(
+                    summary.terms,
+                    stage.terms(&step, &value.costate, &problem.sizes(&stage.place), forces).max_abs(),
+                );
             }
             let (mut policy, mut before, violated) = model(&value, &step, false)?;
             summary.violation += violated;
             if settings.is_guarded() {
-                let is_wrong =
-                    |policy: &Policy<T, D, U>, before: &Value<T, D>| policy.negative > 0 || !before.is_convex();
+                let is_wrong = |policy: &Policy<T, D, U>, before: &Value<T, D>| {
+                    policy.negative > 0 || !before.is_convex(&problem.lengths)
+                };
                 if !settings.is_straight && is_wrong(&policy, &before) {
                     step = expand(&value, true)?;
                     (policy, before, _) = model(&value, &step, false)?;
@@ -539,7 +554,7 @@ impl<
                     (policy, before, _) = model(&value, &step, true)?;
                 }
                 if is_wrong(&policy, &before) {
-                    step = convex(&step);
+                    step = convex(&step, &problem.lengths);
                     (policy, before, _) = model(&value, &step, true)?;
                     summary.straightened += usize::from(settings.is_straight);
                 }
@@ -561,7 +576,7 @@ impl<
             value = before;
         }
         let first = self.origin();
-        self.correction = problem.beginning.eliminate(system, &first, &value, settings, &mut summary);
+        self.correction = problem.beginning.eliminate(system, &problem.lengths, &first, &value, settings, &mut summary);
         summary.bounds_places = bounds_places;
         summary.is_mostly_straight = 2 * summary.straightened > steps;
         if let Some(fall) = &mut summary.fall {

@@ -19,6 +19,7 @@ mod plans;
 mod references;
 mod right_hand_sides;
 mod targets;
+mod units;
 mod velocities;
 
 use nalgebra::Matrix3;
