@@ -40,7 +40,8 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: usize
             return Err(Error::PlanTooShort { steps: plan.len(), wanted: steps });
         };
         let target = Target::Free;
-        let problem = self.problem(&first.place, &target, plan.len());
+        let mut problem = self.problem(&first.place, &target, plan.len());
+        problem.find_units(first);
         let mut information = self.beginning.curvature(&self.system, &first.place);
         let mut slope = -first.costate;
         let mut last = first.place;
