@@ -514,8 +514,8 @@ impl<S: Controlled<D, U, C, Scalar: Real>, B: Start<S, D, U, C>, const D: usize,
         steps: usize,
     ) -> Problem<'a, S, B, D, U, C> {
         let Self { system, step_size: h, constants, time, beginning } = self;
-        let (lengths, units) = (end::lengths(system, target), SVector::from_element(S::Scalar::from_ratio(1, 1)));
-        Problem { system, constants, h: *h, time: *time, steps, start, beginning, target, lengths, units }
+        let lengths = end::lengths(system, target);
+        Problem { system, constants, h: *h, time: *time, steps, start, beginning, target, lengths }
     }
 
     /// The target obeys the constraint at the end of so many steps.

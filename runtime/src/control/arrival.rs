@@ -41,7 +41,7 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, const D: usize, const U: usize
         };
         let target = Target::Free;
         let mut problem = self.problem(&first.place, &target, plan.len());
-        problem.find_units(first);
+        problem.find_lengths(first);
         let mut information = self.beginning.curvature(&self.system, &first.place);
         let mut slope = -first.costate;
         let mut last = first.place;

@@ -135,18 +135,9 @@ impl<S: Controlled<D, U, C, Scalar: Real>, B: Start<S, D, U, C>, const D: usize,
         changes(if largest > zero { largest } else { S::Scalar::one() }, S::MOTIONS, &self.lengths)
     }
 
-    /// Finds the units of conditions by the start, and the lengths of momenta by the first step.
-    pub fn find_units(&mut self, stage: &Stage<S, D, U, C>) {
-        self.find_lengths(stage);
-        if let Some(conditions) = self.conditions(&stage.place, &SVector::zeros()) {
-            let sizes = conditions.sizes_for(&self.changes(self.size(&stage.place)));
-            let is_size = |size: S::Scalar| size > S::Scalar::zero() && size.is_finite();
-            self.units = sizes.map(|size| if is_size(size) { size.recip() } else { S::Scalar::one() });
-        }
-    }
-
-    fn find_lengths(&mut self, stage: &Stage<S, D, U, C>) {
-        if S::MOTIONS == D {
+    /// Finds the lengths of momenta by the first step. Where conditions are the target, momenta are as long as their numbers.
+    pub fn find_lengths(&mut self, stage: &Stage<S, D, U, C>) {
+        if S::MOTIONS == D || matches!(self.target, Target::Conditions) {
             return;
         }
         let Ok(step) = self.expand(stage, self.time, &SVector::zeros()) else { return };
@@ -158,7 +149,7 @@ impl<S: Controlled<D, U, C, Scalar: Real>, B: Start<S, D, U, C>, const D: usize,
         }
     }
 
-    /// The conditions of the end at `x` that `target` declares, where they are the target, in their units, with the curvature of ν·g.
+    /// The conditions of the end at `x` that `target` declares, where they are the target, with the curvature of ν·g.
     pub fn conditions(
         &self,
         x: &S::Place,
@@ -166,15 +157,7 @@ impl<S: Controlled<D, U, C, Scalar: Real>, B: Start<S, D, U, C>, const D: usize,
     ) -> Option<TargetExpansion<S::Scalar, D>> {
         let is_declared = matches!(self.target, Target::Conditions);
         is_declared.then(|| {
-            let units = &self.units;
-            let by_values = multipliers.component_mul(units);
-            let mut conditions = self.system.target_expanded(self.constants, self.end_time(), x, &by_values);
-            for (mut row, unit) in conditions.slope.row_iter_mut().zip(units.iter()) {
-                row.iter_mut().for_each(|entry| *entry *= *unit);
-            }
-            [&mut conditions.values, &mut conditions.sizes, &mut conditions.by_time]
-                .into_iter()
-                .for_each(|entries| entries.component_mul_assign(units));
+            let mut conditions = self.system.target_expanded(self.constants, self.end_time(), x, multipliers);
             without_kinks(&mut conditions.slope);
             if !conditions.curvature.all_finite() {
                 conditions.curvature = SMatrix::zeros();
@@ -224,7 +207,7 @@ impl<S: Controlled<D, U, C, Scalar: Real>, B: Start<S, D, U, C>, const D: usize,
             metric: slope.tr_mul(&slope),
             squares: [distance_squared, zero],
             distance,
-            gap: square(&lack.component_div(&self.units), 0, D).sqrt(),
+            gap: distance,
             scale: if relative > zero { distance / relative } else { one },
             slope,
             all_slopes,

@@ -39,8 +39,6 @@ pub(super) struct Problem<'a, S: Controlled<D, U, C, Scalar: Real>, B, const D: 
     pub target: &'a Target<S::Place>,
     /// The lengths of changes of a place. A momentum is as long as the way that it moves the system in a few times of the plan.
     pub lengths: SVector<S::Scalar, D>,
-    /// One by the sizes of the conditions that the target declares.
-    pub units: SVector<S::Scalar, D>,
 }
 
 /// Whether a search ends where the first correction whose model reaches the target leads astray.
@@ -342,7 +340,7 @@ impl<
         let (bounds, pushing) = (T::zero(), [false; D]);
         for stage in stages.iter_mut().take(1) {
             stage.place = last;
-            problem.find_units(stage);
+            problem.find_lengths(stage);
         }
         Self {
             problem,

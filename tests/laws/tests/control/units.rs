@@ -21,24 +21,6 @@ struct Shy {
     top: f64,
 }
 
-/// A body that turns an axis to a star, past a forbidden cone, and then spins slowly.
-#[derive(Clebsch, Clone, Debug)]
-#[clebsch(
-    action     = |F: SO<3>, R: SO<3>| R * F,
-    lagrangian = |omega| omega.dot(&(self.inertia * omega)) / 2,
-    force      = |torque: Vector3| torque,
-    effort     = |h, torque| h * torque.norm_squared() / 2,
-    bounds     = |R, omega, torque| [R[(2, 0)] <= self.most, omega.norm_squared() <= self.top.powi(2)],
-    target     = |R, omega, star: Vector3| [R * Vector3::x() == star, omega == self.spin * Vector3::z()],
-)]
-struct Pointing {
-    #[clebsch(symmetric)]
-    inertia: Matrix3<f64>,
-    most: f64,
-    top: f64,
-    spin: f64,
-}
-
 /// So many old units are a new one.
 #[derive(Clone, Copy, Debug)]
 struct Units {
@@ -120,17 +102,5 @@ fn bounds_of_attitudes_do_not_tell_units() -> Result<(), Error> {
         let leaving = inertia * random.vector::<3>() * 0.5 / time;
         let goal = (attitude(random), leaving);
         found(&control, &start, Target::Place(goal), units)
-    })
-}
-
-#[test]
-fn conditions_of_the_end_do_not_tell_units() -> Result<(), Error> {
-    are_the_same(long(16), 4200, |random, units| {
-        let Units { mass, time } = units;
-        let inertia = Matrix3::from_diagonal(&(INERTIA * mass));
-        let body = Pointing { inertia, most: 0.5, top: 6.0 / time, spin: 0.3 / time };
-        let start = (attitude(random), Vector3::zeros());
-        let control = body.control(0.025 * time)?.with_end_reference(attitude(random) * Vector3::x())?;
-        found(&control, &start, Target::Conditions, units)
     })
 }
