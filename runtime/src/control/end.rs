@@ -108,12 +108,8 @@ pub(super) fn sizes<S, const D: usize, const U: usize, const C: usize>(
 where
     S: Controlled<D, U, C, Scalar: Real>,
 {
-    changes(size::<S, D, U, C>(x, lengths), S::MOTIONS, lengths)
-}
-
-/// Changes as large as this, the first ones motions.
-fn changes<T: Real, const D: usize>(size: T, motions: usize, lengths: &SVector<T, D>) -> SVector<T, D> {
-    SVector::from_fn(|i, _| if i < motions { size } else { size / lengths[i] })
+    let size = size::<S, D, U, C>(x, lengths);
+    SVector::from_fn(|i, _| if i < S::MOTIONS { size } else { size / lengths[i] })
 }
 
 impl<S: Controlled<D, U, C, Scalar: Real>, B: Start<S, D, U, C>, const D: usize, const U: usize, const C: usize>
@@ -127,12 +123,6 @@ impl<S: Controlled<D, U, C, Scalar: Real>, B: Start<S, D, U, C>, const D: usize,
     /// Changes that are as large as a place, of each component.
     pub fn sizes(&self, x: &S::Place) -> SVector<S::Scalar, D> {
         sizes::<S, D, U, C>(x, &self.lengths)
-    }
-
-    /// Changes as large as this; of a place at the origin the unit is that of its entries.
-    fn changes(&self, largest: S::Scalar) -> SVector<S::Scalar, D> {
-        let zero = S::Scalar::zero();
-        changes(if largest > zero { largest } else { S::Scalar::one() }, S::MOTIONS, &self.lengths)
     }
 
     /// Finds the lengths of momenta by the first step. Where conditions are the target, momenta are as long as their numbers.
@@ -175,7 +165,7 @@ impl<S: Controlled<D, U, C, Scalar: Real>, B: Start<S, D, U, C>, const D: usize,
         pushing: &[bool; D],
     ) -> PlanEnd<S::Scalar, D> {
         let (zero, one) = (S::Scalar::zero(), S::Scalar::one());
-        let sizes = conditions.sizes_for(&self.changes(largest));
+        let sizes = conditions.sizes_for(largest);
         // Written so that NaN counts.
         let is_satisfied = |i: usize| conditions.values[i] <= round_off::<S::Scalar>() * sizes[i];
         let counts = |i: usize| i < S::EQUATIONS || pushing[i] || !is_satisfied(i);
@@ -189,8 +179,7 @@ impl<S: Controlled<D, U, C, Scalar: Real>, B: Start<S, D, U, C>, const D: usize,
         let distance_squared = lack.dot(&lack);
         let distance = distance_squared.sqrt();
         let unit = |i: usize| if counts(i) && sizes[i] > zero { sizes[i].recip() } else { zero };
-        let scaled = SMatrix::<S::Scalar, D, D>::from_fn(|i, j| slope[(i, j)] / self.lengths[j]);
-        let metric = scaled * scaled.transpose();
+        let metric = slope * slope.transpose();
         let spectrum = Spectrum::of(&SMatrix::<_, D, D>::from_fn(|i, j| unit(i) * metric[(i, j)] * unit(j)));
         let least = S::Scalar::from_f64(UNITS) * S::Scalar::EPSILON * spectrum.largest();
         let column = |i: usize, k: usize| if spectrum.values[k] <= least { zero } else { spectrum.vectors[(i, k)] };
@@ -198,7 +187,7 @@ impl<S: Controlled<D, U, C, Scalar: Real>, B: Start<S, D, U, C>, const D: usize,
         let dual = SMatrix::from_fn(|i, k| if counts(i) { sizes[i] * column(i, k) } else { zero });
         let inverse = spectrum.map(|value| if value <= least { zero } else { value.recip() });
         let inverse = SMatrix::<_, D, D>::from_fn(|i, j| unit(i) * inverse[(i, j)] * unit(j));
-        let motion = scaled.tr_mul(&(inverse * lack)).component_div(&self.lengths);
+        let motion = slope.tr_mul(&(inverse * lack));
         PlanEnd {
             pull: all_slopes.tr_mul(&lack),
             // without the part that no change closes: equations may follow from others, as those of unit vectors do
@@ -219,7 +208,7 @@ impl<S: Controlled<D, U, C, Scalar: Real>, B: Start<S, D, U, C>, const D: usize,
     /// exact in flat spaces and for rotations about one axis.
     pub fn end(&self, x: &S::Place, largest: S::Scalar, pushing: &[bool; D]) -> PlanEnd<S::Scalar, D> {
         if let Some(conditions) = self.conditions(x, &SVector::zeros()) {
-            return self.end_of(x, &conditions, larger(largest, self.size(x)), pushing);
+            return self.end_of(x, &conditions, larger(largest, x.max_abs()), pushing);
         }
         let Self { target, lengths, .. } = self;
         let (zero, one) = (S::Scalar::zero(), S::Scalar::one());
@@ -297,9 +286,11 @@ fn round_off<T: Real>() -> T {
 }
 
 impl<T: Real, const D: usize> TargetExpansion<T, D> {
-    /// The sizes of terms, for changes as large as places.
-    fn sizes_for(&self, changes: &SVector<T, D>) -> SVector<T, D> {
-        SVector::from_fn(|i, _| (0..D).fold(self.sizes[i], |sum, j| sum + self.slope[(i, j)].abs() * changes[j]))
+    /// The sizes of terms, for places as large as this.
+    fn sizes_for(&self, largest: T) -> SVector<T, D> {
+        // of a place at the origin the unit is that of its entries
+        let largest = if largest > T::zero() { largest } else { T::one() };
+        SVector::from_fn(|i, _| self.slope.row(i).iter().fold(self.sizes[i], |sum, slope| sum + slope.abs() * largest))
     }
 }
 
@@ -330,7 +321,7 @@ impl<T: Real, S: Controlled<D, U, C, Scalar = T>, B: Start<S, D, U, C>, const D:
     /// Those inequalities push that are next to equations.
     pub fn push_near(&mut self) {
         let Some(conditions) = self.problem.conditions(&self.last, &SVector::zeros()) else { return };
-        let sizes = conditions.sizes_for(&self.problem.changes(self.problem.size(&self.last)));
+        let sizes = conditions.sizes_for(self.last.max_abs());
         for i in 0..D {
             if self.is_inequality(i) {
                 self.pushing[i] = conditions.values[i] >= -sizes[i] * T::from_ratio(NEXT.0, NEXT.1);
