@@ -38,7 +38,7 @@ pub(super) struct Problem<'a, S: Controlled<D, U, C, Scalar: Real>, B, const D: 
     pub beginning: &'a B,
     pub target: &'a Target<S::Place>,
     /// The lengths of changes of a place. A momentum is as long as the way that it moves the system in a few times
-    /// of the plan; where conditions are the target, as its number.
+    /// of the plan. Where conditions are the target, it is as long as its number.
     pub lengths: SVector<S::Scalar, D>,
 }
 

@@ -22,17 +22,11 @@ mod targets;
 mod units;
 mod velocities;
 
-use nalgebra::Matrix3;
+use plans::place;
 
 /// The number of random plans: an eighth without the feature `heavy`, and one at least.
 const fn long(plans: usize) -> usize {
     if cfg!(feature = "heavy") { plans } else { plans.div_ceil(8) }
-}
-
-/// An element of SE(2).
-fn place(angle: f64, x: f64, y: f64) -> Matrix3<f64> {
-    let (sin, cos) = angle.sin_cos();
-    Matrix3::new(cos, -sin, x, sin, cos, y, 0.0, 0.0, 1.0)
 }
 
 /// Few of so many plans: the test `control` of `clebsch-tests` makes all of them, optimised.

@@ -138,6 +138,7 @@ fn free_unicycle() -> FreeUnicycle {
     FreeUnicycle { miss_price: 0.0, goal: Vector2::zeros() }
 }
 
+/// An element of SE(2).
 pub(super) fn place(angle: f64, x: f64, y: f64) -> Matrix3<f64> {
     let (sin, cos) = angle.sin_cos();
     Matrix3::new(cos, -sin, x, sin, cos, y, 0.0, 0.0, 1.0)
