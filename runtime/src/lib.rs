@@ -75,10 +75,11 @@
 //!
 //! # Features
 //!
-//! All are off by default. Only `std` changes results that exist without it.
+//! All but `roots` are off by default. Only `std` changes results that exist without it.
 //!
 //! | feature | gives |
 //! |---|---|
+//! | `roots` (default) | square roots by the processor's instruction, the same bits as those of `libm`; needs the standard library. `default-features = false` is `no_std` |
 //! | `std` | elementary functions of the standard library in place of `libm`: those of the platform, [see below](crate#the-same-bits-everywhere) |
 //! | `lanes` | `F64x4`, `F64x8` and `F32x8`: several bodies side by side in vector registers, `no_std` and without heap |
 //! | `alloc` | on the heap: `Ensemble`, many bodies; `Mesh`, `Multigrid`, and sites of a field with parameters of their own |
@@ -140,7 +141,7 @@
 
 #[cfg(feature = "alloc")]
 extern crate alloc;
-#[cfg(any(feature = "std", feature = "rayon", feature = "record", test))]
+#[cfg(any(feature = "roots", feature = "record", test))]
 extern crate std;
 
 // first, as its page shows methods in the order of modules

@@ -281,10 +281,11 @@ macro_rules! floating_point {
             }
             #[inline]
             fn sqrt(self) -> Self {
-                // the same number: the optimiser sees into this root, and takes those of two sites at once
-                #[cfg(any(feature = "std", feature = "rayon"))]
+                // the same number: the optimiser sees into this root, and takes those of two sites at once. That of `libm` is a block of
+                // assembler for the oldest processors, by which wider registers wait
+                #[cfg(feature = "roots")]
                 { <$scalar>::sqrt(self) }
-                #[cfg(not(any(feature = "std", feature = "rayon")))]
+                #[cfg(not(feature = "roots"))]
                 { libm::$sqrt(self) }
             }
             $(
