@@ -31,7 +31,7 @@ use core::array::from_fn;
 use duplication::{Functions, duplicated};
 use nalgebra::{ArrayStorage, Quaternion, SMatrix, SVector};
 use num_traits::{One, Zero};
-use series::{Coefficients, coefficient};
+use series::{Coefficients, in_alpha};
 use turn::{Turn, balanced, minors, ratio, turn, turn_of_tensor};
 
 pub(crate) mod axes;
@@ -312,19 +312,18 @@ impl<T: Scalar> OfLane<'_, T> {
         None
     }
 
-    /// The polynomial of degree `K` by the rule of Horner in ε, its coefficients by that in α.
+    /// The polynomial of degree `K`, the coefficients of powers of ε by the rule of Horner in α.
     #[inline(always)]
     fn polynomial<const K: usize>(self, alpha: T::Lane, epsilon: T::Lane) -> [T::Lane; 4] {
-        let coefficients =
-            |i: usize, j: usize| coefficient(&self.free.series, i, j).map(|number| number.lane(self.lane));
         let mut sum = [<T::Lane as Zero>::zero(); 4];
-        for j in (0..=K).rev() {
-            let mut inner = coefficients(K - j, j);
-            for i in (0..K - j).rev() {
-                let next = coefficients(i, j);
-                inner = from_fn(|k| inner[k] * alpha + next[k]);
-            }
-            sum = from_fn(|k| sum[k] * epsilon + inner[k]);
+        let mut power = <T::Lane as One>::one();
+        // the longest rule comes first: the others do not wait for it
+        for j in 0..=K {
+            let coefficients = in_alpha::<T, K>(&self.free.series, j).iter().rev();
+            let nothing = [<T::Lane as Zero>::zero(); 4];
+            let next = coefficients.fold(nothing, |sum, next| from_fn(|k| sum[k] * alpha + next[k].lane(self.lane)));
+            sum = from_fn(|k| sum[k] + next[k] * power);
+            power *= epsilon;
         }
         sum
     }

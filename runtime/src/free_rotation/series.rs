@@ -40,6 +40,13 @@ pub(super) fn coefficient<T: Scalar>(series: &Coefficients<T>, i: usize, j: usiz
     series.get(place(i, j)).copied().unwrap_or([T::zero(); 4])
 }
 
+/// The coefficients of α^i ε^j up to the degree K, for each i.
+#[inline(always)]
+pub(super) fn in_alpha<T: Scalar, const K: usize>(series: &Coefficients<T>, j: usize) -> &[[T; 4]] {
+    let start = place(0, j);
+    series.get(start..start + (K + 1 - j)).unwrap_or_default()
+}
+
 /// The coefficients of x_i d_i for the reciprocal moments x. Scales are such that h M/2 is m.
 #[cold]
 pub(super) fn on_axes<T: Scalar>(x: &SVector<T, 3>) -> Coefficients<T> {
