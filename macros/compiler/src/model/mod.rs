@@ -196,6 +196,12 @@ pub fn model<'g>(graph: &'g Graph, declaration: &Declaration, by_number: ByNumbe
         Mover::Momenta(kinetic) => kinetic,
         Mover::Inputs(motion) => return Ok(Model::Steered(Box::new(Steered { system: Rc::new(system), motion }))),
     };
+    let (kinetic, declared) = match declaration.potential.as_ref().and_then(Potential::opaque) {
+        None if power.is_none() && formulas.edges.is_empty() && !dials.emit.momentum => {
+            kinetic.without_potential(&system, formulas.potential)
+        }
+        _ => (kinetic, formulas.potential),
+    };
     let force = formulas.force;
     if dials.emit.connection {
         field::check_connection(&system, kinetic.energy())?;
@@ -208,7 +214,7 @@ pub fn model<'g>(graph: &'g Graph, declaration: &Declaration, by_number: ByNumbe
     let order = if power.is_some() && declared_order.stages().is_some() { Order::Second } else { declared_order };
     let is_field = !formulas.edges.is_empty();
     let order = if is_field && declared_order.stages().is_some() { Order::Second } else { order };
-    let mut potential = formulas.potential;
+    let mut potential = declared;
     // the sites of a field are kicked by their potential and by their edges at once
     let field = is_field.then(|| FieldEnergies {
         edges: formulas.edges,
