@@ -88,7 +88,7 @@ macro_rules! moves {
 moves! {
     "q and N move by D." ByIncrement: D, |_, d| d();
     "q and N move by x, without the matrix D." ByCoordinates: X, |x, _| *x;
-    "q moves by x, N by D." ByBoth: (X, D), |x, d| (*x, d());
+    "q moves by one of x and D, N by the other or by both." ByBoth: (X, D), |x, d| (*x, d());
 }
 
 /// The data that moves q and N in a step of S by M.

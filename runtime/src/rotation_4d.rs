@@ -19,6 +19,9 @@
 //! Q₂ = |M|², Q₄ = Pf² − Σ m²(k_p + k_q) and Q₆ = Σ m² k_p k_q are sums over the planes. k_p and k_q are the squares of the
 //! moments of the other two axes. No difference of nearly equal numbers occurs for short steps.
 //!
+//! Short steps need less: in principal axes the equation is X = S⁻¹((1 + |x|² + Pf²)M − (X²J − JX²)) − Pf ⋆X with SX = 2(JX + XJ).
+//! Its iterations contract like h|ω|, and each takes less than a quarter of the operations above.
+//!
 //! The solution that is connected to the identity has all eigenvalues of B right of the imaginary axis. By Hurwitz's criterion
 //! this is so where e₁, e₃ and H are positive. That polynomial is unique, so a root with H > 0 is the one.
 //!
@@ -26,7 +29,9 @@
 //! Comm. Math. Phys. 139 (1991), for the factorization; the scalar equation is our own.
 
 use crate::free_rotation::axes::Axes;
-use crate::free_rotation_4d::flow::{Matrix, PLANES, Vector, above, at, dot, entry, place, product, skew};
+use crate::free_rotation_4d::flow::{
+    Matrix, PLANES, Vector, above, at, dot, dual, entry, pfaffian, place, product, skew,
+};
 use crate::free_rotation_4d::mass;
 use crate::free_rotation_4d::turn::{Powers, adjugate, equation};
 use crate::implicit::{Equation, solve, solve_at_last};
@@ -59,6 +64,8 @@ pub struct RotatingBody4<T> {
 struct Planes<T> {
     /// −1/(2(j_i + j_j)): δ₁ is the sum of these times m², but for terms of the fourth order.
     start: Vector<T>,
+    /// (j_j − j_i)/(j_i + j_j)
+    bends: Vector<T>,
     /// k_p + k_q of the other two axes.
     sums: Vector<T>,
     /// k_p k_q
@@ -75,6 +82,9 @@ pub trait RotationEquation4<T: Scalar> {
     /// The constants.
     fn body(&self) -> &RotatingBody4<T>;
 }
+
+/// Iterations of short steps. Where one leaves more than a 32nd of the change before, the scalar equation is cheaper.
+const MOST_SWEEPS: u32 = 8;
 
 /// Newton's steps for δ₁: each squares the error, and the start is right to the second order.
 const MOST: u32 = 5;
@@ -143,6 +153,7 @@ impl<T: Scalar> Planes<T> {
         let half = T::from_ratio(1, 2);
         Self {
             start: by_plane(|i, j| -half / (at(moments, i) + at(moments, j))),
+            bends: by_plane(|i, j| (at(moments, j) - at(moments, i)) / (at(moments, i) + at(moments, j))),
             sums: by_others(|p, q| at(squares, p) + at(squares, q)),
             products: by_others(|p, q| at(squares, p) * at(squares, q)),
             share: by_plane(|i, j| T::select(at(moments, i).below(at(moments, j)), T::zero(), T::one())),
@@ -152,12 +163,12 @@ impl<T: Scalar> Planes<T> {
 
 /// The Cayley coordinates of the rotation whose momentum is μ.
 ///
-/// Work: one to five of Newton's steps for one scalar, and one system of four equations. Where these do not decide,
-/// [`solve`](crate::implicit::solve) does.
+/// Work: three to eight iterations for short steps. Else one to five of Newton's steps for one scalar, and one system of four
+/// equations. Where these do not decide, [`solve`](crate::implicit::solve) does.
 ///
 /// # Errors
 /// Those of [`solve`](crate::implicit::solve).
-#[inline]
+#[inline(always)]
 pub fn solve_rotation_4d<T: Scalar, E: RotationEquation4<T>>(
     equation: &E,
     target: &Vector<T>,
@@ -190,7 +201,50 @@ impl<T: Scalar> RotatingBody4<T> {
     #[inline(always)]
     fn turn(&self, mu: &Vector<T>) -> (Vector<T>, T::Mask) {
         let momentum = self.in_principal_axes(mu);
-        let powers = Powers::of(&momentum);
+        let (mut x, mut solved) = self.by_sweeps(&momentum);
+        if !solved.all() {
+            let (by_root, is_right) = self.by_root(&momentum);
+            x = x.zip_map(&by_root, |swept, x| T::select(solved, swept, x));
+            solved = solved | is_right;
+        }
+        (self.in_coordinates(&x), solved)
+    }
+
+    /// The entries of X by iterations of X ← S⁻¹((1 + |x|² + Pf²)M − (X²J − JX²)) − Pf ⋆X, SX = 2(JX + XJ), and in which lanes they
+    /// have settled. Each leaves h|ω| of the error of the one before: short steps need three to six.
+    #[inline(always)]
+    fn by_sweeps(&self, momentum: &Vector<T>) -> (Vector<T>, T::Mask) {
+        let first = momentum.zip_map(&self.planes.start, |m, start| -m * start);
+        let (mut x, mut before) = (first, square_of(&first));
+        let (mut settled, mut open) = (T::Mask::nowhere(), T::Mask::everywhere());
+        let rounding = T::EPSILON * T::EPSILON * T::from_ratio(1, 16);
+        for _ in 0..MOST_SWEEPS {
+            let (square, pf) = (square_of(&x), pfaffian(&x));
+            let size = T::one() + (square + pf * pf);
+            let bent = of_square(&x);
+            let dual = dual(&x);
+            let next = Vector::from_fn(|i, _| {
+                first[i % 6] * size - (self.planes.bends[i % 6] * bent[i % 6] + pf * dual[i % 6])
+            });
+            let change = next - x;
+            let now = square_of(&change);
+            x = x.zip_map(&next, |x, next| T::select(open, next, x));
+            // the error is to this change as this change is to the one before
+            let contracts = now.at_most(before * T::from_ratio(1, 1 << 10)) & square.below(T::from_ratio(1, 4));
+            settled = settled | open & contracts & (now * now).at_most(rounding * (square * before));
+            open = open & contracts & !settled;
+            if !open.any() {
+                break;
+            }
+            before = now;
+        }
+        (x, settled)
+    }
+
+    /// The entries of X by Newton's steps for δ₁.
+    #[inline(never)]
+    fn by_root(&self, momentum: &Vector<T>) -> (Vector<T>, T::Mask) {
+        let powers = Powers::of(momentum);
         let [sums, products, start] = [&self.planes.sums, &self.planes.products, &self.planes.start]
             .map(|of_plane| dot(&powers.squares, of_plane));
         let integrals = [powers.square, powers.pf * powers.pf - sums, products];
@@ -205,7 +259,7 @@ impl<T: Scalar> RotatingBody4<T> {
                 break;
             }
         }
-        (self.in_coordinates(&self.rotation((&momentum, &powers), &integrals, delta)), solved)
+        (self.rotation((momentum, &powers), &integrals, delta), solved)
     }
 
     /// δ₂ and δ₃
@@ -316,6 +370,20 @@ impl<T: Scalar, E: RotationEquation4<T>> Equation<T, 6> for Iterated<'_, E> {
     fn orientation(&self) -> Option<Orientation> {
         Some(self.0.body().orientation)
     }
+}
+
+/// |x|², in pairs: a short chain of operations.
+#[inline(always)]
+fn square_of<T: Scalar>(x: &Vector<T>) -> T {
+    let [[a, b, c, d, e, f]] = x.data.0;
+    ((a * a + b * b) + (c * c + d * d)) + (e * e + f * f)
+}
+
+/// The entries of X² above the diagonal, of those of X.
+#[inline(always)]
+fn of_square<T: Scalar>(x: &Vector<T>) -> Vector<T> {
+    let [[a, b, c, d, e, f]] = x.data.0;
+    SVector::from([-(b * d + c * e), a * d - c * f, a * e + b * f, -(a * b + e * f), d * f - a * c, -(b * c + d * e)])
 }
 
 /// The components of B − Bᵀ.

@@ -132,6 +132,23 @@ proptest! {
     }
 }
 
+/// Short steps are found by iterations alone, and are those of the scalar equation. These do not contract in long steps, which they leave.
+#[test]
+fn short_steps_are_iterated() {
+    let mass = Matrix4::from_diagonal(&[1.0, 1.5, 2.0, 2.5].into());
+    let body = RotatingBody4::new(&inertia(&mass), 0.5).expect("a body");
+    let direction = SVector::from([0.3, -0.5, 0.2, 0.6, -0.1, 0.5]);
+    for (size, is_short) in [(1e-9, true), (1e-3, true), (0.01, true), (1.0, false), (1e200, false)] {
+        let mu = direction * size;
+        let ((swept, settled), (found, solved)) = (body.by_sweeps(&mu), body.by_root(&mu));
+        assert_eq!(settled, is_short, "{size}");
+        if settled {
+            assert!(solved && (swept - found).norm() < 8.0 * f64::EPSILON * found.norm(), "{swept} {found}");
+        }
+    }
+    assert!(!body.by_sweeps(&(direction * f64::NAN)).1);
+}
+
 /// One moment may be negative where sums are positive: such a body is left to the path from the identity.
 #[test]
 fn a_negative_moment_is_left_to_newtons_method() {

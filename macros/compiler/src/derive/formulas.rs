@@ -163,9 +163,12 @@ impl MechanicsFormulas<'_> {
 
     /// The factors whose chart coordinates x/w are given by x and w, so that F − I = 2 (w x^ + (x^)²)/(w² + |x|²) holds the only division.
     pub fn weighted(&self) -> Vec<usize> {
-        let rotates = |k: &usize| self.model.factors[*k].group == Group::SpecialOrthogonal(3);
-        let is_found = |k: &usize| exact::is_free_rotation(&self.model, *k) || self.has_scalar_equation(*k);
-        (0..self.model.factors.len()).filter(|k| rotates(k) && is_found(k)).into_list()
+        let is_found = |k: &usize| match self.model.factors[*k].group {
+            Group::SpecialOrthogonal(3) => exact::is_free_rotation(&self.model, *k) || self.has_scalar_equation(*k),
+            Group::UnitQuaternions => self.has_scalar_equation(*k),
+            _ => false,
+        };
+        (0..self.model.factors.len()).filter(is_found).into_list()
     }
 
     /// Whether a rotation in space is a free motion, exactly.

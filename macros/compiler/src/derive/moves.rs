@@ -1,12 +1,12 @@
 //! The formulas that a move runs. Elements are increments D = F − I, in the chart, so that values near the identity are
 //! computed without cancellation.
 
-use clebsch_symbolic::{Chart, Elements, Expr, Group, IntoElements, IntoList, Property, Role, Shape, identity};
+use clebsch_symbolic::{Chart, Elements, Expr, Group, IntoElements, IntoList, Property, Role, Shape, both, identity};
 
 use super::equation::DISTRIBUTED;
 use super::summation::with_arrival;
 use super::{MechanicsFormulas, Substep, SystemFormulas, cayley};
-use crate::model::{Factor, Isotropy};
+use crate::model::{Factor, Isotropy, Side};
 
 impl<'g> SystemFormulas<'g> {
     /// The replacement of each group element by I + D (D for translations), and of its inverse by that of I + D.
@@ -123,16 +123,20 @@ impl<'g> MechanicsFormulas<'g> {
         parts.each(|part| part.substitute(&elements).expand())
     }
 
-    /// F − I of each factor, from the chart coordinates: F − I = 2 (w x^ + (x^)²)/(w² + |x|²) of the rotation whose Gibbs vector is x/w.
+    /// F − I of each factor, from the chart coordinates. The rotation with the Gibbs vector x/w has 2 (w x^ + (x^)²)/(w² + |x|²).
+    /// Its quaternion has (x, −|x|²/(w + n))/n with n² = w² + |x|².
     pub(super) fn chart_increments(&self) -> Vec<Expr<'g>> {
-        let weighted = self.weighted();
         let increment = |(k, factor): (usize, &Factor<'g>)| {
-            let Some(number) = weighted.iter().position(|&other| other == k) else { return self.chart_increment(k) };
-            let role = Role::ChartWeight(number);
-            let w = self.model.graph.symbol("w", Shape::scalar(), role, Property::General);
+            let Some(w) = self.weight(k) else { return self.chart_increment(k) };
             let x = self.symbols.stacked_coordinates(k);
+            let square = w * w + x.dot(x);
+            if factor.group == Group::UnitQuaternions {
+                let size = square.sqrt();
+                let scalar = -(x.dot(x) / (square + w * size));
+                return self.model.graph.below(&[x / size, scalar]);
+            }
             let hat = factor.group.wedge(x);
-            (w * hat + hat * hat) / ((w * w + x.dot(x)) / 2)
+            (w * hat + hat * hat) / (square / 2)
         };
         self.model.factors.iter().enumerate().map(increment).into_list()
     }
@@ -159,10 +163,55 @@ impl<'g> MechanicsFormulas<'g> {
         // the move is linear in M: M, which may be long, is substituted last
         let momenta = self.momenta_of_move(substep)?;
         let momenta: Vec<_> = self.symbols.momenta.iter().copied().zip(self.at_both_ends(&momenta)).into_list();
-        let carried = self.at_increments(&self.carried_by_move(substep));
+        let carried = self.carried_by_move(substep).into_iter().enumerate();
+        let turned = |(k, carried)| self.turned(substep, k).unwrap_or_else(|| self.at_increments(&[carried])[0]);
+        let carried = carried.map(turned).into_list();
         let carried = carried.into_each(|carried| carried.substitute(&momenta));
         let arrival = substep.coupling.as_ref().map(|coupling| self.at_both_ends(&coupling.arrival));
         Some(with_arrival(carried, arrival.as_deref()))
+    }
+
+    /// M⁺ of M = μ by chart coordinates, where that is shorter than by the increment of the group element.
+    fn turned(&self, substep: &Substep<'g>, k: usize) -> Option<Expr<'g>> {
+        let (factor, symbols) = (&self.model.factors[k], &self.symbols);
+        if substep.unchanged[k] || substep.coupling.is_some() || self.field.is_some() || self.turns_whole() {
+            return None;
+        }
+        let x = symbols.stacked_coordinates(k);
+        let x = if factor.side == Side::Left { -x } else { x };
+        symbols.charts[k].coadjoint(factor.group, x, self.weight(k), symbols.momenta[k])
+    }
+
+    /// Whether the momentum after a move is told by chart coordinates.
+    pub fn turns_momenta(&self) -> bool {
+        let substeps = self.substeps.iter().take(self.stepped);
+        let mut turned =
+            substeps.flat_map(|substep| (0..self.model.factors.len()).map(move |k| self.turned(substep, k)));
+        !self.is_compensated() && turned.any(|turned| turned.is_some())
+    }
+
+    /// M⁺ of a single rotation in four dimensions in words, as its entries are long.
+    pub(super) fn turned_in_four_space(&self, substep: &Substep<'g>, mu: &str, x: &str) -> Option<[String; 2]> {
+        let [factor] = &self.model.factors[..] else { return None };
+        let is_told = factor.group == Group::SpecialOrthogonal(4) && !self.is_compensated();
+        self.turned(substep, 0).filter(|_| is_told)?;
+        let commuted = |momentum: &str| match factor.side {
+            Side::Left => format!("[{x}, {momentum}]"),
+            Side::Right => format!("[{momentum}, {x}]"),
+        };
+        let [first, second] = both([mu, "c"], commuted);
+        Some([
+            format!("{mu} + 2·(c − p·⋆c + {second})/(1 + |{x}|² + p²), c = {first}, p = Pf {x}"),
+            format!(
+                "{mu} + 2 (c - p \\star c + {second})/(1 + |{x}|^2 + p^2),\\quad c = {first},\\quad p = \\operatorname{{Pf}} {x}"
+            ),
+        ])
+    }
+
+    /// w of chart coordinates x/w.
+    fn weight(&self, k: usize) -> Option<Expr<'g>> {
+        let number = self.weighted().iter().position(|&other| other == k)?;
+        Some(self.model.graph.symbol("w", Shape::scalar(), Role::ChartWeight(number), Property::General))
     }
 
     /// q⁺ = q + α x_Q(q) + β x_Q(x_Q(q)) of vectors that turn in one plane, without the matrix of the turn.

@@ -239,7 +239,7 @@ functions! {
         fn increment(&self, Coordinates: &X) -> F { Id::Increment }
         fn element(d: &F) -> F { Id::Increment }
         /// The configuration that F = I + D moves q to.
-        fn advance(&self, q: &Q, d: &F) -> Q { Id::Advance }
+        fn advance(&self, q: &Q, Moved: &Motion) -> Q { Id::Advance }
         /// q⁺ = q + α ξ_Q(q) + β ξ_Q(ξ_Q(q)) at ξ = x where F = I + α x^ + β (x^)², without the matrix.
         fn advance(&self, q: &Q, Moved: &Motion) -> Q { Id::Displacement }
         /// The covector p carried along by F = I + D, at q⁺.

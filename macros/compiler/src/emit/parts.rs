@@ -8,7 +8,7 @@ use super::function::{Body, Function};
 use super::functions::{PARTS, SUBSTEP};
 use super::scope::{nested, size};
 use super::{Emitter, flag};
-use crate::derive::{Id, Solution};
+use crate::derive::{Id, RotatingBody, Solution};
 use crate::lower::{Kernel, Solve};
 use crate::model::LeafSpace;
 
@@ -25,7 +25,7 @@ impl Emitter<'_, '_> {
     }
 
     /// The names and types of the data that moves q and N, in signatures. They are D = F − I, the chart coordinates x,
-    /// or x for q and D for N.
+    /// or both.
     pub(super) fn word_of_step(&self, word: &str) -> Option<TokenStream> {
         let is_displaced = || self.program.find(Id::Displacement).is_some();
         let updates = |index| self.program.find(Id::MomentumAfter(index)).is_some();
@@ -34,11 +34,15 @@ impl Emitter<'_, '_> {
             "X" => self.coordinates()[0].clone(),
             "Coordinates" => self.coordinates()[1].clone(),
             "Moves" | "Motion" | "Moved" | "Increment" => {
-                let [coordinates, _] = self.coordinates();
+                let [coordinates, x] = self.coordinates();
+                let turned = if self.formulas.turns_momenta() { x.clone() } else { quote!(_) };
                 let names = match (is_displaced(), is_updated()) {
+                    (true, true) => [quote!(ByBoth), quote!((#coordinates, F)), quote!((#x, _)), quote!((#turned, d))],
+                    (true, false) => [quote!(ByCoordinates), coordinates, x, quote!(d)],
+                    (false, true) if self.formulas.turns_momenta() => {
+                        [quote!(ByBoth), quote!((#coordinates, F)), quote!((_, d)), quote!((#turned, d))]
+                    }
                     (false, _) => [quote!(ByIncrement), quote!(F), quote!(d), quote!(d)],
-                    (true, false) => [quote!(ByCoordinates), coordinates, quote!(x), quote!(d)],
-                    (true, true) => [quote!(ByBoth), quote!((#coordinates, F)), quote!((x, _)), quote!((_, d))],
                 };
                 let place = ["Moves", "Motion", "Moved"].iter().position(|other| *other == word);
                 names[place.unwrap_or(3)].clone()
@@ -194,11 +198,16 @@ impl Emitter<'_, '_> {
                 let body = Body::from(self.solve(&self.program.steps[index]));
                 // the result of a call lies in memory in pieces, and reading it as vectors waits for them: a tenth of a
                 // short step
-                Some(if self.is_short() { body.inlined(quote!(#[inline(always)])) } else { body })
+                let turns = |solve: &Solve| matches!(solve.solution, Solution::Rotation(RotatingBody::FourSpace));
+                let is_inlined = self.is_short() || self.program.steps[index].solves.iter().any(turns);
+                Some(if is_inlined { body.inlined(quote!(#[inline(always)])) } else { body })
             }
             "update" if self.formulas.is_compensated() => {
                 let title = "The increment of the momentum by the move, F = I + D: M⁺ − μ, in which μ has cancelled.";
                 Some(computed()?.titled(title))
+            }
+            "update" if self.formulas.turns_momenta() => {
+                Some(computed()?.titled("The momentum after the move by the element with chart coordinates x, or x/w."))
             }
             _ => computed(),
         }

@@ -258,6 +258,34 @@ fn even_increment(z: Expr<'_>) -> Expr<'_> {
     2 * ((z + square) * ((one + s) * graph.identity(4) + square)) / (one + s + d)
 }
 
+impl Chart {
+    /// The components of Ad*_F μ of the element with the coordinates x/w, where these take fewer operations than F − I.
+    ///
+    /// For unit quaternions it is μ + 2(wc + c × x)/(w² + |x|²) with c = μ × x, which needs no root.
+    ///
+    /// Rotations in four dimensions, with w = 1, turn the two parts M ± M̃ by the quaternions (1 ∓ p, Z ± Z̃). So M becomes M + 2(C − pC̃
+    /// + [C, Z])/(1 + s + p²). Here C is [M, Z], s is |x|² and p the Pfaffian of Z.
+    pub fn coadjoint<'g>(self, group: Group, x: Expr<'g>, w: Option<Expr<'g>>, mu: Expr<'g>) -> Option<Expr<'g>> {
+        let one = x.graph().integer(1);
+        let square = x.norm_squared();
+        match (self, group, w) {
+            (Chart::Cayley, Group::UnitQuaternions, _) => {
+                let w = w.unwrap_or(one);
+                let turned = mu.cross(x);
+                Some(mu + (w * turned + turned.cross(x)) / ((w * w + square) / 2))
+            }
+            (Chart::Cayley, Group::SpecialOrthogonal(4), None) => {
+                let z = group.wedge(x);
+                let pfaffian = -(z * dual(z)).entry(0, 0);
+                let turned = commutator(group.wedge(mu), z);
+                let change = turned - pfaffian * dual_coordinates(turned) + commutator(group.wedge(turned), z);
+                Some(mu + change / ((one + square + pfaffian * pfaffian) / 2))
+            }
+            _ => None,
+        }
+    }
+}
+
 /// det(I + Z) − 1 = Σ e_k, the elementary symmetric functions of the eigenvalues by Newton's identities.
 fn determinant_excess(z: Expr<'_>) -> Expr<'_> {
     let graph = z.graph();
@@ -320,6 +348,15 @@ fn dual(z: Expr<'_>) -> Expr<'_> {
 fn dual_coordinates(x: Expr<'_>) -> Expr<'_> {
     let entries = [(5, 1), (4, -1), (3, 1), (2, 1), (1, -1), (0, 1)];
     x.graph().stack(x.shape(), entries.each(|&(k, sign)| sign * x.entry(k, 0)))
+}
+
+/// The coordinates of the commutator of two antisymmetric matrices, the entries below its diagonal.
+fn commutator<'g>(a: Expr<'g>, b: Expr<'g>) -> Expr<'g> {
+    let product = a * b;
+    let n = product.shape().rows;
+    let planes = (0..n).flat_map(|i| (i + 1..n).map(move |j| (i, j)));
+    let entries = planes.map(|(i, j)| product.entry(j, i) - product.entry(i, j)).into_list();
+    a.graph().stack(Shape::vector(entries.len()), entries)
 }
 
 impl Group {

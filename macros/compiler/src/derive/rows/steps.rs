@@ -22,8 +22,13 @@ impl<'g> MechanicsFormulas<'g> {
         let after = self.momentum_after(substep).filter(|_| !self.turns_whole()).unwrap_or_default();
         let symbol = if self.is_compensated() { "M⁺ − μ" } else { "M⁺" };
         let rest = substep.rest.clone().unwrap_or_default();
+        let after = Formula::shorter(Id::MomentumAfter(index), symbol, after);
+        let after = match self.turned_in_four_space(substep, &names.mu, &names.x) {
+            Some([unicode, latex]) => after.in_words(unicode, latex),
+            None => after,
+        };
         rows.extend([
-            Formula::shorter(Id::MomentumAfter(index), symbol, after),
+            after,
             Formula::shorter(Id::EndKick(index), format!("N⁺ − M⁺, at {q}⁺"), at(substep.ends, &substep.end)),
             Formula::shorter(Id::RestKick(index), format!("−r({q}, I)"), rest),
         ]);
