@@ -12,7 +12,7 @@ pub mod action {}
 /// Example: `cost = |h, F| …`
 pub mod cost {}
 
-/// The Lagrangian ℓ(q, ξ), most often the kinetic energy, in joules. The macro discretises it. The last argument is a new name for ξ, the velocity in the basis of the group. T(ξ) − V(q) in one closure is the same as T here and V in `potential`, unless V depends on the time.
+/// The Lagrangian ℓ(q, ξ), most often the kinetic energy, in joules. The macro discretises it. The last argument is a new name for ξ, the velocity in the basis of the group. A T(ξ) − V(q) without the time in one closure is the same as T here and V in `potential`.
 ///
 /// Example: `lagrangian = |omega| …`
 pub mod lagrangian {}

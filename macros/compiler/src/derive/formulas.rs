@@ -202,15 +202,24 @@ impl MechanicsFormulas<'_> {
             && substep.equations.iter().all(is_solved)
     }
 
-    /// Whether the motion of a factor is found by one scalar in all substeps, and steps alone take its coordinates.
+    /// Whether the motion of a factor is found by one scalar in all substeps, and moves alone take its coordinates.
     fn has_scalar_equation(&self, k: usize) -> bool {
         let is_scalar = |equation: &MomentumEquation<'_>| matches!(equation.solution, Solution::Rotation(_));
-        let finds_coordinates = self.collocation.is_none() && self.constraint.is_none() && self.field.is_none();
-        finds_coordinates
+        let is_free = self.constraint.is_none() && self.joints.is_none() && self.field.is_none();
+        is_free
+            && self.collocation.is_none()
             && self.substeps.iter().all(|substep| {
                 let mut own = substep.equations.iter().filter(|equation| equation.factors.contains(&k)).peekable();
-                own.peek().is_some() && own.all(is_scalar)
+                own.peek().is_some() && own.all(is_scalar) && !self.ends_with_velocity(substep)
             })
+    }
+
+    /// Whether the force at the end of a substep depends on the velocity: it reads chart coordinates.
+    fn ends_with_velocity(&self, substep: &Substep<'_>) -> bool {
+        let end = substep.force.iter().flat_map(|force| &force.end);
+        let elements = self.model.factors.iter().map(|factor| factor.symbol);
+        let velocities: Vec<_> = elements.chain(self.symbols.logarithms.iter().copied()).into_list();
+        end.into_iter().any(|part| velocities.iter().any(|velocity| part.depends_on(*velocity)))
     }
 
     /// Whether the step is found as F − I and the next momentum themselves, not by chart coordinates.

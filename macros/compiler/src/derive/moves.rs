@@ -193,7 +193,7 @@ impl<'g> MechanicsFormulas<'g> {
     /// M⁺ of a single rotation in four dimensions in words, as its entries are long.
     pub(super) fn turned_in_four_space(&self, substep: &Substep<'g>, mu: &str, x: &str) -> Option<[String; 2]> {
         let [factor] = &self.model.factors[..] else { return None };
-        let is_told = factor.group == Group::SpecialOrthogonal(4) && !self.is_compensated();
+        let is_told = factor.group == Group::SpecialOrthogonal(4) && !self.is_compensated() && substep.rest.is_none();
         self.turned(substep, 0).filter(|_| is_told)?;
         let commuted = |momentum: &str| match factor.side {
             Side::Left => format!("[{x}, {momentum}]"),

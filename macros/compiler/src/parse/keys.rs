@@ -77,7 +77,7 @@ pub(super) const KEYS: [Key; 28] = [
     key("cost", Kind::Closure, "|h, F| …", "required, or `lagrangian`", "",
         "The kinetic part of the discrete Lagrangian of one step, in J·s. The macro subtracts h·V. With `controls` or `dynamics` it is the price of the input of one step."),
     key("lagrangian", Kind::Closure, "|omega| …", "required, or `cost`", "",
-        "The Lagrangian ℓ(q, ξ), most often the kinetic energy, in joules. The macro discretises it. The last argument is a new name for ξ, the velocity in the basis of the group. T(ξ) − V(q) in one closure is the same as T here and V in `potential`, unless V depends on the time."),
+        "The Lagrangian ℓ(q, ξ), most often the kinetic energy, in joules. The macro discretises it. The last argument is a new name for ξ, the velocity in the basis of the group. A T(ξ) − V(q) without the time in one closure is the same as T here and V in `potential`."),
     key("potential", Kind::Potential, "|q| …", "none", MECHANICS,
         "The potential energy V(q), in joules. Where no formula exists, `opaque(Self::value, Self::gradient)` names two methods of the struct. `opaque(t, …)` is for methods that take the time first."),
     key("symmetry", Closures, "|S: SO<3>, q, F| (S * q, S * F * S.transpose())", "found", MECHANICS,

@@ -121,6 +121,24 @@ mod declared {
         pub far: nalgebra::Vector3<f64>,
     }
 
+    /// The same by quaternions, whose cost has one scalar unknown.
+    #[derive(Clebsch, Clone, Debug)]
+    #[clebsch(
+        action     = |F: [(Translation<3>, SU<2>); N], q: [(Vector3, SU<2>); N]| (0..N).map(|i| (q[i].0 + F[i].0, q[i].1 * F[i].1)),
+        cost       = |h, F| (0..N).map(|i| {
+            let turn = F[i].1.imag();
+            (self.mass * F[i].0.norm_squared() + 4 * turn.dot(&(self.inertia * turn))) / (2 * h)
+        }).sum(),
+        potential  = |q| (0..N).map(|i| q[i].0.z * i).sum(),
+        constraint = |q| [(1..N).map(|i| q[i].0 + q[i].1 * self.arm == q[i - 1].0 - q[i - 1].1 * self.arm)],
+    )]
+    pub struct Turning<const N: usize> {
+        pub mass: f64,
+        #[clebsch(symmetric)]
+        pub inertia: nalgebra::Matrix3<f64>,
+        pub arm: nalgebra::Vector3<f64>,
+    }
+
     macro_rules! written {
         ($($name:ident $constraint:expr)*) => { $(
             /// Beads on rods that stay in their plane.
@@ -173,6 +191,7 @@ mod declared {
 
 use declared::{
     Bridge, Eighth, Flying, FourBeads, Fourth, InLists, InRanges, Links, Necklace, OneByOne, Rope, Second, Sixth,
+    Turning,
 };
 
 const NEAR: [Vector3<f64>; 2] = [Vector3::new(0.0, 0.0, 0.5), Vector3::new(0.0, 0.0, 0.4)];
@@ -705,4 +724,24 @@ fn steps_of_chains_that_are_too_long_are_refused() -> Result<(), Error> {
     }
     assert!(refused >= 4, "{refused} were refused");
     Ok(())
+}
+
+/// Hinges between bodies by quaternions hold, and the energy does not drift.
+#[test]
+fn hinges_of_quaternions_hold() {
+    let arm = Vector3::new(0.5, 0.1, -0.2);
+    let chain = Turning::<3> { mass: 1.2, inertia: Matrix3::from_diagonal(&Vector3::new(0.3, 0.4, 0.5)), arm };
+    let stepper = chain.into_stepper(0.01).expect("a chain");
+    let places = std::array::from_fn(|i| (arm * (-2.0 * i as f64), nalgebra::Quaternion::identity()));
+    let start = stepper.state(places, [nalgebra::Vector6::zeros(); 3]).expect("a state");
+    let end = stepper.advance(&start, 100).expect("steps");
+    let bodies = end.configuration();
+    for pair in bodies.windows(2) {
+        let [(before, turn), (after, other)] = [pair[0], pair[1]];
+        let [far, near] = [turn, other].map(|turn| nalgebra::UnitQuaternion::from_quaternion(turn) * arm);
+        assert!((after + near - before + far).norm() < 1e-12, "{after} {before}");
+    }
+    assert!((bodies[2].1.w - 1.0).abs() > 1e-3, "it turns: {}", bodies[2].1);
+    let (before, after) = (stepper.energy(&start), stepper.energy(&end));
+    assert!((before - after).abs() < 1e-3, "{before} {after}");
 }

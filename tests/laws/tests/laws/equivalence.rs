@@ -9,7 +9,7 @@ use clebsch_tests::fixtures::rigid_body4::RigidBody4;
 use clebsch_tests::fixtures::spherical_pendulum::SphericalPendulum;
 use clebsch_tests::oracle::near::assert_near;
 use clebsch_tests::oracle::random::Random;
-use nalgebra::{Matrix3, Matrix4, Vector3};
+use nalgebra::{Matrix3, Matrix4, Quaternion, UnitQuaternion, Vector3};
 
 const H: f64 = 0.02;
 
@@ -358,3 +358,56 @@ fn a_configuration_that_nothing_moves_stays() {
     assert_eq!(last.configuration().1, y);
     assert_ne!(last.configuration().0, x);
 }
+
+macro_rules! damped {
+    ($agree:ident: $quaternions:ident, $matrices:ident, $order:literal) => {
+        /// A body whose force depends on the velocity, by quaternions.
+        #[derive(Clebsch, Clone, Debug)]
+        #[clebsch(
+                            action = |F: SU<2>, Q: SU<2>| Q * F,
+                            cost   = |h, F| 2 * F.imag().dot(&(self.inertia * F.imag())) / h,
+                            force  = |omega| -self.drag * omega,
+                            order  = $order,
+                        )]
+        pub struct $quaternions {
+            #[clebsch(symmetric)]
+            pub inertia: Matrix3<f64>,
+            pub drag: f64,
+        }
+
+        /// The same by matrices.
+        #[derive(Clebsch, Clone, Debug)]
+        #[clebsch(
+                            action = |F: SO<3>, R: SO<3>| R * F,
+                            cost   = |h, F| (self.mass_matrix * (F - I) * (F - I).transpose()).trace() / (2 * h),
+                            force  = |omega| -self.drag * omega,
+                            order  = $order,
+                        )]
+        pub struct $matrices {
+            #[clebsch(symmetric)]
+            pub mass_matrix: Matrix3<f64>,
+            pub drag: f64,
+        }
+
+        /// Both costs are one function, so both momenta move alike.
+        #[test]
+        fn $agree() {
+            let random = &mut Random::new(63);
+            let mass_matrix = random.inertia::<3>();
+            let inertia = Matrix3::identity() * mass_matrix.trace() - mass_matrix;
+            let quaternions = $quaternions { inertia, drag: 0.3 }.into_stepper(H).expect("a body");
+            let matrices = $matrices { mass_matrix, drag: 0.3 }.into_stepper(H).expect("a body");
+            let mu = random.vector::<3>() * 5.0;
+            let turned = quaternions.state(Quaternion::identity(), mu).expect("a state");
+            let other = matrices.state(Matrix3::identity(), mu).expect("a state");
+            let last = quaternions.advance(&turned, 200).expect("steps");
+            let other = matrices.advance(&other, 200).expect("steps");
+            assert_near(&last.momentum(), &other.momentum(), 1e-13, "π");
+            let attitude = UnitQuaternion::from_quaternion(*last.configuration()).to_rotation_matrix();
+            assert_near(attitude.matrix(), other.configuration(), NEAR, "R");
+            assert!(last.momentum().norm() < 0.9 * mu.norm(), "drag acts");
+        }
+    };
+}
+damped!(damped_quaternions_are_damped_matrices: DampedQuaternion, DampedMatrix, 2);
+damped!(late_quaternions_are_late_matrices: LateQuaternion, LateMatrix, 1);
