@@ -30,7 +30,7 @@
 
 use crate::free_rotation::axes::Axes;
 use crate::free_rotation_4d::flow::{
-    Matrix, PLANES, Vector, above, at, dot, dual, entry, pfaffian, place, product, skew,
+    Matrix, PLANES, Vector, above, above_of_square, at, dot, dual, entry, pfaffian, place, product, skew,
 };
 use crate::free_rotation_4d::mass;
 use crate::free_rotation_4d::turn::{Powers, adjugate, equation};
@@ -214,7 +214,7 @@ impl<T: Scalar> RotatingBody4<T> {
     /// have settled. Each leaves h|ω| of the error of the one before: short steps need three to six.
     #[inline(always)]
     fn by_sweeps(&self, momentum: &Vector<T>) -> (Vector<T>, T::Mask) {
-        let first = momentum.zip_map(&self.planes.start, |m, start| -m * start);
+        let first = -momentum.component_mul(&self.planes.start);
         let (mut x, mut before) = (first, square_of(&first));
         let (mut settled, mut open) = (T::Mask::nowhere(), T::Mask::everywhere());
         let rounding = T::EPSILON * T::EPSILON * T::from_ratio(1, 16);
@@ -222,11 +222,8 @@ impl<T: Scalar> RotatingBody4<T> {
             T::iterated();
             let (square, pf) = (square_of(&x), pfaffian(&x));
             let size = T::one() + (square + pf * pf);
-            let bent = of_square(&x);
-            let dual = dual(&x);
-            let next = Vector::from_fn(|i, _| {
-                first[i % 6] * size - (self.planes.bends[i % 6] * bent[i % 6] + pf * dual[i % 6])
-            });
+            let bent = self.planes.bends.component_mul(&above_of_square(&x));
+            let next = first * size - (bent + dual(&x) * pf);
             let change = next - x;
             let now = square_of(&change);
             x = x.zip_map(&next, |x, next| T::select(open, next, x));
@@ -378,13 +375,6 @@ impl<T: Scalar, E: RotationEquation4<T>> Equation<T, 6> for Iterated<'_, E> {
 fn square_of<T: Scalar>(x: &Vector<T>) -> T {
     let [[a, b, c, d, e, f]] = x.data.0;
     ((a * a + b * b) + (c * c + d * d)) + (e * e + f * f)
-}
-
-/// The entries of X² above the diagonal, of those of X.
-#[inline(always)]
-fn of_square<T: Scalar>(x: &Vector<T>) -> Vector<T> {
-    let [[a, b, c, d, e, f]] = x.data.0;
-    SVector::from([-(b * d + c * e), a * d - c * f, a * e + b * f, -(a * b + e * f), d * f - a * c, -(b * c + d * e)])
 }
 
 /// The components of B − Bᵀ.

@@ -13,7 +13,7 @@ fn code(energies: &str, keys: &str) -> String {
     emit::generated(&program)
 }
 
-/// Bodies, points and products, in every discretization that takes a Lagrangian.
+/// A body and a particle, in several discretizations.
 #[test]
 fn a_potential_may_stand_in_the_lagrangian() {
     let body = ("action = |F: SO<3>, R: SO<3>| R * F", "R", "omega");

@@ -52,6 +52,13 @@ pub(crate) fn dual<T: Scalar>(v: &Vector<T>) -> Vector<T> {
     SVector::from([v[5], -v[4], v[3], v[2], -v[1], v[0]])
 }
 
+/// The entries of v² above the diagonal.
+#[inline(always)]
+pub(crate) fn above_of_square<T: Scalar>(v: &Vector<T>) -> Vector<T> {
+    let [[a, b, c, d, e, f]] = v.data.0;
+    SVector::from([-(b * d + c * e), a * d - c * f, a * e + b * f, -(a * b + e * f), d * f - a * c, -(b * c + d * e)])
+}
+
 /// Pf v
 #[inline]
 pub(crate) fn pfaffian<T: Scalar>(v: &Vector<T>) -> T {

@@ -1,6 +1,6 @@
 //! One step of a motion whose constants are known: no iteration, one division.
 
-use super::flow::{Matrix, Moved, PLANES, Vector, at, dot, dual, entry, pfaffian, place};
+use super::flow::{Matrix, Moved, PLANES, Vector, above_of_square, at, dot, dual, entry, pfaffian, place};
 use super::setup::{Constants, integrals};
 use crate::{Mask, Scalar};
 
@@ -46,11 +46,10 @@ impl<T: Scalar> Powers<T> {
     #[inline]
     pub fn of(m: &Vector<T>) -> Self {
         let squares = m.component_mul(m);
-        let ([[a, b, c, d, e, f]], [[aa, bb, cc, dd, ee, ff]]) = (m.data.0, squares.data.0);
-        let above = [-(b * d + c * e), a * d - c * f, a * e + b * f, -(a * b + e * f), d * f - a * c, -(b * c + d * e)];
+        let [[aa, bb, cc, dd, ee, ff]] = squares.data.0;
         let diagonal = [-(aa + bb + cc), -(aa + dd + ee), -(bb + dd + ff), -(cc + ee + ff)];
         let square = (aa + bb + cc) + (dd + ee + ff);
-        Self { squares, square, pf: pfaffian(m), of_square: (above.into(), diagonal) }
+        Self { squares, square, pf: pfaffian(m), of_square: (above_of_square(m), diagonal) }
     }
 }
 

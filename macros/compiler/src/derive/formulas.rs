@@ -161,7 +161,7 @@ impl MechanicsFormulas<'_> {
         power.order.stages().filter(|_| !self.is_exact || !self.links.is_empty())
     }
 
-    /// The factors whose chart coordinates x/w are given by x and w, so that F − I = 2 (w x^ + (x^)²)/(w² + |x|²) holds the only division.
+    /// The rotations and unit quaternions whose chart coordinates x/w are given by x and w: F − I saves the division.
     pub fn weighted(&self) -> Vec<usize> {
         let is_found = |k: &usize| match self.model.factors[*k].group {
             Group::SpecialOrthogonal(3) => exact::is_free_rotation(&self.model, *k) || self.has_scalar_equation(*k),

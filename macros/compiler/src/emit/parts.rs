@@ -35,11 +35,12 @@ impl Emitter<'_, '_> {
             "Coordinates" => self.coordinates()[1].clone(),
             "Moves" | "Motion" | "Moved" | "Increment" => {
                 let [coordinates, x] = self.coordinates();
-                let turned = if self.formulas.turns_momenta() { x.clone() } else { quote!(_) };
+                let turns = self.formulas.turns_momenta();
+                let turned = if turns { x.clone() } else { quote!(_) };
                 let names = match (is_displaced(), is_updated()) {
                     (true, true) => [quote!(ByBoth), quote!((#coordinates, F)), quote!((#x, _)), quote!((#turned, d))],
                     (true, false) => [quote!(ByCoordinates), coordinates, x, quote!(d)],
-                    (false, true) if self.formulas.turns_momenta() => {
+                    (false, true) if turns => {
                         [quote!(ByBoth), quote!((#coordinates, F)), quote!((_, d)), quote!((#turned, d))]
                     }
                     (false, _) => [quote!(ByIncrement), quote!(F), quote!(d), quote!(d)],

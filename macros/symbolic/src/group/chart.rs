@@ -265,6 +265,8 @@ impl Chart {
     ///
     /// Rotations in four dimensions, with w = 1, turn the two parts M ± M̃ by the quaternions (1 ∓ p, Z ± Z̃). So M becomes M + 2(C − pC̃
     /// + [C, Z])/(1 + s + p²). Here C is [M, Z], s is |x|² and p the Pfaffian of Z.
+    ///
+    /// Source: J. E. Mebius, *A matrix-based proof of the quaternion representation theorem for four-dimensional rotations*, 2005.
     pub fn coadjoint<'g>(self, group: Group, x: Expr<'g>, w: Option<Expr<'g>>, mu: Expr<'g>) -> Option<Expr<'g>> {
         let one = x.graph().integer(1);
         let square = x.norm_squared();
