@@ -54,8 +54,7 @@ pub use crate::parameters::{
     orientation_of_uniform, projection,
 };
 pub use crate::parts::{
-    ByBoth, ByCoordinates, ByIncrement, FreeMotion, GreatCircles, HamiltonEquations, Parts, Solved, SplitKicks,
-    Substep, Varied, VariedSubstep,
+    FreeMotion, GreatCircles, HamiltonEquations, Parts, Solved, SplitKicks, Substep, Varied, VariedSubstep,
 };
 pub use crate::power::{Constants as SiteConstants, Power, PowerConstants, wrapped};
 pub use crate::rotation::{

@@ -278,19 +278,19 @@ impl<S: Controlled<D, U, C, Scalar: Real>, B: Start<S, D, U, C>, const D: usize,
     ///
     /// ```
     /// # use clebsch::{Clebsch, Controlled};
-    /// # use nalgebra::{Vector1, Vector2, vector};
+    /// # use nalgebra::{Vector1, Vector2};
     /// /// A sledge with a brake, on ground that changes.
     /// #[derive(Clebsch, Clone, Debug)]
     /// #[clebsch(
-    ///     dynamics = |h, x: Vector2, u: Vector1, friction: Vector1| x + h * vector![x.y, u.x - friction.x * x.y],
+    ///     dynamics = |h, x: Vector2, u: Vector1, friction: Vector1| x + h * Vector2::new(x.y, u.x - friction.x * x.y),
     ///     cost     = |h, u| h * u.norm_squared() / 2,
     /// )]
     /// struct Sledge {}
     ///
     /// let control = Sledge {}.control(0.1)?;
     /// let (moving, none) = (Vector2::new(0.0, 2.0), Vector1::zeros());
-    /// assert_eq!(control.follow_with(&moving, &none, &vector![5.0])?.y, 1.0);
-    /// assert_eq!(control.follow_with(&moving, &none, &vector![0.0])?.y, 2.0); // on ice
+    /// assert_eq!(control.follow_with(&moving, &none, &Vector1::new(5.0))?.y, 1.0);
+    /// assert_eq!(control.follow_with(&moving, &none, &Vector1::new(0.0))?.y, 2.0); // on ice
     /// # Ok::<(), clebsch::Error>(())
     /// ```
     ///

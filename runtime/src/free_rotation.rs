@@ -32,7 +32,7 @@ use duplication::{Functions, duplicated};
 use nalgebra::{ArrayStorage, Quaternion, SMatrix, SVector};
 use num_traits::{One, Zero};
 use series::{Coefficients, in_alpha};
-use turn::{Turn, balanced, minors, ratio, turn, turn_of_tensor};
+use turn::{Turn, balanced, minors, ratio, shorter, turn, turn_of_tensor};
 
 pub(crate) mod axes;
 mod duplication;
@@ -43,6 +43,9 @@ mod turn;
 const DUPLICATIONS: u32 = 24;
 /// The error of an angle up to which it is still one.
 const LARGEST_ERROR: f64 = 1.0 / 8192.0;
+
+/// Up to this degree, polynomials are summed in pairs of terms. Longer ones have other work to do during the chain of Horner's rule.
+const PAIRED: usize = 6;
 
 /// How many duplications numbers of this type are good for: 10 of `f32`.
 fn duplications<T: Scalar>() -> u32 {
@@ -123,6 +126,21 @@ impl<T: Scalar> FreeRotation<T> {
     #[inline(always)]
     pub fn turn(&self, momentum: &Vector<T>) -> Result<Turn<T>, Error> {
         self.turn_by(None, momentum)
+    }
+
+    /// As [`turn`](Self::turn), with w ≥ 0: of the two quaternions of a rotation the one that is nearer to 1.
+    ///
+    /// # Errors
+    /// Those of [`turn`](Self::turn).
+    #[inline(always)]
+    pub fn shorter_turn(&self, momentum: &Vector<T>) -> Result<Turn<T>, Error> {
+        self.turn_by(None, momentum).map(shorter)
+    }
+
+    /// As [`shorter_turn`](Self::shorter_turn), of a motion that is known.
+    #[inline(always)]
+    pub fn shorter_turn_of(&self, kept: &KeptRotation<T>, momentum: &Vector<T>) -> Result<Turn<T>, Error> {
+        self.turn_by(Some(kept), momentum).map(shorter)
     }
 
     /// As [`gibbs_vector`](Self::gibbs_vector), of a motion that is known.
@@ -312,17 +330,32 @@ impl<T: Scalar> OfLane<'_, T> {
         None
     }
 
-    /// The polynomial of degree `K`, the coefficients of powers of ε by the rule of Horner in α.
+    /// The polynomial of degree `K`. The coefficients of powers of ε are found by the rule of Horner in α. Where the degree is low,
+    /// it is the rule in α² for pairs of terms: a short drift waits for this sum.
     #[inline(always)]
     fn polynomial<const K: usize>(self, alpha: T::Lane, epsilon: T::Lane) -> [T::Lane; 4] {
-        let mut sum = [<T::Lane as Zero>::zero(); 4];
+        let nothing = [<T::Lane as Zero>::zero(); 4];
+        let plus = |sum: [T::Lane; 4], factor: T::Lane, next: [T::Lane; 4]| from_fn(|k| sum[k] * factor + next[k]);
+        let own = |entry: &[T; 4]| from_fn(|k| entry[k].lane(self.lane));
+        let pair = |pair: &[[T; 4]]| match pair {
+            [first, second] => plus(own(second), alpha, own(first)),
+            [first] => own(first),
+            _ => nothing,
+        };
+        let square = alpha * alpha;
+        let mut sum = nothing;
         let mut power = <T::Lane as One>::one();
         // the longest rule comes first: the others do not wait for it
         for j in 0..=K {
-            let coefficients = in_alpha::<T, K>(&self.free.series, j).iter().rev();
-            let nothing = [<T::Lane as Zero>::zero(); 4];
-            let next = coefficients.fold(nothing, |sum, next| from_fn(|k| sum[k] * alpha + next[k].lane(self.lane)));
-            sum = from_fn(|k| sum[k] + next[k] * power);
+            let coefficients = in_alpha::<T, K>(&self.free.series, j);
+            let next = if K <= PAIRED {
+                let mut pairs = coefficients.chunks(2).rev();
+                let last = pairs.next().map_or(nothing, pair);
+                pairs.fold(last, |sum, next| plus(sum, square, pair(next)))
+            } else {
+                coefficients.iter().rev().fold(nothing, |sum, next| plus(sum, alpha, own(next)))
+            };
+            sum = plus(next, power, sum);
             power *= epsilon;
         }
         sum

@@ -22,8 +22,8 @@ pub trait Parts<M: Method<Self> = Declared>: Clebsch {
     type Sums: Sums;
     /// x, the coordinates of the group element that a solve finds.
     type Coordinates;
-    /// The data that moves q and N.
-    type Moves: Moves<Self::Coordinates, F<Self>>;
+    /// The data that moves q and N: D = F − I, x, both of them, or D and c of F − I = c·D.
+    type Motion;
 
     /// Whether a step has so few operations that it is inlined wherever it is called: a call hands states through memory.
     const IS_SHORT: bool = false;
@@ -37,14 +37,11 @@ pub trait Parts<M: Method<Self> = Declared>: Clebsch {
     /// F = I + D.
     fn element(d: &F<Self>) -> F<Self>;
 
-    /// The motion: D, x, or both. `d` computes D only if the motion needs it.
-    #[inline(always)]
-    fn motion(&self, x: &Self::Coordinates, d: impl FnOnce() -> F<Self>) -> MotionOf<Self, M> {
-        Self::Moves::of(x, d)
-    }
+    /// The data that moves q and N. `increment` computes F − I where that is a part of it.
+    fn motion(&self, x: &Self::Coordinates, increment: impl FnOnce() -> F<Self>) -> Self::Motion;
 
     /// q⁺ = Φ_F(q); with compensated sums q⁺ − q, in which q has cancelled.
-    fn advance(&self, q: &Q<Self>, motion: &MotionOf<Self, M>) -> Q<Self>;
+    fn advance(&self, q: &Q<Self>, motion: &Self::Motion) -> Q<Self>;
 
     /// (TΦ_F)^{-*} p at q⁺, the covector carried along by F = I + D.
     #[inline(always)]
@@ -52,48 +49,12 @@ pub trait Parts<M: Method<Self> = Declared>: Clebsch {
         *p
     }
 
-    /// q without the rounding that has moved it off rotations, unit vectors and unit quaternions. A step does it last, so that nothing waits for it.
+    /// q without the rounding that has moved it off rotations, unit vectors and unit quaternions. A step does it last, and several steps of drifts and kicks before the drift that two of them share.
     #[inline(always)]
     fn on_space(q: Q<Self>, rest: RestOf<Self, M>) -> (Q<Self>, RestOf<Self, M>) {
         (q, rest)
     }
 }
-
-/// The data that moves q and N: the increment D = F − I, the coordinates x if they are enough, or both.
-pub trait Moves<X, D> {
-    /// D, x, or both.
-    type Motion;
-
-    /// The motion with the coordinates x, whose increment `d` makes where it is needed.
-    fn of(x: &X, d: impl FnOnce() -> D) -> Self::Motion;
-}
-
-/// One type for each line: its motion, and how the motion is made of x and of the function that makes D.
-macro_rules! moves {
-    ($($doc:literal $name:ident: $motion:ty, |$x:pat_param, $d:pat_param| $made:expr;)*) => { $(
-        #[doc = $doc]
-        pub struct $name;
-
-        impl<X: Copy, D> Moves<X, D> for $name {
-            type Motion = $motion;
-
-            #[inline(always)]
-            fn of($x: &X, $d: impl FnOnce() -> D) -> $motion {
-                $made
-            }
-        }
-    )* };
-}
-
-moves! {
-    "q and N move by D." ByIncrement: D, |_, d| d();
-    "q and N move by x, without the matrix D." ByCoordinates: X, |x, _| *x;
-    "q moves by one of x and D, N by the other or by both." ByBoth: (X, D), |x, d| (*x, d());
-}
-
-/// The data that moves q and N in a step of S by M.
-pub type MotionOf<S, M = Declared> =
-    <<S as Parts<M>>::Moves as Moves<<S as Parts<M>>::Coordinates, <S as Clebsch>::Element>>::Motion;
 
 /// The coordinates that a solve finds.
 pub type Solved<X> = Result<X, Error>;
@@ -198,7 +159,7 @@ pub trait Substep<const K: usize, M: Method<Self> = Declared>: Parts<M> {
         t: T<Self>,
         q: &Q<Self>,
         mu: &Mu<Self>,
-        motion: &MotionOf<Self, M>,
+        motion: &Self::Motion,
     ) -> Option<Mu<Self>> {
         None
     }

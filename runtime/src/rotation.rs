@@ -19,6 +19,8 @@
 //!
 //! f is positive at 0 and falls. As long as 3e₁κ ≤ e₂ + 2m it is convex on all of [0, κ], so a root that is found there
 //! is the least one.
+//!
+//! The Cayley map has another equation, which is linear for another scalar: see [`cayley`].
 
 use crate::implicit::{Equation, solve_at_last, with_derivatives};
 use crate::linear::power_of_two_near;
@@ -27,6 +29,8 @@ use crate::parameters::orientation_of_inertia;
 use crate::{Error, Mask, Scalar, Space};
 use core::fmt::Debug;
 use nalgebra::{SMatrix, SVector};
+
+mod cayley;
 
 type Vector<T> = SVector<T, 3>;
 
@@ -98,6 +102,8 @@ pub struct RotatingBody<T, A> {
     per_determinant: [T; 3],
     /// Up to which sum of y and g the series for κ is enough.
     short: T,
+    /// Twice the square of the deviator of A⁻¹, 4 (e₂² − 3e₁e₃)/(3e₃²).
+    deviation: T,
     orientation: Orientation,
 }
 
@@ -123,6 +129,8 @@ impl<T: Scalar, A: Tensor<T>> RotatingBody<T, A> {
         let [e1, e2, e3] = invariants;
         let per_determinant = [e1 / e3, e2 / e3, e3.recip()];
         let short = reach_of_series();
+        let three = T::from_ratio(3, 1);
+        let deviation = T::from_ratio(4, 3) * ((e2 * e2 - three * e1 * e3) / (e3 * e3));
         Ok(Self {
             unit,
             tensor: A::of(&a),
@@ -130,6 +138,7 @@ impl<T: Scalar, A: Tensor<T>> RotatingBody<T, A> {
             invariants,
             per_determinant,
             short,
+            deviation,
             orientation,
         })
     }
@@ -155,7 +164,8 @@ pub(crate) fn unit_of<T: Scalar>(size: T) -> T {
     unit
 }
 
-/// The momentum equation A x = μ + (μ·x) x + μ × x of a rotating body, or that of the body that turns back.
+/// The momentum equation of a rotating body, A x = μ + (μ·x) x + μ × x. By the Cayley map it is (1 + |x|²) A x = μ + μ × x. It may be that of
+/// the body that turns back.
 pub trait RotationEquation<T: Scalar> {
     /// The form of A.
     type Tensor: Tensor<T>;
@@ -163,16 +173,19 @@ pub trait RotationEquation<T: Scalar> {
     /// Whether the action is from the left: A x = μ + (μ·x) x − μ × x, the equation of −x and −μ.
     const IS_LEFT: bool = false;
 
+    /// Whether it is that of the Cayley map.
+    const IS_CAYLEY: bool = false;
+
     /// The constants.
     fn body(&self) -> &RotatingBody<T, Self::Tensor>;
 }
 
-/// Newton's steps for κ: after the series for short steps, each squares the error.
+/// Newton's steps for κ after the series for short steps, or for s of the Cayley map: each squares the error.
 const MOST: u32 = 4;
 
 /// A multiple (w, x) of the quaternion of the rotation whose momentum is μ: its Gibbs vector is x/w.
 ///
-/// Work: a series for short steps, or one to four of Newton's steps for one scalar. Where these do not decide,
+/// Work: a series for short steps, or one to four of Newton's steps for one scalar; by the Cayley map one at least. Where these do not decide,
 /// [`solve`](crate::implicit::solve) does.
 ///
 /// # Errors
@@ -185,7 +198,7 @@ pub fn turn_of_body<T: Scalar, E: RotationEquation<T>>(
     let body = equation.body();
     let unit = if E::IS_LEFT { -body.unit } else { body.unit };
     let mu = target.map(|entry| entry * unit);
-    let (w, x, solved) = body.turn(&mu);
+    let (w, x, solved) = if E::IS_CAYLEY { body.cayley_turn(&mu) } else { body.turn(&mu) };
     let x = if E::IS_LEFT { -x } else { x };
     if !solved.all() || T::DERIVATIVES > 0 {
         let (reached, scale) = (x, w);
@@ -209,7 +222,7 @@ pub fn solve_rotation<T: Scalar, E: RotationEquation<T>>(equation: &E, target: &
     turn_of_body(equation, target).map(|(w, x)| x * w.recip())
 }
 
-/// κ of a free motion, which stays the same as the momentum moves with the body; 0 where there is none.
+/// κ of a free motion, which stays the same as the momentum moves with the body; 0 where there is none. The Cayley map has no such κ.
 pub fn scalar_of_motion<T: Scalar, E: RotationEquation<T>>(equation: &E, target: &Vector<T>) -> T {
     let body = equation.body();
     let kappa = |x: Vector<T>| {
@@ -418,8 +431,14 @@ impl<T: Scalar, E: RotationEquation<T>> Equation<T, 3> for Iterated<'_, E> {
         let (kappa, [[d, e, f]]) = (dot(mu, &x), mu.data.0);
         let zero = T::zero();
         let hat = SMatrix::from_data(nalgebra::ArrayStorage([[zero, f, -e], [-f, zero, d], [e, -d, zero]]));
-        let residual = a * x - mu - x * kappa - mu.cross(&x);
-        let jacobian = a - SMatrix::identity() * kappa - x * mu.transpose() - hat;
+        let image = a * x;
+        let (residual, jacobian) = if E::IS_CAYLEY {
+            let s = T::one() + dot(&x, &x);
+            (image * s - mu - mu.cross(&x), a * s + image * (x + x).transpose() - hat)
+        } else {
+            let jacobian = a - SMatrix::identity() * kappa - x * mu.transpose() - hat;
+            (image - mu - x * kappa - mu.cross(&x), jacobian)
+        };
         (if E::IS_LEFT { -residual } else { residual }, jacobian)
     }
 

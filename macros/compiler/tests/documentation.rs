@@ -34,6 +34,7 @@ impl Documented {
         // these are told apart by more than the names of their functions
         let is_named = match row.id {
             Id::Displacement => self.name == "displace",
+            Id::ScaledAdvance => self.name == "scaled_advance",
             Id::Lagrangian => self.name == "velocity",
             Id::Equation(..) if self.name == "Equation" => true,
             id => emit::shown_by(id).contains(&self.name.as_str()),
@@ -61,12 +62,12 @@ fn of_trait(item: &ItemImpl) -> Option<(usize, Option<usize>)> {
     Some((first.to_token_stream().to_string().parse().ok()?, None))
 }
 
-/// Whether it is the move of a step that takes the coordinates, and not the increment.
-fn moves_by_coordinates(program: Option<&MechanicsProgram<'_>>, item: &ItemImpl, method: &str) -> bool {
+/// The name of the move of a step that takes the coordinates, or an increment up to a factor, and not the increment.
+fn name_of_move(program: Option<&MechanicsProgram<'_>>, item: &ItemImpl, method: &str) -> Option<&'static str> {
     let of = item.trait_.as_ref().and_then(|(path, _)| path.segments.last());
-    method == "advance"
-        && of.is_some_and(|of| of.ident == "Parts")
-        && program.is_some_and(|program| program.find(Id::Displacement).is_some())
+    let program = program.filter(|_| method == "advance" && of.is_some_and(|of| of.ident == "Parts"))?;
+    let moves = [(Id::Displacement, "displace"), (Id::ScaledAdvance, "scaled_advance")];
+    moves.into_iter().find(|(id, _)| program.find(*id).is_some()).map(|(_, name)| name)
 }
 
 /// The place of the type of a momentum equation, `EquationFirst1`.
@@ -132,8 +133,8 @@ fn documented(program: Option<&MechanicsProgram<'_>>, items: Vec<Item>) -> Vec<D
                     let ImplItem::Fn(method) = method else { continue };
                     let mut name = method.sig.ident.to_string();
                     let place = of_equation(program, &owner).or_else(|| of_trait(&item));
-                    if moves_by_coordinates(program, &item, &name) {
-                        name = "displace".to_string();
+                    if let Some(of_move) = name_of_move(program, &item, &name) {
+                        name = of_move.to_string();
                     }
                     if owner == "Velocity" {
                         name = "velocity".to_string();

@@ -101,6 +101,11 @@ impl<'g> Expr<'g> {
             || self.has_factor(|base, exponent| exponent.is_negative() && depends(base))
     }
 
+    /// Whether a method of the user's occurs: it has no second derivative.
+    pub fn has_methods(self) -> bool {
+        self.has(|node| matches!(node, ExprNode::Opaque(..)))
+    }
+
     /// Whether a root, an elementary function, a power series or a method of the user's occurs.
     pub fn has_functions(self) -> bool {
         let is_function = |node: &ExprNode| {

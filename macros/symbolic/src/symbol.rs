@@ -57,6 +57,8 @@ pub enum Role {
     KickGradient,
     /// The weight of chart coordinates that are given up to a factor, by its number.
     ChartWeight(usize),
+    /// c of an increment F − I = c·D that is given up to a factor, by its number.
+    IncrementScale(usize),
     /// The chart coordinates of a factor's group element.
     Chart(usize),
     /// The number of sites of a power.

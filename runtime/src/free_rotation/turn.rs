@@ -40,6 +40,13 @@ pub(super) fn balanced<T: Scalar>((p, r): Turn<T>) -> Turn<T> {
     (p * size, r * size)
 }
 
+/// The same rotation with w ≥ 0.
+#[inline(always)]
+pub(super) fn shorter<T: Scalar>((w, x): Turn<T>) -> Turn<T> {
+    let sign = T::select(w.below(T::zero()), -T::one(), T::one());
+    (w * sign, x * sign)
+}
+
 /// x/w; at half a turn, where w vanishes, that of an angle which differs by a unit in the last place.
 #[inline]
 pub(super) fn ratio<T: Scalar>((w, x): Turn<T>) -> SVector<T, 3> {

@@ -11,17 +11,20 @@ use nalgebra::{Matrix3, Rotation3, Vector3};
 use proptest::prelude::*;
 
 /// A body in steps of a size, by one scalar.
-struct Body<T, A, const IS_LEFT: bool>(RotatingBody<T, A>);
+struct Body<T, A, const IS_LEFT: bool, const IS_CAYLEY: bool = false>(RotatingBody<T, A>);
 
-impl<T: Scalar, A: Tensor<T>, const IS_LEFT: bool> Body<T, A, IS_LEFT> {
+impl<T: Scalar, A: Tensor<T>, const IS_LEFT: bool, const IS_CAYLEY: bool> Body<T, A, IS_LEFT, IS_CAYLEY> {
     fn new(inertia: &Matrix3<T>, h: T) -> Self {
         Self(RotatingBody::new(inertia, h * T::from_ratio(1, 2)).expect("a body"))
     }
 }
 
-impl<T: Scalar, A: Tensor<T>, const IS_LEFT: bool> RotationEquation<T> for Body<T, A, IS_LEFT> {
+impl<T: Scalar, A: Tensor<T>, const IS_LEFT: bool, const IS_CAYLEY: bool> RotationEquation<T>
+    for Body<T, A, IS_LEFT, IS_CAYLEY>
+{
     type Tensor = A;
     const IS_LEFT: bool = IS_LEFT;
+    const IS_CAYLEY: bool = IS_CAYLEY;
 
     fn body(&self) -> &RotatingBody<T, A> {
         &self.0
@@ -49,6 +52,51 @@ impl Equation<f64, 3> for Reference {
         let jacobian = a - Matrix3::identity() * mu.dot(x) - x * mu.transpose() - turned;
         (a * x - mu - x * mu.dot(x) - turned * x, jacobian)
     }
+}
+
+/// The momentum of the velocity 2x/h by the Cayley map: A x ± x × A x + (x·A x) x = μ with A = 2J/h.
+struct CayleyReference(Reference);
+
+impl CayleyReference {
+    fn momentum(&self, x: &Vector3<f64>) -> Vector3<f64> {
+        let image = self.0.inertia * x * (2.0 / self.0.h);
+        image + x.cross(&image) * self.0.sign + x * x.dot(&image)
+    }
+}
+
+impl Equation<f64, 3> for CayleyReference {
+    type Terms = Vector3<f64>;
+    type Jacobian = Matrix3<f64>;
+
+    fn prepare(&self, target: &Vector3<f64>) -> Vector3<f64> {
+        *target
+    }
+
+    fn linearize(&self, mu: &Vector3<f64>, x: &Vector3<f64>) -> (Vector3<f64>, Matrix3<f64>) {
+        let a = self.0.inertia * (2.0 / self.0.h);
+        let image = a * x;
+        let turned = (x.cross_matrix() * a - image.cross_matrix()) * self.0.sign;
+        let jacobian = a + turned + Matrix3::identity() * x.dot(&image) + x * (image + image).transpose();
+        (self.momentum(x) - mu, jacobian)
+    }
+}
+
+/// Both forms of both sides by the Cayley map against the reference; a solution of a momentum beyond the scalar one too.
+fn check_cayley<const IS_LEFT: bool>(inertia: &Matrix3<f64>, h: f64, mu: &Vector3<f64>) -> Result<(), TestCaseError> {
+    let reference = CayleyReference(Reference { inertia: *inertia, h, sign: if IS_LEFT { -1.0 } else { 1.0 } });
+    let found = solve_rotation(&Body::<f64, Symmetric<f64>, IS_LEFT, true>::new(inertia, h), mu);
+    match (solve(&reference, mu), found) {
+        (Ok(expected), Ok(found)) => {
+            let room = 1.0 + expected.norm_squared();
+            let error = (found - expected).norm() / (expected.norm() + f64::MIN_POSITIVE);
+            prop_assert!(error < 256.0 * f64::EPSILON * room, "{error:e} of {expected}");
+            let defect = (reference.momentum(&found) - mu).norm() / (mu.norm() + f64::MIN_POSITIVE);
+            prop_assert!(defect < 256.0 * f64::EPSILON * room, "{defect:e}");
+        }
+        (Err(Error::Unsolvable { .. }), Err(Error::Unsolvable { .. })) => {}
+        (expected, found) => prop_assert!(false, "{expected:?} {found:?}"),
+    }
+    Ok(())
 }
 
 /// The angle whose tangent of the half is |x|.
@@ -104,6 +152,18 @@ proptest! {
         prop_assert!(Body::<f64, Symmetric<f64>, false>::new(&inertia, h).body().determinant() > 0.0);
     }
 
+    /// The same by the Cayley map, from the shortest steps to some turns in one.
+    #[test]
+    fn rotations_by_the_cayley_map_are_those_of_newtons_method(
+        inertia in bodies(), direction in prop::array::uniform3(-1.0..1.0_f64), exponent in -12.0..0.8_f64, h in 0.01..2.0_f64,
+        back in any::<bool>(),
+    ) {
+        let h = if back { -h } else { h };
+        let mu = inertia * Vector3::from(direction) * (10.0_f64.powf(exponent) / h);
+        check_cayley::<false>(&inertia, h, &mu)?;
+        check_cayley::<true>(&inertia, h, &mu)?;
+    }
+
     /// A diagonal tensor gives the solution that the same numbers give as a symmetric tensor.
     #[test]
     fn principal_axes_are_axes(moments in prop::array::uniform3(0.5..3.0_f64), mu in prop::array::uniform3(-1.0..1.0_f64)) {
@@ -139,6 +199,9 @@ proptest! {
         let plain = solve_rotation(&Body::<f64, Symmetric<f64>, false>::new(&inertia, 0.25), &mu);
         let other = solve_rotation(&Body::<f64, Symmetric<f64>, false>::new(&(inertia * unit), 0.25), &(mu * unit));
         prop_assert_eq!(plain.expect("a turn"), other.expect("a turn"));
+        let plain = solve_rotation(&Body::<f64, Symmetric<f64>, false, true>::new(&inertia, 0.25), &mu);
+        let other = solve_rotation(&Body::<f64, Symmetric<f64>, false, true>::new(&(inertia * unit), 0.25), &(mu * unit));
+        prop_assert_eq!(plain.expect("a turn"), other.expect("a turn"));
     }
 }
 
@@ -164,6 +227,35 @@ fn the_end_of_solvability_is_the_right_angle() {
     let Err(Error::Unsolvable { solvable_fraction, .. }) = beyond else { panic!("{beyond:?}") };
     // the path finds its end to a few parts in 10⁵
     assert!((solvable_fraction * 1.001 - 1.0).abs() < 1e-4, "{solvable_fraction}");
+}
+
+/// A ball turns by x with |x| (1 + |x|²) = |μ|/a, however large its momentum is: the real root of a cubic.
+#[test]
+fn balls_turn_by_the_root_of_a_cubic() {
+    let body = Body::<f64, Diagonal<f64>, false, true>::new(&Matrix3::identity(), 1.0);
+    for tangent in [1e-9, 1e-3, 0.1, 0.5, 1.0, 3.0, 40.0] {
+        let mu = Vector3::new(0.6, 0.0, 0.8) * (2.0 * tangent * (1.0 + tangent * tangent));
+        let x = solve_rotation(&body, &mu).expect("a turn");
+        assert!((x.norm() / tangent - 1.0).abs() < 4.0 * f64::EPSILON, "{tangent}: {x}");
+    }
+}
+
+/// Beyond the momentum up to which f is known to increase, Newton's method finds the same rotation.
+#[test]
+fn the_scalar_ends_without_a_jump() {
+    let inertia = Matrix3::from_diagonal(&Vector3::new(0.5, 1.0, 3.0));
+    let body = Body::<f64, Diagonal<f64>, false, true>::new(&inertia, 1.0);
+    let direction = Vector3::new(0.2, 0.9, 0.3).normalize();
+    let turn = |size: f64| solve_rotation(&body, &(direction * size)).expect("a turn");
+    let is_by_scalar = |size: f64| body.body().cayley_turn(&(direction * (size * body.body().unit))).2;
+    let (mut low, mut high) = (0.1, 100.0);
+    assert!(is_by_scalar(low) && !is_by_scalar(high));
+    for _ in 0..60 {
+        let middle = (low + high) / 2.0;
+        if is_by_scalar(middle) { low = middle } else { high = middle }
+    }
+    assert!((1.0..4.0).contains(&low), "{low}");
+    assert!((turn(low) - turn(high)).norm() < 64.0 * f64::EPSILON, "{}, {}", turn(low), turn(high));
 }
 
 #[test]
@@ -194,6 +286,12 @@ fn single_precision_is_right_to_its_rounding() {
         let expected = solve(&Reference { inertia, h: 1.0, sign: 1.0 }, &mu.map(f64::from)).expect("a solution");
         let error = (found.expect("a solution").map(f64::from) - expected).norm() / expected.norm();
         assert!(error < 4.0 * f64::from(f32::EPSILON), "{size}: {error:e}");
+        let inertia = Matrix3::from_diagonal(&Vector3::new(1.0_f32, 2.0, 2.5));
+        let found = solve_rotation(&Body::<f32, Diagonal<f32>, false, true>::new(&inertia, 1.0), &mu);
+        let reference = CayleyReference(Reference { inertia: inertia.map(f64::from), h: 1.0, sign: 1.0 });
+        let expected = solve(&reference, &mu.map(f64::from)).expect("a solution");
+        let error = (found.expect("a solution").map(f64::from) - expected).norm() / expected.norm();
+        assert!(error < 4.0 * f64::from(f32::EPSILON), "by the Cayley map {size}: {error:e}");
     }
 }
 
@@ -201,16 +299,22 @@ fn single_precision_is_right_to_its_rounding() {
 #[cfg(feature = "lanes")]
 #[test]
 fn lanes_are_single_numbers() {
+    check_lanes::<false>();
+    check_lanes::<true>();
+}
+
+#[cfg(feature = "lanes")]
+fn check_lanes<const IS_CAYLEY: bool>() {
     use crate::{F64x4, Space};
     use num_traits::One;
     let sizes = [1e-6, 0.02, 0.4, 3.0];
     let inertia = Matrix3::new(1.0, 0.1, 0.0, 0.1, 1.5, -0.2, 0.0, -0.2, 2.0);
     let direction = Vector3::new(0.3, 0.7, -0.4);
-    let all =
-        Body::<F64x4, Symmetric<F64x4>, false>::new(&inertia.map(|entry| F64x4::from_lanes(|_| entry)), F64x4::one());
+    let wide = inertia.map(|entry| F64x4::from_lanes(|_| entry));
+    let all = Body::<F64x4, Symmetric<F64x4>, false, IS_CAYLEY>::new(&wide, F64x4::one());
     let mu = direction.map(|entry| F64x4::from_lanes(|lane| sizes[lane] * entry));
     let found = solve_rotation(&all, &mu).expect("three turns");
-    let one = Body::<f64, Symmetric<f64>, false>::new(&inertia, 1.0);
+    let one = Body::<f64, Symmetric<f64>, false, IS_CAYLEY>::new(&inertia, 1.0);
     for (lane, size) in sizes.into_iter().enumerate() {
         match solve_rotation(&one, &(direction * size)) {
             Ok(expected) => assert_eq!(Space::<F64x4>::lane(&found, lane), expected),

@@ -116,15 +116,18 @@ impl<S: Substep<0, M> + SplitKicks<M>, M: Method<S>, Z: Kicks<K>, const K: usize
         let drifted = |part, mut state: Moving<S, M>| {
             let x = solve(at, part, &state.q, &state.mu)?;
             state.drift(At { t: Zero::zero(), ..at }, &x);
-            state.on_space();
             Ok(state)
+        };
+        let settled = |mut state: Moving<S, M>| {
+            state.on_space();
+            state
         };
         let looked = |state: &Moving<S, M>| {
             let (q, mu) = (state.q, state.mu);
             look(&q, &mu)
         };
         let size = (at.t, S::step_size(at.constants), steps);
-        Ok(split(&Z::KICKS, size, start, drifted, kicked, looked)?.end::<Apart>(()))
+        Ok(split(&Z::KICKS, size, start, drifted, kicked, settled, looked)?.end::<Apart>(()))
     }
 
     fn step_symmetric(at: At<'_, S, M>, q: &Q<S>, p: &Q<S>) -> Result<Pair<S>, Error> {
@@ -139,7 +142,7 @@ impl<S: Substep<0, M> + SplitKicks<M>, M: Method<S>, Z: Kicks<K>, const K: usize
             Ok((q, at.system.lift(&q, &p, &d)))
         };
         let size = (at.t, S::step_size(at.constants), 1);
-        split(&Z::KICKS, size, (*q, *p), drifted, kicked, |_| Ok(()))
+        split(&Z::KICKS, size, (*q, *p), drifted, kicked, |pair| pair, |_| Ok(()))
     }
 }
 
@@ -152,7 +155,8 @@ fn solve<S: Substep<0, M>, M: Method<S>>(at: At<'_, S, M>, part: T<S>, q: &Q<S>,
 }
 
 /// The state after `steps` steps of size `h` from the time `t`. Where one step ends and the next starts, their drifts are one. `drift` takes
-/// a part of the step and the state, `kick` a time, b_i, g_i and the state. `look` ends a long run of NaN.
+/// a part of the step and the state, `kick` a time, b_i, g_i and the state. `settle` takes rounding off once a step, and `look` ends a long
+/// run of NaN.
 #[inline]
 pub fn split<T: Scalar, S, const K: usize>(
     kicks: &[Kick; K],
@@ -160,6 +164,7 @@ pub fn split<T: Scalar, S, const K: usize>(
     start: S,
     drift: impl Fn(T, S) -> Result<S, Error>,
     kick: impl Fn(T, T, T, S) -> S,
+    settle: impl Fn(S) -> S,
     look: impl Fn(&S) -> Result<(), Error>,
 ) -> Result<S, Error> {
     let Some(first) = kicks.first().filter(|_| steps > 0) else { return Ok(start) };
@@ -170,7 +175,7 @@ pub fn split<T: Scalar, S, const K: usize>(
     // drift and kick are called in one place each, so that both stand in the loop and no state goes through memory
     loop {
         state = drift(size, state)?;
-        let Some(part) = parts.next().filter(|_| left > 0) else { return Ok(state) };
+        let Some(part) = parts.next().filter(|_| left > 0) else { return Ok(settle(state)) };
         let (weight, gradient) = (T::from_f64(part.weight), T::from_f64(part.gradient));
         state = kick(begun.now() + passed * h, weight, gradient, state);
         match parts.as_slice().first() {
@@ -180,6 +185,10 @@ pub fn split<T: Scalar, S, const K: usize>(
             }
             None => {
                 left -= 1;
+                // the drift that ends the run is before the last look at rounding
+                if left > 0 {
+                    state = settle(state);
+                }
                 if is_due(left) {
                     look(&state)?;
                 }

@@ -177,8 +177,13 @@ const _: () = {
     impl ::clebsch::__private::Parts for DrivenPendulum {
         type Sums = ::clebsch::__private::Plain;
         type Coordinates = SMatrix<f64, 3, 3>;
-        type Moves = ::clebsch::__private::ByCoordinates;
+        type Motion = SMatrix<f64, 3, 3>;
         const IS_SHORT: bool = true;
+
+        #[inline(always)]
+        fn motion(&self, d: &SMatrix<f64, 3, 3>, _: impl FnOnce() -> SMatrix<f64, 3, 3>) -> SMatrix<f64, 3, 3> {
+            *d
+        }
 
         /// The solution is F − I itself.
         #[inline]

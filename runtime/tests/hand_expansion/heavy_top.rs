@@ -179,8 +179,13 @@ const _: () = {
     impl ::clebsch::__private::Parts for HeavyTop {
         type Sums = ::clebsch::__private::Plain;
         type Coordinates = SVector<f64, 3>;
-        type Moves = ::clebsch::__private::ByIncrement;
+        type Motion = SMatrix<f64, 3, 3>;
         const IS_SHORT: bool = true;
+
+        #[inline(always)]
+        fn motion(&self, _: &SVector<f64, 3>, increment: impl FnOnce() -> SMatrix<f64, 3, 3>) -> SMatrix<f64, 3, 3> {
+            increment()
+        }
 
         /// F − I
         #[inline]

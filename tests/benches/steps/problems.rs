@@ -56,6 +56,33 @@ pub struct CompensatedBody {
     pub moments: Vector3<f64>,
 }
 
+/// The free body of P1 by the default discretization, the Cayley map.
+#[derive(Clebsch, Clone, Debug)]
+#[clebsch(
+    action     = |F: SO<3>, R: SO<3>| R * F,
+    lagrangian = |omega| omega.dot(&(Matrix3::from_diagonal(&self.moments) * omega)) / 2,
+)]
+pub struct DefaultBody {
+    /// Principal moments of inertia, kg·m².
+    pub moments: Vector3<f64>,
+}
+
+/// The heavy top of P2 by the default discretization.
+#[derive(Clebsch, Clone, Debug)]
+#[clebsch(
+    action     = |F: SO<3>, R: SO<3>| R * F,
+    lagrangian = |omega| omega.dot(&(Matrix3::from_diagonal(&self.moments) * omega)) / 2,
+    potential  = |R| self.weight * (R * self.center).z,
+)]
+pub struct DefaultTop {
+    /// Principal moments of inertia, kg·m².
+    pub moments: Vector3<f64>,
+    /// m·g, N.
+    pub weight: f64,
+    /// m.
+    pub center: Vector3<f64>,
+}
+
 /// The free body of P1 after a million steps.
 pub fn ends() -> [engine::End; 3] {
     engine::ends(INERTIA, MOMENTUM)
@@ -71,6 +98,8 @@ fn free_body(h: f64) -> Vec<Result> {
     let start = stepper.state(Matrix3::identity(), momentum.into()).expect("a state");
     let compensated = CompensatedBody { moments: inertia.into() }.into_stepper(h).expect("a body");
     let compensated_start = compensated.state(Matrix3::identity(), momentum.into()).expect("a state");
+    let default = DefaultBody { moments: inertia.into() }.into_stepper(h).expect("a body");
+    let default_start = default.state(Matrix3::identity(), momentum.into()).expect("a state");
     let unit = [1.0, 0.0, 0.0, 0.0];
     let hand = Body::new(h, inertia, [0.0; 3], unit, momentum);
     let motion = Turning { inertia, moment: [0.0; 3] };
@@ -88,6 +117,7 @@ fn free_body(h: f64) -> Vec<Result> {
         by_hand("rust_rk4", rk4),
         by_hand("rust_gyroscopic", engine),
         derived(&compensated, compensated_start, 1.0).named("clebsch_compensated"),
+        derived(&default, default_start, 1.0).named("clebsch_default"),
     ];
     results("P1", h, 100, trials, work)
 }
@@ -113,11 +143,15 @@ fn heavy_top(h: f64) -> Vec<Result> {
     let compensated =
         CompensatedTop { mass_matrix, weight: 1.0, center: center.into() }.into_stepper(h).expect("a top");
     let compensated_start = compensated.state(attitude, momentum.into()).expect("a state");
+    let default = DefaultTop { moments: inertia.into(), weight: 1.0, center: center.into() }.into_stepper(h);
+    let default = default.expect("a top");
+    let default_start = default.state(attitude, momentum.into()).expect("a state");
     let trials = vec![
         derived(&stepper, start, 1.0),
         by_hand("rust_hand_newton", hand),
         by_hand("rust_rk4", rk4),
         derived(&compensated, compensated_start, 1.0).named("clebsch_compensated"),
+        derived(&default, default_start, 1.0).named("clebsch_default"),
     ];
     results("P2", h, 50, trials, work)
 }

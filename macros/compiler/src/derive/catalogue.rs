@@ -316,8 +316,12 @@ catalogue! {
     SplittingGradient = unlisted("kick of the covector", Hot).by(ClebschOptimalControl);
     /// F − I in the chart.
     Increment = unlisted("increment", Hot).by(LieGroupMethods);
+    /// D and c of F − I = c·D in the chart.
+    ScaledIncrement = unlisted("increment", Hot).by(LieGroupMethods);
     /// q⁺ with F = I + D.
     Advance = unlisted("action", Hot).by(ClebschOptimalControl);
+    /// q⁺ with F = I + c·D.
+    ScaledAdvance = unlisted("action", Hot).by(ClebschOptimalControl);
     /// q⁺ by the chart coordinates alone.
     Displacement = unlisted("action", Hot).by(ClebschOptimalControl);
     /// The cotangent lift with F = I + D.

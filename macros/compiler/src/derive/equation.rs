@@ -52,10 +52,13 @@ pub struct Form {
 /// A body whose momentum equation has one scalar unknown.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RotatingBody {
-    /// In space, with a diagonal inertia.
-    Principal,
-    /// In space, with any inertia.
-    Symmetric,
+    /// In space, with a diagonal inertia or with any, by the chord of Moser and Veselov or by the Cayley map.
+    Space {
+        /// Whether the inertia is diagonal.
+        is_principal: bool,
+        /// Whether the discretisation is that of the Cayley map.
+        is_cayley: bool,
+    },
     /// In four dimensions, with a distribution of mass.
     FourSpace,
 }

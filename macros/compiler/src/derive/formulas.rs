@@ -8,8 +8,8 @@ use clebsch_symbolic::{Chart, Expr, Group, IntoList};
 use super::energy::is_multiple_of_identity;
 use super::{
     Collocation, ConstraintFormulas, DiscreteLagrangian, Energy, FieldFormulas, FormulaTable, InputStep, JointFormulas,
-    MomentumEquation, Quantity, SiteTerm, Solution, Splitting, Substep, SymmetricParts, Symmetries, SystemFormulas,
-    Vertical, exact, signature,
+    MomentumEquation, Quantity, RotatingBody, SiteTerm, Solution, Splitting, Substep, SymmetricParts, Symmetries,
+    SystemFormulas, Vertical, exact, signature,
 };
 use crate::model::{Factor, Isotropy, LeafSpace, Mechanics, Signature, Steered};
 
@@ -164,8 +164,9 @@ impl MechanicsFormulas<'_> {
     /// The rotations and unit quaternions whose chart coordinates x/w are given by x and w: F − I saves the division.
     pub fn weighted(&self) -> Vec<usize> {
         let is_found = |k: &usize| match self.model.factors[*k].group {
-            Group::SpecialOrthogonal(3) => exact::is_free_rotation(&self.model, *k) || self.has_scalar_equation(*k),
-            Group::UnitQuaternions => self.has_scalar_equation(*k),
+            Group::SpecialOrthogonal(3) | Group::UnitQuaternions => {
+                exact::is_free_rotation(&self.model, *k) || self.has_scalar_equation(*k)
+            }
             _ => false,
         };
         (0..self.model.factors.len()).filter(is_found).into_list()
@@ -180,7 +181,11 @@ impl MechanicsFormulas<'_> {
     /// Whether each step has the same scalars: those of bodies that turn freely, whose momenta move with them.
     pub fn keeps_scalars(&self) -> bool {
         let [substep] = self.substeps.as_slice() else { return false };
-        let is_scalar = |equation: &MomentumEquation<'_>| matches!(equation.solution, Solution::Rotation(_));
+        // 1 + |x|² of the Cayley map changes along a motion
+        let is_scalar = |equation: &MomentumEquation<'_>| match equation.solution {
+            Solution::Rotation(RotatingBody::Space { is_cayley, .. }) => !is_cayley,
+            solution => matches!(solution, Solution::Rotation(_)),
+        };
         let is_solved = |equation: &MomentumEquation<'_>| {
             is_scalar(equation) || equation.solution == Solution::Explicit && equation.formula.is_none()
         };

@@ -17,6 +17,7 @@ mod control;
 mod cross;
 mod degenerate;
 mod derivation;
+mod direction;
 mod discrete_lagrangian;
 mod energy;
 mod equation;

@@ -141,6 +141,45 @@ impl<'g> MechanicsFormulas<'g> {
         self.model.factors.iter().enumerate().map(increment).into_list()
     }
 
+    /// The factors whose increments are made as c·D: rotations in space with known x/w. The products with D do not wait for the
+    /// division in c then.
+    pub fn scaled(&self) -> Vec<usize> {
+        let serves = !self.turns_momenta() && !self.turns_whole() && self.field.is_none();
+        let is_scaled = |k: &usize| self.model.factors[*k].group == Group::SpecialOrthogonal(3);
+        self.weighted().into_iter().filter(|k| serves && is_scaled(k)).into_list()
+    }
+
+    /// D of each factor and c of those that are [scaled](Self::scaled), from the chart coordinates; none if no factor is.
+    pub(super) fn scaled_increments(&self) -> Vec<Expr<'g>> {
+        let scaled = self.scaled();
+        let mut increments = if scaled.is_empty() { Vec::new() } else { self.chart_increments() };
+        for k in scaled {
+            let (x, w) = (self.symbols.stacked_coordinates(k), self.weight(k));
+            let parts = w.and_then(|w| Chart::scaled_increment(self.model.factors[k].group, x, w));
+            if let Some((increment, scale)) = parts {
+                increments[k] = increment;
+                increments.push(scale);
+            }
+        }
+        increments
+    }
+
+    /// The same as [`advance`](Self::advance) with c·D for D; none if no factor is [scaled](Self::scaled).
+    pub(super) fn scaled_advance(&self) -> Vec<Expr<'g>> {
+        if self.scaled().is_empty() { Vec::new() } else { self.by_scaled(self.advance()) }
+    }
+
+    /// Functions with c·D for D where factors are [scaled](Self::scaled).
+    fn by_scaled(&self, moved: Vec<Expr<'g>>) -> Vec<Expr<'g>> {
+        let (graph, increments) = (self.model.graph, &self.symbols.increments);
+        let scaled = self.scaled().into_iter().enumerate().map(|(number, k)| {
+            let scale = graph.symbol("c", Shape::scalar(), Role::IncrementScale(number), Property::General);
+            (increments[k], scale * increments[k])
+        });
+        let scaled = scaled.into_list();
+        moved.into_each(|moved| moved.substitute(&scaled))
+    }
+
     /// q⁺ = Φ_F(q) with F = I + D: for linear actions q + D q, without cancellation. With compensated sums, the
     /// increment of q.
     pub(super) fn advance(&self) -> Vec<Expr<'g>> {
@@ -154,6 +193,10 @@ impl<'g> MechanicsFormulas<'g> {
     /// M⁺ = Ad*_{F⁻¹} M for a left action, Ad*_F M for a right one, with F = I + D and the momentum M of ∂_F K. With
     /// compensated sums, the increment of the momentum that was solved for. `None` where M does not change.
     pub(super) fn momentum_after(&self, substep: &Substep<'g>) -> Option<Vec<Expr<'g>>> {
+        self.momentum_by_increments(substep).map(|momentum| self.by_scaled(momentum))
+    }
+
+    fn momentum_by_increments(&self, substep: &Substep<'g>) -> Option<Vec<Expr<'g>>> {
         if self.is_compensated() {
             return self.momentum_increments(substep);
         }

@@ -1,7 +1,8 @@
 //! The momentum equation of a rotating body of any inertia, which has one scalar unknown.
 //!
 //! In space, with A = Σ/(s·h) it is A x = μ + (μ·x) x ± μ × x for the Gibbs vector x, + for an action from the right. It is linear
-//! in x once κ = μ·x is known, and κ is the least root of a polynomial of degree four.
+//! in x once κ = μ·x is known, and κ is the least root of a polynomial of degree four. By the Cayley map it is (1 + |x|²) A x = μ ± μ × x,
+//! which is linear in x once s = 1 + |x|² is known.
 //!
 //! In four dimensions it is A X = M + (M X − X M) − X M X. That is M = F J − J Fᵀ with J = D/h, and the trace of F J is unknown.
 
@@ -34,15 +35,21 @@ pub(super) fn rotating<'g>(
     let inertia = sources.inertia.block(block.offset, block.offset, Shape::square(dimension));
     let body = match dimension {
         6 => is_in_four_space(sources, equation, i, inertia).then_some(RotatingBody::FourSpace)?,
-        _ if !is_in_space(sources, equation, i, inertia) => return None,
-        _ if is_diagonal(inertia) => RotatingBody::Principal,
-        _ => RotatingBody::Symmetric,
+        _ => {
+            let is_cayley = in_space(sources, equation, i, inertia)?;
+            RotatingBody::Space { is_principal: is_diagonal(inertia), is_cayley }
+        }
     };
     Some(MomentumEquation { solution: Solution::Rotation(body), ..equation.clone() })
 }
 
-/// Whether this is the equation of a body in space.
-fn is_in_space<'g>(sources: &Sources<'_, 'g>, equation: &MomentumEquation<'g>, i: usize, inertia: Expr<'g>) -> bool {
+/// Whether this is the equation of a body in space by the Cayley map; `None` if it is not that of a body.
+fn in_space<'g>(
+    sources: &Sources<'_, 'g>,
+    equation: &MomentumEquation<'g>,
+    i: usize,
+    inertia: Expr<'g>,
+) -> Option<bool> {
     let (model, block) = (sources.model, sources.symbols.blocks[i]);
     let factor = &model.factors[block.factor];
     let (x, mu) = (block.coordinates, sources.momentum_of_block(i));
@@ -52,8 +59,13 @@ fn is_in_space<'g>(sources: &Sources<'_, 'g>, equation: &MomentumEquation<'g>, i
     let back = if factor.side == Side::Left { (a * x).cross(x) } else { x.cross(a * x) };
     let one = model.graph.integer(1);
     let by_quaternions = a * x + back - (one + x.norm_squared()) * mu;
+    // the momentum of the Cayley map; quaternions have it times 1 + |x|²
+    let by_cayley = a * x + back + x.dot(a * x) * x - mu;
     let is_that = |form: Expr<'g>| identity::equal(&[equation.residual], &[form]);
-    is_that(by_matrices) || is_that(by_quaternions)
+    if is_that(by_matrices) || is_that(by_quaternions) {
+        return Some(false);
+    }
+    (is_that(by_cayley) || is_that((one + x.norm_squared()) * by_cayley)).then_some(true)
 }
 
 /// Whether this is the equation of a body in four dimensions.
@@ -98,13 +110,13 @@ impl<'g> FourSpace<'g> {
     }
 }
 
-/// The scalar equation f(κ) = 0, and r and p of its solution x = r/p.
+/// The scalar equation f(κ) = 0, or f(s) = 0 by the Cayley map, and r and p of its solution x = r/p.
 pub(super) struct ScalarEquation<'g> {
-    /// f(κ) = μ·r − κp.
+    /// f(κ) = μ·r − κp, f(s) = s − 1 − |r|²/p².
     pub(super) polynomial: Expr<'g>,
-    /// r = adj(A − κ) μ + |μ|² μ + A μ × μ.
+    /// r = adj(B) μ + |μ|² μ + B μ × μ with B = A − κ, or B = s A.
     pub(super) numerator: Expr<'g>,
-    /// p = det(A − κ) + μ·(A − κ) μ.
+    /// p = det B + μ·B μ.
     pub(super) denominator: Expr<'g>,
 }
 
@@ -119,21 +131,51 @@ pub(super) fn letters(graph: &Graph) -> [Expr<'_>; 2] {
 impl<'g> ScalarEquation<'g> {
     /// For the momentum μ of an action from the right.
     pub(super) fn new(mu: Expr<'g>) -> ScalarEquation<'g> {
-        let graph = mu.graph();
-        let [a, kappa] = letters(graph);
-        let identity = Group::SpecialOrthogonal(3).identity(graph);
-        let b = a - kappa * identity;
-        let (trace, square) = (b.trace(), b * b);
-        let adjugate = square - trace * b + (trace * trace - square.trace()) / 2 * identity;
-        let numerator = adjugate * mu + mu.norm_squared() * mu + (a * mu).cross(mu);
-        let denominator = (adjugate * b).trace() / 3 + mu.dot(b * mu);
+        let [a, kappa] = letters(mu.graph());
+        let (numerator, denominator) = solution(a - kappa * Group::SpecialOrthogonal(3).identity(mu.graph()), mu);
         ScalarEquation { polynomial: mu.dot(numerator) - kappa * denominator, numerator, denominator }
     }
+
+    /// The same by the Cayley map.
+    pub(super) fn by_cayley(mu: Expr<'g>) -> ScalarEquation<'g> {
+        let graph = mu.graph();
+        let [a, s] = [letters(graph)[0], graph.symbol("s", Shape::scalar(), Role::Letter, Property::General)];
+        let (numerator, denominator) = solution(s * a, mu);
+        let polynomial = s - graph.integer(1) - numerator.norm_squared() / (denominator * denominator);
+        ScalarEquation { polynomial, numerator, denominator }
+    }
+}
+
+/// r and p of the solution r/p of B x = μ + μ × x: adj(B) μ + |μ|² μ + B μ × μ and det B + μ·B μ.
+fn solution<'g>(b: Expr<'g>, mu: Expr<'g>) -> (Expr<'g>, Expr<'g>) {
+    let identity = Group::SpecialOrthogonal(3).identity(b.graph());
+    let (trace, square) = (b.trace(), b * b);
+    let adjugate = square - trace * b + (trace * trace - square.trace()) / 2 * identity;
+    let numerator = adjugate * mu + mu.norm_squared() * mu + (b * mu).cross(mu);
+    (numerator, (adjugate * b).trace() / 3 + mu.dot(b * mu))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// x = r/p solves the equation of the Cayley map where s = 1 + |x|², and its momentum is that of the velocity 2x/h.
+    #[test]
+    fn the_equation_of_the_cayley_map_is_linear_for_a_given_scalar() {
+        let graph = &Graph::new();
+        let mu = graph.symbol("μ", Shape::vector(3), Role::Momentum(0), Property::General);
+        let [a, _] = letters(graph);
+        let s = graph.symbol("s", Shape::scalar(), Role::Letter, Property::General);
+        let ScalarEquation { polynomial, numerator, denominator } = ScalarEquation::by_cayley(mu);
+        let x = numerator / denominator;
+        assert!(identity::equal(&[s * (a * x)], &[mu + mu.cross(x)]));
+        assert!(identity::equal(&[polynomial], &[s - graph.integer(1) - x.norm_squared()]));
+        // (I + x^ + xxᵀ)(I − x^) = (1 + |x|²) I
+        let y = graph.symbol("y", Shape::vector(3), Role::Letter, Property::General);
+        let momentum = a * y + y.cross(a * y) + y.dot(a * y) * y;
+        let square = graph.integer(1) + y.norm_squared();
+        assert!(identity::equal(&[momentum - y.cross(momentum)], &[square * (a * y)]));
+    }
 
     /// x = r/p solves the equation but for f(κ): ρ(r/p) = −f(κ)/p x, and f is the polynomial that the runtime evaluates.
     #[test]

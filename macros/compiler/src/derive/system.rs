@@ -185,6 +185,9 @@ impl<'g> SystemFormulas<'g> {
     /// J(q, ∂U(q)), the impulse of a function of q; `None` if it moves nothing.
     pub(super) fn impulse(&self, potential: Expr<'g>) -> Option<Vec<Expr<'g>>> {
         let impulse = self.momenta_of(self.gradients(potential));
+        if let Some(direction) = self.direction(potential, &impulse) {
+            return Some(vec![direction.inserted(direction.impulse(direction.potential))]);
+        }
         impulse.iter().any(|component| !identity::vanishes(*component)).then_some(impulse)
     }
 

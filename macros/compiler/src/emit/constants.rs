@@ -217,8 +217,8 @@ pub(super) fn is_in_four_space(solution: Solution) -> bool {
 /// The type of the inertia of a rotating body in space.
 pub(super) fn tensor(solution: Solution) -> Option<TokenStream> {
     match solution {
-        Solution::Rotation(RotatingBody::Principal) => Some(quote!(runtime::Diagonal<T>)),
-        Solution::Rotation(RotatingBody::Symmetric) => Some(quote!(runtime::Symmetric<T>)),
+        Solution::Rotation(RotatingBody::Space { is_principal: true, .. }) => Some(quote!(runtime::Diagonal<T>)),
+        Solution::Rotation(RotatingBody::Space { .. }) => Some(quote!(runtime::Symmetric<T>)),
         _ => None,
     }
 }

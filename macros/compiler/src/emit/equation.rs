@@ -249,7 +249,9 @@ impl<'e, 'a, 'g> EquationType<'e, 'a, 'g> {
         let Solution::Rotation(_) = self.solve.solution else { return None };
         let tensor = tensor(self.solve.solution).map(|tensor| quote!(type Tensor = #tensor;));
         let is_left = self.emitter.is_left(self.solve).then(|| flag("IS_LEFT", true));
-        Some(quote!(#tensor #is_left))
+        let is_cayley = matches!(self.solve.solution, Solution::Rotation(RotatingBody::Space { is_cayley: true, .. }));
+        let is_cayley = is_cayley.then(|| flag("IS_CAYLEY", true));
+        Some(quote!(#tensor #is_left #is_cayley))
     }
 
     /// The terms that Newton's method computes once.

@@ -238,8 +238,13 @@ functions! {
         /// D = F − I of the group element with chart coordinates x (for translations F itself), without cancellation.
         fn increment(&self, Coordinates: &X) -> F { Id::Increment }
         fn element(d: &F) -> F { Id::Increment }
+        fn motion(&self, x: &X, increment: impl ::core::ops::FnOnce() -> F) -> Motion { Id::Increment }
+        /// D and c of F = I + c·D, the division in c apart.
+        fn motion(&self, Coordinates: &X, increment: impl ::core::ops::FnOnce() -> F) -> Motion { Id::ScaledIncrement }
         /// The configuration that F = I + D moves q to.
         fn advance(&self, q: &Q, Moved: &Motion) -> Q { Id::Advance }
+        /// The configuration that F = I + c·D moves q to.
+        fn advance(&self, q: &Q, Moved: &Motion) -> Q { Id::ScaledAdvance }
         /// q⁺ = q + α ξ_Q(q) + β ξ_Q(ξ_Q(q)) at ξ = x where F = I + α x^ + β (x^)², without the matrix.
         fn advance(&self, q: &Q, Moved: &Motion) -> Q { Id::Displacement }
         /// The covector p carried along by F = I + D, at q⁺.

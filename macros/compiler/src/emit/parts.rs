@@ -24,8 +24,8 @@ impl Emitter<'_, '_> {
         quote!(#shared #(#substeps)* #of_scheme #reacting)
     }
 
-    /// The names and types of the data that moves q and N, in signatures. They are D = F − I, the chart coordinates x,
-    /// or both.
+    /// The types and the names of the data that moves q and N, in signatures, and how it is made. It is D = F − I, the chart coordinates x,
+    /// both, or D and c of F − I = c·D.
     pub(super) fn word_of_step(&self, word: &str) -> Option<TokenStream> {
         let is_displaced = || self.program.find(Id::Displacement).is_some();
         let updates = |index| self.program.find(Id::MomentumAfter(index)).is_some();
@@ -33,20 +33,28 @@ impl Emitter<'_, '_> {
         Some(match word {
             "X" => self.coordinates()[0].clone(),
             "Coordinates" => self.coordinates()[1].clone(),
-            "Moves" | "Motion" | "Moved" | "Increment" => {
+            "Motion" | "Moved" | "Increment" | "Made" => {
                 let [coordinates, x] = self.coordinates();
                 let turns = self.formulas.turns_momenta();
                 let turned = if turns { x.clone() } else { quote!(_) };
+                let both = || [quote!((#coordinates, F)), quote!((*x, increment()))];
+                let scaled = size(self.formulas.scaled().len());
                 let names = match (is_displaced(), is_updated()) {
-                    (true, true) => [quote!(ByBoth), quote!((#coordinates, F)), quote!((#x, _)), quote!((#turned, d))],
-                    (true, false) => [quote!(ByCoordinates), coordinates, x, quote!(d)],
-                    (false, true) if turns => {
-                        [quote!(ByBoth), quote!((#coordinates, F)), quote!((_, d)), quote!((#turned, d))]
+                    _ if self.program.find(Id::ScaledIncrement).is_some() => {
+                        [[quote!((F, [T; #scaled])), quote!()], [quote!((d, scale)), quote!((d, scale))]]
                     }
-                    (false, _) => [quote!(ByIncrement), quote!(F), quote!(d), quote!(d)],
+                    (true, true) => [both(), [quote!((#x, _)), quote!((#turned, d))]],
+                    (true, false) => [[coordinates, quote!(*x)], [x, quote!(d)]],
+                    (false, true) if turns => [both(), [quote!((_, d)), quote!((#turned, d))]],
+                    (false, _) => [[quote!(F), quote!(increment())], [quote!(d), quote!(d)]],
                 };
-                let place = ["Moves", "Motion", "Moved"].iter().position(|other| *other == word);
-                names[place.unwrap_or(3)].clone()
+                let [[motion, made], [moved, increment]] = names;
+                match word {
+                    "Motion" => motion,
+                    "Made" => made,
+                    "Moved" => moved,
+                    _ => increment,
+                }
             }
             "Rest" if self.formulas.is_compensated() => quote!(Q),
             "Rest" => quote!(()),
@@ -88,7 +96,7 @@ impl Emitter<'_, '_> {
         let sums = if self.formulas.is_compensated() { quote!(Compensated) } else { quote!(Plain) };
         let is_short = self.is_short().then(|| flag("IS_SHORT", true));
         let no_covectors = (!self.model.has_covectors()).then(|| flag("HAS_COVECTORS", false));
-        let [coordinates, moves] = both(["X", "Moves"], |word| self.word_of_step(word));
+        let [coordinates, motion] = both(["X", "Motion"], |word| self.word_of_step(word));
         let words = |word: &str| self.word_of_step(word);
         let functions = self.functions(PARTS, (0, 0), &words, |function, kernel| {
             self.shared_part(function, kernel).map(|body| self.within_step(body))
@@ -96,7 +104,7 @@ impl Emitter<'_, '_> {
         let items = quote! {
             type Sums = runtime::#sums;
             type Coordinates = #coordinates;
-            type Moves = runtime::#moves;
+            type Motion = #motion;
             #is_short
             #no_covectors
             #functions
@@ -110,11 +118,24 @@ impl Emitter<'_, '_> {
             |title| computed().map(|body| if self.formulas.is_compensated() { body.titled(title) } else { body });
         match function.name {
             "increment" if self.formulas.turns_whole() => Some(Body::from(quote!(*d)).titled("")),
+            "motion" if function.kernel == Id::ScaledIncrement => {
+                let (scope, kernel) = (self.scope_of_step(), kernel?);
+                let (locals, element) = (scope.locals(kernel), scope.element(kernel, 0));
+                let scales = (self.model.factors.len()..kernel.outputs.len()).map(|place| scope.scalar(kernel, place));
+                Some(Body::new(kernel, quote!(#locals (#element, [#(#scales),*]))))
+            }
+            "motion" if self.program.find(Id::ScaledIncrement).is_some() => None,
+            "motion" => Some(Body::from(self.word_of_step("Made")?).inlined(quote!(#[inline(always)]))),
             "element" => Some(Body::from(self.element_of_increment()).inlined(quote!())),
             "advance" if function.kernel == Id::Displacement => {
                 titled("q⁺ − q = α ξ_Q(q) + β ξ_Q(ξ_Q(q)) at ξ = x where F = I + α x^ + β (x^)², without the matrix.")
             }
-            "advance" if self.program.find(Id::Displacement).is_some() => None,
+            "advance" if function.kernel == Id::ScaledAdvance => {
+                titled("Φ_F(q) − q of F = I + c·D, in which q has cancelled.")
+            }
+            "advance" if [Id::Displacement, Id::ScaledAdvance].iter().any(|id| self.program.find(*id).is_some()) => {
+                None
+            }
             "advance" => titled("Φ_F(q) − q of F = I + D, in which q has cancelled."),
             "lift" if !self.model.has_covectors() => None,
             "on_space" => Some(Body::from(self.on_space()?)),
@@ -204,8 +225,16 @@ impl Emitter<'_, '_> {
                 Some(if is_inlined { body.inlined(quote!(#[inline(always)])) } else { body })
             }
             "update" if self.formulas.is_compensated() => {
-                let title = "The increment of the momentum by the move, F = I + D: M⁺ − μ, in which μ has cancelled.";
+                let title = match self.program.find(Id::ScaledIncrement) {
+                    Some(_) => {
+                        "The increment of the momentum by the move, F = I + c·D: M⁺ − μ, in which μ has cancelled."
+                    }
+                    None => "The increment of the momentum by the move, F = I + D: M⁺ − μ, in which μ has cancelled.",
+                };
                 Some(computed()?.titled(title))
+            }
+            "update" if self.program.find(Id::ScaledIncrement).is_some() => {
+                Some(computed()?.titled("The momentum after the move, F = I + c·D."))
             }
             "update" if self.formulas.turns_momenta() => {
                 Some(computed()?.titled("The momentum after the move by the element with chart coordinates x, or x/w."))

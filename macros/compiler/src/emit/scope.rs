@@ -171,6 +171,10 @@ impl Scope<'_, '_> {
                 let number = size(number);
                 quote!(w[#number])
             }
+            Role::IncrementScale(number) => {
+                let number = size(number);
+                quote!(scale[#number])
+            }
             Role::Kick => quote!(weight),
             Role::KickGradient => quote!(gradient),
             Role::InertiaInverse => match &self.constants {

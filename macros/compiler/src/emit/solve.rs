@@ -1,6 +1,6 @@
 //! How a step solves its equations, one after the other.
 
-use clebsch_symbolic::{IntoList, integer};
+use clebsch_symbolic::{Group, IntoList, integer};
 use proc_macro2::{Ident, Literal, TokenStream};
 use quote::{format_ident, quote};
 
@@ -98,7 +98,12 @@ impl Emitter<'_, '_> {
         let (rotation, solution) = (self.constant_of(solve), solution_name(solve.number));
         let (weight, target) = (self.weight_of(solve), self.momentum_of_free_rotation(solve));
         let index = self.place_among_kept(solve);
-        let name = if weight.is_some() { "turn" } else { "gibbs_vector" };
+        let is_quaternion = self.model.factors[self.factor_of(solve)].group == Group::UnitQuaternions;
+        let name = match weight {
+            Some(_) if is_quaternion => "shorter_turn",
+            Some(_) => "turn",
+            None => "gibbs_vector",
+        };
         let method = format_ident!("{name}{}", if kept { "_of" } else { "" });
         let motion = kept.then(|| quote!(&kept[#index],));
         let found = quote!(runtime::FreeRotation::#method(&c.#rotation, #motion #target)?);

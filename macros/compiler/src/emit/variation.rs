@@ -107,7 +107,11 @@ impl Emitter<'_, '_> {
                 let sum = self.combined(&quote!(q), quote!(+), &quote!(added));
                 quote!(let added = { #locals #added }; #sum)
             }
-            "advance" if self.program.find(Id::Displacement).is_none() && !self.formulas.turns_momenta() => {
+            "advance"
+                if self.program.find(Id::Displacement).is_none()
+                    && self.formulas.scaled().is_empty()
+                    && !self.formulas.turns_momenta() =>
+            {
                 let parts = self.trait_of_parts("Parts", &[]);
                 quote!(#parts::advance(self, q, d))
             }

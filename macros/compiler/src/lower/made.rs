@@ -76,6 +76,14 @@ impl<'a, 'g> Maker<'a, 'g> {
         is_asked_for && !has_quaternions(&self.system.model)
     }
 
+    /// Gives names to scalars that constants are made of.
+    pub(super) fn name(&mut self, named: &[(String, Expr<'g>)]) {
+        for (name, value) in named {
+            let scalar = self.scalars.grid(*value).entries[0];
+            self.scalars.names.push((scalar, name.clone()));
+        }
+    }
+
     /// The kernel of momenta of a step.
     pub(super) fn stack(&mut self, vectors: &[Expr<'g>]) -> Kernel {
         stack(&mut self.scalars, vectors, Hoisting::Constants(&mut self.hoisted))

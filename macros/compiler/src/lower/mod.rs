@@ -120,6 +120,9 @@ fn kernels<'g>(formulas: &MechanicsFormulas<'g>, form: &Form) -> Result<Kernels<
     maker.of_steps = of_steps(formulas);
     maker.scalars.keeps_matrices = form.keeps_matrices();
     let steps = maker.steps(formulas)?;
+    if let Some(splitting) = &formulas.splitting {
+        maker.name(&splitting.form);
+    }
     maker.known_rows([Id::SplittingKick, Id::SplittingGradient, Id::Mobility]);
     maker.collocation(formulas);
     maker.rows([Id::Lift]);

@@ -45,6 +45,9 @@ impl Scalars {
     /// The name of a value or of its negative; `None` where there is no short one.
     fn name(&self, scalar: Scalar, is_negative: bool) -> Option<String> {
         work::spend(200);
+        if let Some((_, name)) = self.names.iter().find(|(other, _)| *other == scalar) {
+            return Some(if is_negative { format!("minus_{name}") } else { name.clone() });
+        }
         let sign = integer(if is_negative { -1 } else { 1 });
         let name = match self.node(scalar) {
             ScalarNode::Sum(constant, terms) => {

@@ -146,9 +146,11 @@ const OF_EQUATION: Names<fn(usize, usize) -> Id> = &[
 const OF_SUBSTEP: Names<fn(usize) -> Id> = &[
     ("start_force", Id::StartForce),
     ("increment", |_| Id::Increment),
+    ("scaled_increment", |_| Id::ScaledIncrement),
     ("start_gradient", Id::StartGradient),
     ("displace", |_| Id::Displacement),
     ("advance", |_| Id::Advance),
+    ("scaled_advance", |_| Id::ScaledAdvance),
     ("rest_kick", Id::RestKick),
     ("coupled_gradient", Id::CoupledGradient),
     ("update", Id::MomentumAfter),
@@ -275,7 +277,7 @@ impl MechanicsProgram<'_> {
             Id::Lift => !turns_in_plane,
             Id::StartGradient(_) => turns_in_plane,
             Id::Displacement => !turns_in_plane,
-            Id::Advance => !turns_in_plane && !is_displaced,
+            Id::Advance => !turns_in_plane && !is_displaced && self.find(Id::ScaledAdvance).is_none(),
             Id::EndKick(index) => !self.steps[index].end_is_start,
             _ => true,
         }
@@ -319,8 +321,10 @@ impl MechanicsProgram<'_> {
         let kicks = [Id::StartKick, Id::EndKick, Id::StartForce, Id::EndForce, Id::MomentumAfter].map(|id| id(substep));
         let solved = [Id::Predictor, Id::ClosedForm, Id::Explicit, Id::SineSquared];
         let solves = self.steps[substep].solves.iter().flat_map(|solve| solved.map(|id| solve.id(id)));
-        let increment = self.makes_increments(substep).then_some(Id::Increment);
-        let moves = if self.find(Id::Displacement).is_some() { Id::Displacement } else { Id::Advance };
+        let made = if self.find(Id::ScaledIncrement).is_some() { Id::ScaledIncrement } else { Id::Increment };
+        let increment = self.makes_increments(substep).then_some(made);
+        let moves = [Id::Displacement, Id::ScaledAdvance].into_iter().find(|id| self.find(*id).is_some());
+        let moves = moves.unwrap_or(Id::Advance);
         let ids = solves.chain(kicks).chain(increment).chain([moves]);
         ids.map(|id| self.kernel(id).cost()).fold(Cost::default(), Cost::plus)
     }

@@ -129,6 +129,8 @@ pub struct Scalars {
     pub(super) is_plain: bool,
     /// Whether kernels are matrix code, and not unrolled.
     pub keeps_matrices: bool,
+    /// The names of sums that have one in formulas.
+    pub(super) names: Vec<(Scalar, String)>,
     nodes: Interner<ScalarNode>,
     rates: Vec<Rate>,
     calls: Interner<(Callee, Vec<Rc<Grid>>)>,

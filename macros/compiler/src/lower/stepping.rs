@@ -70,7 +70,7 @@ impl<'g> Maker<'_, 'g> {
         // where F − I and the next momentum are found at once, none is made of the other
         if index == 0 {
             self.rows([Id::Advance]);
-            self.known_rows([Id::Increment]);
+            self.known_rows([Id::Increment, Id::ScaledIncrement, Id::ScaledAdvance]);
         }
         self.known_rows([Id::MomentumAfter(index)]);
         if index == 0 {

@@ -53,10 +53,11 @@ fn an_oscillator_shows_the_orders() {
         // {V, {V, T}} = q²
         let kick = |_: f64, b: f64, g: f64, (q, p): (f64, f64)| (q, p - b * h * q + 2.0 * g * h.powi(3) * q);
         let mut state = (1.0, 0.0);
-        let mut at_once =
-            split(kicks, (0.0, h, steps as usize), state, drift, kick, |_| Ok(())).expect("drifts do not fail");
+        let mut at_once = split(kicks, (0.0, h, steps as usize), state, drift, kick, |state| state, |_| Ok(()))
+            .expect("drifts do not fail");
         for _ in 0..steps {
-            state = split(kicks, (0.0, h, 1), state, drift, kick, |_| Ok(())).expect("drifts do not fail");
+            state =
+                split(kicks, (0.0, h, 1), state, drift, kick, |state| state, |_| Ok(())).expect("drifts do not fail");
         }
         at_once = (at_once.0 - state.0, at_once.1 - state.1);
         assert!(at_once.0.abs() + at_once.1.abs() < 1e-14, "drifts that are merged are the same");

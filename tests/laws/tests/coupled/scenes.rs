@@ -209,6 +209,8 @@ impl Scene for Cart {
     action    = |F: SO<3>, R: SO<3>| R * F,
     cost      = |h, F| (self.mass_matrix * (F - I) * (F - I).transpose()).trace() / (2 * h),
     potential = |R| self.weight * (R * self.center).z,
+    // as costs that couple are solved: the scalar unknown of this one would leave less rounding
+    solver    = newton,
 )]
 pub struct HeavyTop<T: Scalar> {
     mass_matrix: Matrix3<T>,

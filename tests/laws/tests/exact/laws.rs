@@ -6,7 +6,7 @@ use clebsch_tests::fixtures::exact_body::ExactBody;
 use clebsch_tests::oracle::random::Random;
 use clebsch_tests::oracle::rotation::hat;
 use clebsch_tests::stepping::Stepping;
-use nalgebra::{Matrix3, Matrix6, Vector3, Vector6};
+use nalgebra::{Matrix3, Matrix6, UnitQuaternion, Vector3, Vector6};
 
 const MOMENTS: Vector3<f64> = Vector3::new(1.1, 2.0, 2.6);
 
@@ -125,6 +125,29 @@ fn both_representations_agree() {
     let momentum = system.momentum_map(lifted.configuration(), lifted.covector());
     assert!((next.configuration() - lifted.configuration()).norm() < 1e-14);
     assert!((next.momentum() - momentum).norm() < 1e-13);
+}
+
+/// Quaternions and matrices make the same steps, by drifts of many turns too: F − I of the quaternion with w ≥ 0.
+#[test]
+fn quaternions_are_matrices() {
+    let random = &mut Random::new(53);
+    let moment = Vector3::new(0.6, -0.3, 1.8);
+    for h in [0.05, 0.3, 1.0, 2.5, 7.0] {
+        let matrices = fourth::Top { inertia: Matrix3::from_diagonal(&MOMENTS), weight: 1.0, center: moment };
+        let quaternions = fourth::QuaternionTop { moments: MOMENTS, moment };
+        let (matrices, quaternions) = (matrices.stepper(h).expect("regular"), quaternions.stepper(h).expect("regular"));
+        for _ in 0..32 {
+            let (r, pi) = (random.attitude::<3>(), random.vector::<3>() * 4.0);
+            let q = UnitQuaternion::from_matrix(&r).into_inner();
+            let by_matrix = matrices.step(&matrices.state(r, pi).expect("a state")).expect("a step");
+            let by_quaternion = quaternions.step(&quaternions.state(q, pi).expect("a state")).expect("a step");
+            let turned = UnitQuaternion::new_unchecked(*by_quaternion.configuration()).to_rotation_matrix();
+            // the turn of a long drift is right to some units of its last digit, and kicks are as long as h³
+            let error = 1e-13 * (1.0 + h).powi(5);
+            assert!((turned.matrix() - by_matrix.configuration()).norm() < error, "{h}: {turned}");
+            assert!((by_matrix.momentum() - by_quaternion.momentum()).norm() < 8.0 * error, "{h}");
+        }
+    }
 }
 
 /// F⁻ℓd is the inverse of the solve, and F⁺ℓd the momentum that it ends with.

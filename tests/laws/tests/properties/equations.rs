@@ -212,7 +212,8 @@ macro_rules! splitting {
             let kick = |_: f64, b: f64, g: f64, (q, p): (f64, f64)| {
                 (q, p - b * h * square * q + 2.0 * g * h.powi(3) * square * square * q)
             };
-            private::split(&$kicks::KICKS, (0.0, h, steps), start, drift, kick, |_| Ok(())).expect("drifts do not fail")
+            private::split(&$kicks::KICKS, (0.0, h, steps), start, drift, kick, |state| state, |_| Ok(()))
+                .expect("drifts do not fail")
         }
     };
 }

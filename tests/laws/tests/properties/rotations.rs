@@ -44,6 +44,12 @@ proptest! {
         assert_near(&free.gibbs_vector_of(&kept, &mu)?, &c, NEAR, "what is kept");
         let (w, x) = free.turn_of(&kept, &mu)?;
         assert_near(&(x / w), &c, NEAR, "what is kept");
+        // the same quaternion or its negative, with w ≥ 0, for any number of turns
+        let long = FreeRotation::new(&inertia, 40.0 * h)?;
+        let long_kept = long.motion(&mu);
+        for ((w, x), (v, y)) in [(long.turn(&mu)?, long.shorter_turn(&mu)?), (long.turn_of(&long_kept, &mu)?, long.shorter_turn_of(&long_kept, &mu)?)] {
+            prop_assert_eq!((v, y), if w < 0.0 { (-w, -x) } else { (w, x) });
+        }
         // and of the same motion later
         let (first, second) = (free.gibbs_vector_of(&kept, &later)?, free.gibbs_vector(&later)?);
         assert_near(&first, &second, NEAR, "what is kept later");

@@ -42,7 +42,7 @@ fn symmetric(top: &WatchedTop, q: &Matrix3<f64>, p: &Matrix3<f64>) -> Result<(Ma
     let p = p + Substep::<0>::start_gradient(top, &constants, 0.0, q).expect("a gradient");
     let x = Substep::<0>::solve(top, &constants, 0.0, q, &top.momentum_map(q, &p), &())?;
     let d = top.increment(&x);
-    let next = Parts::advance(top, q, &d);
+    let next = Parts::advance(top, q, &top.motion(&x, || d));
     let p = top.lift(&next, &p, &d);
     Ok((next, p + Substep::<0>::end_gradient(top, &constants, 0.0, &next).expect("a gradient")))
 }

@@ -235,7 +235,7 @@ pub const PROPERTIES: &[(&str, &[Property])] = &[
         ("indices_go_round",           &["wrapped"]),
     ]),
     ("tests/laws/tests/properties/rotations.rs", &[
-        ("free_bodies_turn_back",               &["FreeRotation::new", "FreeRotation::turn", "FreeRotation::motion", "FreeRotation::gibbs_vector_of", "FreeRotation::turn_of"]),
+        ("free_bodies_turn_back",               &["FreeRotation::new", "FreeRotation::turn", "FreeRotation::motion", "FreeRotation::gibbs_vector_of", "FreeRotation::turn_of", "FreeRotation::shorter_turn", "FreeRotation::shorter_turn_of"]),
         ("momenta_belong_to_their_rotations",   &["FreeRotation::momentum", "free_momentum"]),
         ("momenta_belong_to_their_rotations_of_four_dimensions", &["free_momentum_4d"]),
     ]),

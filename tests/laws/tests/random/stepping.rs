@@ -257,6 +257,12 @@ impl<'a, 'g> Stepper<'a, 'g> {
         let graph = self.program.formulas.model.graph;
         let weight = graph.symbol("w", Shape::scalar(), Role::ChartWeight(0), Property::General);
         self.values.set(weight, &[1.0]);
+        // F − I = c·D with the D of `Increment`, which has c in it
+        let count = self.program.formulas.scaled().len();
+        for number in 0..count {
+            let scale = graph.symbol("c", Shape::scalar(), Role::IncrementScale(number), Property::General);
+            self.values.set(scale, &[1.0]);
+        }
         for block in &self.program.formulas.symbols.blocks {
             let known = self.values.0.get(&block.coordinates.as_symbol().expect("a symbol").name);
             let mut entries = known.map_or(vec![0.0; block.dimension()], |known| known.entries.clone());

@@ -42,6 +42,9 @@ fn operations(program: &Program<'_>) -> usize {
         ["act", "momentum", "coadjoint", "legendre", "potential", "inertia", "constants", "cotangent", "conserved"];
     let makes_increments =
         program.mechanics().is_none_or(|program| (0..program.steps.len()).all(|index| program.makes_increments(index)));
+    // where D and c of F − I = c·D are made apart, a step does not multiply them
+    let is_scaled = program.kernels().iter().any(|(name, _)| name == "scaled_increment");
+    let makes_increments = makes_increments && !is_scaled;
     let is_stepped = |name: &str| {
         let is_formula = asked.iter().any(|other| name.starts_with(other)) && !name.starts_with("advance");
         !is_formula && name != "generator" && name != "membership" && (makes_increments || name != "increment")
@@ -55,8 +58,8 @@ fn operations(program: &Program<'_>) -> usize {
 /// The operations of the runtime with the tensor of a rotating body and its adjugate, each times a vector.
 fn of_tensors(solution: Solution) -> usize {
     match solution {
-        Solution::Rotation(RotatingBody::Principal) => 2 * 3,
-        Solution::Rotation(RotatingBody::Symmetric) => 2 * 15,
+        Solution::Rotation(RotatingBody::Space { is_principal: true, .. }) => 2 * 3,
+        Solution::Rotation(RotatingBody::Space { .. }) => 2 * 15,
         _ => 0,
     }
 }

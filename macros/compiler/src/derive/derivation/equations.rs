@@ -58,6 +58,9 @@ pub(super) fn how(formulas: &MechanicsFormulas<'_>, equation: &MomentumEquation<
         Solution::Rotation(RotatingBody::FourSpace) => {
             "has one scalar unknown: B = F J, J = D/h with ΣΩ = DΩ + ΩD, obeys B² = M B + J², so e₁ = tr B gives the characteristic polynomial of B, and that gives F by one linear system of four equations; e₁ is found by Newton's method, and Hurwitz's criterion tells that it is the right root; short steps iterate an equation for x of low degree instead, which contracts like h|ω|".to_string()
         }
+        Solution::Rotation(RotatingBody::Space { is_cayley: true, .. }) => {
+            "has one scalar unknown: (1 + |x|²) A x = μ ± μ × x with A = 2Σ/h, x the Gibbs vector of the step, is linear in x once s = 1 + |x|² is known; s is the root of one function that increases, by Newton's method; where it need not increase, Newton's method for x follows the path from the identity".to_string()
+        }
         Solution::Rotation(_) => {
             "has one scalar unknown: A x = μ + (μ·x) x ± μ × x with A = 2Σ/h, x the Gibbs vector of the step, is linear in x once κ = μ·x is known; κ is the least root of a polynomial of degree four, by a series for short steps and by Newton's method".to_string()
         }
