@@ -49,7 +49,8 @@ pub trait Parts<M: Method<Self> = Declared>: Clebsch {
         *p
     }
 
-    /// q without the rounding that has moved it off rotations, unit vectors and unit quaternions. A step does it last, and several steps of drifts and kicks before the drift that two of them share.
+    /// q without the rounding that has moved it off rotations, unit vectors and unit quaternions. A step does it last, so that nothing waits
+    /// for it. A run of splittings does it before each drift that two steps share.
     #[inline(always)]
     fn on_space(q: Q<Self>, rest: RestOf<Self, M>) -> (Q<Self>, RestOf<Self, M>) {
         (q, rest)

@@ -170,7 +170,7 @@ pub trait RotationEquation<T: Scalar> {
     /// The form of A.
     type Tensor: Tensor<T>;
 
-    /// Whether the action is from the left: A x = μ + (μ·x) x − μ × x, the equation of −x and −μ.
+    /// Whether the action is from the left: − μ × x stands for + μ × x then, which is the equation of −x and −μ.
     const IS_LEFT: bool = false;
 
     /// Whether it is that of the Cayley map.

@@ -185,7 +185,7 @@ pub fn split<T: Scalar, S, const K: usize>(
             }
             None => {
                 left -= 1;
-                // the drift that ends the run is before the last look at rounding
+                // the last step is settled behind its last drift
                 if left > 0 {
                     state = settle(state);
                 }

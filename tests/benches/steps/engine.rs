@@ -1,8 +1,8 @@
 //! The gyroscopic step of game engines on the free body, and where it is after a million steps.
 
 use crate::hand::{Kernel, rotation};
-use crate::problems::CompensatedBody;
-use clebsch::Clebsch;
+use crate::problems::{Compensated, FreeBody};
+use clebsch::{Clebsch, Method, Stepper};
 use clebsch_tests::fixtures::principal_body::PrincipalBody;
 use nalgebra::{Matrix3, Vector3};
 use std::hint::black_box;
@@ -92,9 +92,10 @@ pub fn ends(inertia: [f64; 3], momentum: [f64; 3]) -> [End; 3] {
     let (h, steps) = (0.01, 1_000_000);
     let mut engine = Gyroscopic::new(h, inertia, momentum);
     (0..steps).for_each(|_| engine.step());
-    let (momenta, attitudes) = (momentum.into(), Matrix3::identity());
-    let plain = last(PrincipalBody { moments: inertia.into() }, (attitudes, momenta), h, steps);
-    let compensated = last(CompensatedBody { moments: inertia.into() }, (attitudes, momenta), h, steps);
+    let start = (Matrix3::identity(), momentum.into());
+    let (plain, compensated) = (PrincipalBody { moments: inertia.into() }, FreeBody { moments: inertia.into() });
+    let plain = last(&plain.into_stepper(h).expect("a body"), start, steps);
+    let compensated = last(&compensated.into_stepper_by::<Compensated>(h).expect("a body"), start, steps);
     let of = |peer, body: [f64; 3], r: Matrix3<f64>| {
         let start = Vector3::from(momentum);
         let spatial = (r * Vector3::from(body) - start).norm() / start.norm();
@@ -112,11 +113,15 @@ pub fn ends(inertia: [f64; 3], momentum: [f64; 3]) -> [End; 3] {
 }
 
 /// Attitude and momentum after some steps.
-fn last<S>(body: S, start: (Matrix3<f64>, Vector3<f64>), h: f64, steps: usize) -> (Matrix3<f64>, Vector3<f64>)
+fn last<S, M>(
+    stepper: &Stepper<S, M>,
+    start: (Matrix3<f64>, Vector3<f64>),
+    steps: usize,
+) -> (Matrix3<f64>, Vector3<f64>)
 where
     S: Clebsch<Scalar = f64, Configuration = Matrix3<f64>, Momentum = Vector3<f64>>,
+    M: Method<S>,
 {
-    let stepper = body.into_stepper(h).expect("a body");
     let mut state = stepper.state(start.0, start.1).expect("a state");
     for _ in 0..steps {
         state = stepper.step(&state).expect("a step of moderate size");

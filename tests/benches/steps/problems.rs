@@ -43,26 +43,17 @@ pub fn all() -> Vec<Result> {
     results
 }
 
-/// The free body of P1 with sums that keep their rests.
-#[derive(Clebsch, Clone, Debug)]
-#[clebsch(
-    action         = |F: SO<3>, R: SO<3>| R * F,
-    lagrangian     = |omega| omega.dot(&(Matrix3::from_diagonal(&self.moments) * omega)) / 2,
-    discretization = moser_veselov,
-    summation      = compensated,
-)]
-pub struct CompensatedBody {
-    /// Principal moments of inertia, kg·m².
-    pub moments: Vector3<f64>,
-}
+/// Steps with sums that keep their rests.
+pub struct Compensated;
 
-/// The free body of P1 by the default discretization, the Cayley map.
+/// The free body of P1 by the default discretization, the Cayley map, and with compensated sums.
 #[derive(Clebsch, Clone, Debug)]
 #[clebsch(
     action     = |F: SO<3>, R: SO<3>| R * F,
     lagrangian = |omega| omega.dot(&(Matrix3::from_diagonal(&self.moments) * omega)) / 2,
+    method Compensated = (discretization = moser_veselov, summation = compensated),
 )]
-pub struct DefaultBody {
+pub struct FreeBody {
     /// Principal moments of inertia, kg·m².
     pub moments: Vector3<f64>,
 }
@@ -96,9 +87,9 @@ fn free_body(h: f64) -> Vec<Result> {
     let (inertia, momentum) = (INERTIA, MOMENTUM);
     let stepper = PrincipalBody { moments: inertia.into() }.into_stepper(h).expect("a body");
     let start = stepper.state(Matrix3::identity(), momentum.into()).expect("a state");
-    let compensated = CompensatedBody { moments: inertia.into() }.into_stepper(h).expect("a body");
+    let compensated = FreeBody { moments: inertia.into() }.into_stepper_by::<Compensated>(h).expect("a body");
     let compensated_start = compensated.state(Matrix3::identity(), momentum.into()).expect("a state");
-    let default = DefaultBody { moments: inertia.into() }.into_stepper(h).expect("a body");
+    let default = FreeBody { moments: inertia.into() }.into_stepper(h).expect("a body");
     let default_start = default.state(Matrix3::identity(), momentum.into()).expect("a state");
     let unit = [1.0, 0.0, 0.0, 0.0];
     let hand = Body::new(h, inertia, [0.0; 3], unit, momentum);

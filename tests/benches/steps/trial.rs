@@ -2,7 +2,7 @@
 
 use crate::hand::Kernel;
 use crate::timing::Run;
-use clebsch::{Clebsch, State, Stepper};
+use clebsch::{Clebsch, Method, State, Stepper};
 use nalgebra::SMatrix;
 use std::hint::black_box;
 
@@ -29,9 +29,14 @@ pub struct Trial<'a> {
 }
 
 /// The derived step, the state handed from step to step as a user does. Energies are multiplied by `scale`.
-pub fn derived<'a, S, const R: usize, const C: usize>(stepper: &'a Stepper<S>, start: State<S>, scale: f64) -> Trial<'a>
+pub fn derived<'a, S, M, const R: usize, const C: usize>(
+    stepper: &'a Stepper<S, M>,
+    start: State<S, M>,
+    scale: f64,
+) -> Trial<'a>
 where
     S: Clebsch<Scalar = f64, Configuration = SMatrix<f64, R, C>>,
+    M: Method<S>,
 {
     let run = move |steps| {
         let (stepper, mut state) = (black_box(stepper), black_box(start));

@@ -103,3 +103,47 @@ fn row_of_rotation<'g>(q: Expr<'g>, i: usize) -> Expr<'g> {
     };
     graph.stack(Shape::vector(3), indexed(3, entry))
 }
+
+#[cfg(test)]
+mod tests {
+    use clebsch_symbolic::Graph;
+
+    use crate::compile;
+    use crate::derive::Id;
+
+    /// The kick at the start of a step of a body by quaternions.
+    fn kick(potential: &str) -> String {
+        let source = format!(
+            "#[clebsch(action = |F: SU<2>, Q: SU<2>| Q * F, lagrangian = |omega| omega.norm_squared(), potential = {potential})]
+             struct Body {{ weight: f64, center: Vector3<f64>, other: Vector3<f64> }}"
+        );
+        let graph = &Graph::new();
+        let program = compile(graph, source.parse().expect("tokens")).unwrap_or_else(|errors| panic!("{errors}"));
+        let rows = program.mechanics().expect("a body").formulas.table().rows();
+        rows.iter().find(|row| row.id == Id::StartKick(0)).expect("a kick").equation()
+    }
+
+    /// Weight along each axis is the product of the centre of mass with the direction that the body sees.
+    #[test]
+    fn weight_is_a_direction() {
+        for axis in ["x", "y", "z"] {
+            let kick = kick(&format!("|Q| self.weight * (Q * self.center).{axis}"));
+            assert!(kick.starts_with("M − N = −weight·h·center^·["), "{kick}");
+        }
+        let by_other_names = kick("|Q| self.weight * self.center.dot(&(Q.conjugate() * Vector3::z()))");
+        assert!(by_other_names.contains("center^·["), "{by_other_names}");
+    }
+
+    /// Potentials of several directions, and methods of the user's, are derived from the four coordinates.
+    #[test]
+    fn other_potentials_are_none() {
+        for potential in [
+            "|Q| (Q * self.center).z.powi(2)",
+            "|Q| (Q * self.center).z + (Q * self.other).x",
+            "opaque(Self::value, Self::gradient)",
+        ] {
+            let kick = kick(potential);
+            assert!(!kick.contains("^·[2·Q"), "{potential}: {kick}");
+        }
+    }
+}

@@ -129,14 +129,14 @@ impl<'g> MechanicsFormulas<'g> {
         let increment = |(k, factor): (usize, &Factor<'g>)| {
             let Some(w) = self.weight(k) else { return self.chart_increment(k) };
             let x = self.symbols.stacked_coordinates(k);
-            let square = w * w + x.dot(x);
-            if factor.group == Group::UnitQuaternions {
-                let size = square.sqrt();
-                let scalar = -(x.dot(x) / (square + w * size));
-                return self.model.graph.below(&[x / size, scalar]);
+            if factor.group != Group::UnitQuaternions {
+                let [increment, scale] = Chart::scaled_increment(x, w);
+                return scale * increment;
             }
-            let hat = factor.group.wedge(x);
-            (w * hat + hat * hat) / (square / 2)
+            let square = w * w + x.dot(x);
+            let size = square.sqrt();
+            let scalar = -(x.dot(x) / (square + w * size));
+            self.model.graph.below(&[x / size, scalar])
         };
         self.model.factors.iter().enumerate().map(increment).into_list()
     }
@@ -154,12 +154,11 @@ impl<'g> MechanicsFormulas<'g> {
         let scaled = self.scaled();
         let mut increments = if scaled.is_empty() { Vec::new() } else { self.chart_increments() };
         for k in scaled {
-            let (x, w) = (self.symbols.stacked_coordinates(k), self.weight(k));
-            let parts = w.and_then(|w| Chart::scaled_increment(self.model.factors[k].group, x, w));
-            if let Some((increment, scale)) = parts {
-                increments[k] = increment;
-                increments.push(scale);
-            }
+            // by construction: scaled factors have weights
+            let Some(w) = self.weight(k) else { continue };
+            let [increment, scale] = Chart::scaled_increment(self.symbols.stacked_coordinates(k), w);
+            increments[k] = increment;
+            increments.push(scale);
         }
         increments
     }
@@ -196,6 +195,7 @@ impl<'g> MechanicsFormulas<'g> {
         self.momentum_by_increments(substep).map(|momentum| self.by_scaled(momentum))
     }
 
+    /// The same with D for c·D.
     fn momentum_by_increments(&self, substep: &Substep<'g>) -> Option<Vec<Expr<'g>>> {
         if self.is_compensated() {
             return self.momentum_increments(substep);

@@ -150,11 +150,10 @@ impl Chart {
         }
     }
 
-    /// D and c of the increment c·D of a rotation in space with the coordinates x/w: wZ + Z² and 2/(w² + |x|²).
-    pub fn scaled_increment<'g>(group: Group, x: Expr<'g>, w: Expr<'g>) -> Option<(Expr<'g>, Expr<'g>)> {
-        let z = group.wedge(x);
-        (group == Group::SpecialOrthogonal(3))
-            .then(|| (w * z + z * z, x.graph().integer(1) / ((w * w + x.norm_squared()) / 2)))
+    /// D and c of the increment F − I = c·D of a rotation in space with the Gibbs vector x/w: wZ + Z² and 2/(w² + |x|²).
+    pub fn scaled_increment<'g>(x: Expr<'g>, w: Expr<'g>) -> [Expr<'g>; 2] {
+        let z = Group::SpecialOrthogonal(3).wedge(x);
+        [w * z + z * z, x.graph().integer(1) / ((w * w + x.norm_squared()) / 2)]
     }
 
     /// α and β of F = I + αZ + βZ², in charts of rotations where F has this form.

@@ -140,9 +140,10 @@ impl<'g> MechanicsFormulas<'g> {
             Solution::Rotation(RotatingBody::FourSpace) => {
                 rows.extend(self.rows_of_rotation_4d(index, number, (mu, &coordinates)));
             }
-            Solution::Rotation(RotatingBody::Space { is_cayley, .. }) => {
-                rows.extend(self.rows_of_rotation(index, number, (mu, &coordinates), is_cayley));
+            Solution::Rotation(RotatingBody::Space { is_cayley: true, .. }) => {
+                rows.extend(self.rows_of_cayley_rotation(index, number, (mu, &coordinates)));
             }
+            Solution::Rotation(_) => rows.extend(self.rows_of_rotation(index, number, (mu, &coordinates))),
             _ => {}
         }
         rows.extend(equation.formula.map(|solution| {
@@ -188,27 +189,8 @@ impl<'g> MechanicsFormulas<'g> {
     }
 
     /// The scalar equation of a rotating body, with A = Σ/(s·h), and its solution.
-    fn rows_of_rotation(
-        &self,
-        index: usize,
-        number: usize,
-        (mu, x): (&str, &str),
-        is_cayley: bool,
-    ) -> [Formula<'g>; 2] {
+    fn rows_of_rotation(&self, index: usize, number: usize, (mu, x): (&str, &str)) -> [Formula<'g>; 2] {
         let block = self.symbols.blocks_of(&self.substeps[index].equations[number].components)[0];
-        if is_cayley {
-            let parts = rotation::ScalarEquation::by_cayley(self.momentum_of_block(block));
-            let scalar = Formula::new(Id::ScalarEquation(index, number), "0 = f(s)", [parts.polynomial]).in_words(
-                "s − 1 − |r|²/p², r and p of x".to_string(),
-                "s - 1 - |r|^2/p^2,\\quad r \\text{ and } p \\text{ of } x".to_string(),
-            );
-            let value = [parts.numerator / parts.denominator];
-            let solution = Formula::new(Id::Solution(index, number), x, value).in_words(
-                format!("r/p, r = s²·adj(A)·{mu} ± s·A·{mu} × {mu} + m·{mu}, p = s·(s²·det(A) + {mu}ᵀ·A·{mu}), m = |{mu}|²"),
-                format!("r/p,\\quad r = s^2 \\operatorname{{adj}}(A) {mu} \\pm s A {mu} \\times {mu} + m {mu},\\quad p = s (s^2 \\det A + {mu}^T A {mu}),\\quad m = |{mu}|^2"),
-            );
-            return [scalar, solution];
-        }
         let parts = rotation::ScalarEquation::new(self.momentum_of_block(block));
         let scalar = Formula::new(Id::ScalarEquation(index, number), "0 = f(κ)", [parts.polynomial]).in_words(
             format!("κ⁴ − e₁·κ³ + (e₂ + 2·m)·κ² − (e₃ + e₁·m)·κ + m² + {mu}ᵀ·adj(A)·{mu}, m = |{mu}|², e₁, e₂, e₃ of A"),
@@ -218,6 +200,22 @@ impl<'g> MechanicsFormulas<'g> {
         let solution = Formula::new(Id::Solution(index, number), x, value).in_words(
             format!("(adj(A − κ)·{mu} + m·{mu} ± A·{mu} × {mu})/(det(A − κ) + {mu}ᵀ·(A − κ)·{mu})"),
             format!("\\frac{{\\operatorname{{adj}}(A - \\kappa) {mu} + m {mu} \\pm A {mu} \\times {mu}}}{{\\det(A - \\kappa) + {mu}^T (A - \\kappa) {mu}}}"),
+        );
+        [scalar, solution]
+    }
+
+    /// The same by the Cayley map.
+    fn rows_of_cayley_rotation(&self, index: usize, number: usize, (mu, x): (&str, &str)) -> [Formula<'g>; 2] {
+        let block = self.symbols.blocks_of(&self.substeps[index].equations[number].components)[0];
+        let parts = rotation::ScalarEquation::by_cayley(self.momentum_of_block(block));
+        let scalar = Formula::new(Id::ScalarEquation(index, number), "0 = f(s)", [parts.polynomial]).in_words(
+            "s − 1 − |r|²/p², r and p of x".to_string(),
+            "s - 1 - |r|^2/p^2,\\quad r \\text{ and } p \\text{ of } x".to_string(),
+        );
+        let value = [parts.numerator / parts.denominator];
+        let solution = Formula::new(Id::Solution(index, number), x, value).in_words(
+            format!("r/p, r = s²·adj(A)·{mu} ± s·A·{mu} × {mu} + m·{mu}, p = s·(s²·det(A) + {mu}ᵀ·A·{mu}), m = |{mu}|²"),
+            format!("r/p,\\quad r = s^2 \\operatorname{{adj}}(A) {mu} \\pm s A {mu} \\times {mu} + m {mu},\\quad p = s (s^2 \\det A + {mu}^T A {mu}),\\quad m = |{mu}|^2"),
         );
         [scalar, solution]
     }
