@@ -24,6 +24,7 @@
 
 use crate::implicit::{Equation, solve_at_last, with_derivatives};
 use crate::linear::power_of_two_near;
+use crate::matrices::hat;
 use crate::orientation::Orientation;
 use crate::parameters::orientation_of_inertia;
 use crate::{Error, Mask, Scalar, Space};
@@ -180,12 +181,12 @@ pub trait RotationEquation<T: Scalar> {
     fn body(&self) -> &RotatingBody<T, Self::Tensor>;
 }
 
-/// Newton's steps for κ after the series for short steps, or for s of the Cayley map: each squares the error.
+/// Newton's steps for κ after the series for short steps: each squares the error.
 const MOST: u32 = 4;
 
 /// A multiple (w, x) of the quaternion of the rotation whose momentum is μ: its Gibbs vector is x/w.
 ///
-/// Work: a series for short steps, or one to four of Newton's steps for one scalar; by the Cayley map one at least. Where these do not decide,
+/// Work: a series for short steps, or one to four of Newton's steps for one scalar; by the Cayley map up to eight. Where these do not decide,
 /// [`solve`](crate::implicit::solve) does.
 ///
 /// # Errors
@@ -198,11 +199,11 @@ pub fn turn_of_body<T: Scalar, E: RotationEquation<T>>(
     let body = equation.body();
     let unit = if E::IS_LEFT { -body.unit } else { body.unit };
     let mu = target.map(|entry| entry * unit);
-    let (w, x, solved) = if E::IS_CAYLEY { body.cayley_turn(&mu) } else { body.turn(&mu) };
+    let (w, x, solved, made) = if E::IS_CAYLEY { body.cayley_turn(&mu) } else { body.turn(&mu) };
     let x = if E::IS_LEFT { -x } else { x };
     if !solved.all() || T::DERIVATIVES > 0 {
         let (reached, scale) = (x, w);
-        let found = at_last(equation, target, &(reached * scale.recip()), solved)?;
+        let found = at_last(equation, target, &(reached * scale.recip()), (solved, made))?;
         if T::DERIVATIVES > 0 {
             return Ok((T::one(), found));
         }
@@ -222,12 +223,19 @@ pub fn solve_rotation<T: Scalar, E: RotationEquation<T>>(equation: &E, target: &
     turn_of_body(equation, target).map(|(w, x)| x * w.recip())
 }
 
-/// κ of a free motion, which stays the same as the momentum moves with the body; 0 where there is none. The Cayley map has no such κ.
+/// The sum of the moments times that of their reciprocals, up to which a free motion keeps its κ.
+/// The rounding of a κ that is carried along moves a step by the square of the ratio of the moments. That of a new one moves it by the ratio.
+const SLENDER: i64 = 1000;
+
+/// κ of a free motion, which stays the same as the momentum moves with the body. It is 0 where there is none, or the body is slender.
+/// The Cayley map has no such κ.
 pub fn scalar_of_motion<T: Scalar, E: RotationEquation<T>>(equation: &E, target: &Vector<T>) -> T {
     let body = equation.body();
+    let ([e1, ..], [_, reciprocals, _]) = (body.invariants, body.per_determinant);
     let kappa = |x: Vector<T>| {
         let kappa = dot(&target.map(|entry| entry * body.unit), &x);
-        T::select(kappa.finite(), kappa, T::zero())
+        let is_slender = T::from_ratio(SLENDER, 1).below(e1 * reciprocals);
+        T::select(kappa.finite() & !is_slender, kappa, T::zero())
     };
     solve_rotation(equation, target).map_or(T::zero(), kappa)
 }
@@ -281,13 +289,13 @@ fn at_last<T: Scalar, E: RotationEquation<T>>(
     equation: &E,
     target: &Vector<T>,
     xi: &Vector<T>,
-    solved: T::Mask,
+    (solved, made): (T::Mask, u32),
 ) -> Result<Vector<T>, Error> {
     let equation = Iterated(equation);
     if solved.all() {
         return Ok(with_derivatives(&equation, target, *xi));
     }
-    solve_at_last(&equation, target, xi, solved, MOST)
+    solve_at_last(&equation, target, xi, solved, made)
 }
 
 /// The polynomials of one momentum: f, r and p, by their coefficients.
@@ -326,18 +334,19 @@ impl<T: Scalar, A: Tensor<T>> RotatingBody<T, A> {
         }
     }
 
-    /// A multiple (p, r) of the quaternion, and in which lanes it is found.
+    /// A multiple (p, r) of the quaternion, in which lanes it is found, and by how many of Newton's steps.
     #[inline(always)]
-    fn turn(&self, mu: &Vector<T>) -> (T, Vector<T>, T::Mask) {
+    fn turn(&self, mu: &Vector<T>) -> (T, Vector<T>, T::Mask, u32) {
         let polynomials = self.polynomials(mu);
         let (mut kappa, is_short) = self.series(mu, &polynomials);
         let (mut w, mut x) = polynomials.turn(kappa);
-        let (mut solved, mut open) = (is_short, !is_short);
+        let (mut solved, mut open, mut made) = (is_short, !is_short, 0);
         if !open.any() {
-            return (w, x, solved);
+            return (w, x, solved, made);
         }
-        for _ in 0..MOST {
+        while made < MOST {
             T::iterated();
+            made += 1;
             let (correction, is_last) = polynomials.correction(kappa);
             // the same as at κ + δ but for δ², which is below rounding with the last correction
             let (at, slope) = (polynomials.turn(kappa), polynomials.slope_of_turn(kappa));
@@ -352,7 +361,7 @@ impl<T: Scalar, A: Tensor<T>> RotatingBody<T, A> {
                 break;
             }
         }
-        (w, x, solved)
+        (w, x, solved, made)
     }
 
     /// κ = s t by its power series in y = e₂s/e₃ and g = e₁m/e₃, s = c₀/e₃, to third order, and whether that is enough.
@@ -428,15 +437,16 @@ impl<T: Scalar, E: RotationEquation<T>> Equation<T, 3> for Iterated<'_, E> {
         let a = self.0.body().tensor.matrix();
         // x of the body that turns back is −x
         let x = if E::IS_LEFT { -x } else { *x };
-        let (kappa, [[d, e, f]]) = (dot(mu, &x), mu.data.0);
-        let zero = T::zero();
-        let hat = SMatrix::from_data(nalgebra::ArrayStorage([[zero, f, -e], [-f, zero, d], [e, -d, zero]]));
         let image = a * x;
         let (residual, jacobian) = if E::IS_CAYLEY {
-            let s = T::one() + dot(&x, &x);
-            (image * s - mu - mu.cross(&x), a * s + image * (x + x).transpose() - hat)
+            // the momentum of x less μ: Newton's method goes farther than from (1 + |x|²) A x − μ − μ × x
+            let along = dot(&x, &image);
+            let turned = hat(&x) * a - hat(&image);
+            let jacobian = a + turned + SMatrix::identity() * along + x * (image + image).transpose();
+            (image + x.cross(&image) + x * along - mu, jacobian)
         } else {
-            let jacobian = a - SMatrix::identity() * kappa - x * mu.transpose() - hat;
+            let kappa = dot(mu, &x);
+            let jacobian = a - SMatrix::identity() * kappa - x * mu.transpose() - hat(mu);
             (image - mu - x * kappa - mu.cross(&x), jacobian)
         };
         (if E::IS_LEFT { -residual } else { residual }, jacobian)

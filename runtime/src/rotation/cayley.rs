@@ -18,9 +18,12 @@
 //! Source: the Cayley map is that of A. Iserles, H. Z. Munthe-Kaas, S. P. Norsett, A. Zanna, *Lie-group methods*, Acta
 //! Numerica 9 (2000); that its equation is linear in x for a given s is our own.
 
-use super::{MOST, RotatingBody, Tensor, Vector, dot};
+use super::{RotatingBody, Tensor, Vector, dot};
 use crate::{Mask, Scalar};
 use nalgebra::SVector;
+
+/// Newton's steps for s: six for turns by h|ω| = 3, eight at 10.
+const MOST: u32 = 8;
 
 /// The polynomials of one momentum, over det A.
 struct Polynomials<T> {
@@ -33,20 +36,21 @@ struct Polynomials<T> {
 }
 
 impl<T: Scalar, A: Tensor<T>> RotatingBody<T, A> {
-    /// A multiple (p, r) of the quaternion, and in which lanes it is found: those where f increases.
+    /// A multiple (p, r) of the quaternion, in which lanes it is found, those where f increases, and by how many of Newton's steps.
     #[inline(always)]
-    pub(super) fn cayley_turn(&self, mu: &Vector<T>) -> (T, Vector<T>, T::Mask) {
+    pub(super) fn cayley_turn(&self, mu: &Vector<T>) -> (T, Vector<T>, T::Mask, u32) {
         let polynomials = self.cayley_polynomials(mu);
         // (1/a₁ − 1/a₃)² is at most twice the square of the deviator of A⁻¹
         let increases = (dot(mu, mu) * self.deviation).at_most(T::from_ratio(15, 4));
-        let (mut solved, mut open) = (T::Mask::nowhere(), increases);
+        let (mut solved, mut open, mut made) = (T::Mask::nowhere(), increases, 0);
         let mut s = polynomials.start();
         let (mut w, mut x) = polynomials.turn(s);
         if !open.any() {
-            return (w, x, solved);
+            return (w, x, solved, made);
         }
-        for _ in 0..MOST {
+        while made < MOST {
             T::iterated();
+            made += 1;
             let (correction, is_last) = polynomials.correction(s);
             // the same as at s + δ, which does not wait for the division
             let moved = polynomials.turn_near(s, correction);
@@ -59,7 +63,7 @@ impl<T: Scalar, A: Tensor<T>> RotatingBody<T, A> {
                 break;
             }
         }
-        (w, x, solved)
+        (w, x, solved, made)
     }
 
     #[inline(always)]

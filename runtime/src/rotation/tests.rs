@@ -164,6 +164,20 @@ proptest! {
         check_cayley::<true>(&inertia, h, &mu)?;
     }
 
+    /// Its scalar settles by itself wherever f is known to increase, up to steps of ten radians.
+    #[test]
+    fn the_scalar_of_the_cayley_map_settles(
+        inertia in bodies(), direction in prop::array::uniform3(-1.0..1.0_f64), exponent in -1.0..1.0_f64, spread in 0.0..1.0_f64,
+    ) {
+        // balls too: their f increases for the longest steps
+        let inertia = Matrix3::identity() + (inertia - Matrix3::identity()) * spread;
+        let body = Body::<f64, Symmetric<f64>, false, true>::new(&inertia, 1.0);
+        let body = body.body();
+        let mu = inertia * Vector3::from(direction).normalize() * (10.0_f64.powf(exponent) * body.unit);
+        let increases = mu.norm_squared() * body.deviation <= 3.75;
+        prop_assert_eq!(body.cayley_turn(&mu).2, increases);
+    }
+
     /// A diagonal tensor gives the solution that the same numbers give as a symmetric tensor.
     #[test]
     fn principal_axes_are_axes(moments in prop::array::uniform3(0.5..3.0_f64), mu in prop::array::uniform3(-1.0..1.0_f64)) {
@@ -240,6 +254,22 @@ fn balls_turn_by_the_root_of_a_cubic() {
     }
 }
 
+/// Free needles turn by a scalar of each momentum. One that is carried along is off by the square of the ratio of the moments.
+#[test]
+fn needles_keep_no_scalar() {
+    let mu = Vector3::new(0.02, 0.05, -0.03);
+    let body = |least: f64| {
+        Body::<f64, Diagonal<f64>, false>::new(&Matrix3::from_diagonal(&Vector3::new(1.0, 0.9, least)), 0.1)
+    };
+    assert!(scalar_of_motion(&body(0.01), &(mu * 0.01)) > 0.0);
+    let needle = body(1e-6);
+    let small = mu * 1e-6;
+    let kappa = scalar_of_motion(&needle, &small);
+    assert_eq!(kappa, 0.0);
+    let (w, x) = turn_of_motion(&needle, kappa, &small).expect("a turn");
+    assert_eq!(x / w, solve_rotation(&needle, &small).expect("a turn"));
+}
+
 /// Beyond the momentum up to which f is known to increase, Newton's method finds the same rotation.
 #[test]
 fn the_scalar_ends_without_a_jump() {
@@ -292,6 +322,22 @@ fn single_precision_is_right_to_its_rounding() {
         let expected = solve(&reference, &mu.map(f64::from)).expect("a solution");
         let error = (found.expect("a solution").map(f64::from) - expected).norm() / expected.norm();
         assert!(error < 4.0 * f64::from(f32::EPSILON), "by the Cayley map {size}: {error:e}");
+    }
+}
+
+/// By the Cayley map every step has a solution, in single precision too: up to a hundred million radians.
+#[test]
+fn single_precision_turns_by_long_steps() {
+    let inertia = Matrix3::from_diagonal(&Vector3::new(1.0_f32, 2.0, 3.0));
+    let body = Body::<f32, Diagonal<f32>, false, true>::new(&inertia, 1.0);
+    let reference = CayleyReference(Reference { inertia: inertia.map(f64::from), h: 1.0, sign: 1.0 });
+    for exponent in 0..=32 {
+        for direction in [Vector3::new(0.3_f32, 2.0, 0.6), Vector3::new(-0.5, 0.1, 0.9), Vector3::new(1.0, 1.0, -1.0)] {
+            let mu = direction * 10.0_f32.powf(exponent as f32 / 4.0);
+            let x = solve_rotation(&body, &mu).expect("a turn").map(f64::from);
+            let defect = (reference.momentum(&x) - mu.map(f64::from)).norm() / f64::from(mu.norm());
+            assert!(defect < 2e-5, "{mu}: {defect:e}");
+        }
     }
 }
 

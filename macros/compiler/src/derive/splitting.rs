@@ -17,7 +17,7 @@ pub struct Splitting<'g> {
     pub kick: Vec<Expr<'g>>,
     /// Whether there is a force gradient.
     pub has_gradient: bool,
-    /// The entries of B where G·Σ⁻¹G = yᵀBy for entries y of q, with their names.
+    /// The entries of B where h² G·Σ⁻¹G = yᵀBy for entries y of q, with their names.
     pub form: Vec<(String, Expr<'g>)>,
 }
 
@@ -60,14 +60,16 @@ pub(super) fn splitting<'g>(
     let has_gradient = model.opaque.is_none();
     let (mut potential, mut form) = (kick, Vec::new());
     if has_gradient {
-        let energy = match place.and_then(|place| quadratic_form(sources, place, &entries(&force))) {
+        // from impulses rather than forces: squares of forces overflow in units of time that steps are made in
+        let impulse = force.each(|part| h * *part);
+        let energy = match place.and_then(|place| quadratic_form(sources, place, &entries(&impulse))) {
             Some(quadratic) => {
                 form = quadratic.entries;
                 quadratic.value
             }
-            None => gradient_energy(sources, &force),
+            None => gradient_energy(sources, &impulse),
         };
-        potential = potential + h * h * h * weight("g", Role::KickGradient) * energy;
+        potential = potential + h * weight("g", Role::KickGradient) * energy;
     }
     let Some(direction) = direction else {
         return Some(Splitting { potential, kick: sources.impulse(potential)?, has_gradient, form });
@@ -76,16 +78,16 @@ pub(super) fn splitting<'g>(
     Some(Splitting { potential: direction.inserted(potential), kick, has_gradient, form })
 }
 
-/// {V, {V, T}} = G·Σ⁻¹G.
-fn gradient_energy<'g>(sources: &Sources<'_, 'g>, force: &[Expr<'g>]) -> Expr<'g> {
+/// I·Σ⁻¹I of an impulse, h² {V, {V, T}}.
+fn gradient_energy<'g>(sources: &Sources<'_, 'g>, impulse: &[Expr<'g>]) -> Expr<'g> {
     let (graph, inertia) = (sources.model.graph, sources.inertia);
-    let entries = entries(force);
+    let entries = entries(impulse);
     if is_diagonal(inertia) {
         let squares = entries.iter().enumerate();
         return graph.total(Shape::scalar(), squares.map(|(i, entry)| *entry * *entry / inertia.entry(i, i).expand()));
     }
-    let force = graph.stack(Shape::vector(entries.len()), entries);
-    force.dot(inertia_inverse(graph, inertia.shape()) * force)
+    let impulse = graph.stack(Shape::vector(entries.len()), entries);
+    impulse.dot(inertia_inverse(graph, inertia.shape()) * impulse)
 }
 
 /// The most entries of q in a form: it has a coefficient for each pair of them.
@@ -97,10 +99,10 @@ struct QuadraticForm<'g> {
     entries: Vec<(String, Expr<'g>)>,
 }
 
-/// G·Σ⁻¹G as yᵀBy where G = Ly is linear in as few entries y of q as it has components. B = LᵀΣ⁻¹L is constant then, as for weight.
-fn quadratic_form<'g>(sources: &Sources<'_, 'g>, place: Expr<'g>, force: &[Expr<'g>]) -> Option<QuadraticForm<'g>> {
+/// I·Σ⁻¹I as yᵀBy where I = Ly, `impulse`, is linear in as few entries y of q as it has components. B = LᵀΣ⁻¹L is constant then, as for weight.
+fn quadratic_form<'g>(sources: &Sources<'_, 'g>, place: Expr<'g>, impulse: &[Expr<'g>]) -> Option<QuadraticForm<'g>> {
     let (model, graph) = (sources.model, sources.model.graph);
-    let gradients = force.each(|component| component.expand().gradient(place));
+    let gradients = impulse.each(|component| component.expand().gradient(place));
     let moves = |gradient: &Expr<'g>| {
         gradient.depends_on(place) || model.reads_configuration(*gradient) || gradient.depends_on(model.time)
     };
@@ -114,7 +116,7 @@ fn quadratic_form<'g>(sources: &Sources<'_, 'g>, place: Expr<'g>, force: &[Expr<
         let terms = read.iter().map(|&(i, j)| place.entry(i, j) * gradient.entry(i, j));
         graph.total(Shape::scalar(), terms)
     };
-    if read.len() > force.len().min(LARGEST_FORM) || !identity::equal(force, &gradients.each(linear)) {
+    if read.len() > impulse.len().min(LARGEST_FORM) || !identity::equal(impulse, &gradients.each(linear)) {
         return None;
     }
     let (mut terms, mut entries) = (Vec::new(), Vec::new());
@@ -122,7 +124,7 @@ fn quadratic_form<'g>(sources: &Sources<'_, 'g>, place: Expr<'g>, force: &[Expr<
         let inverse = || inertia_inverse(graph, sources.inertia.shape());
         let velocity = by_inertia(sources.inertia, inverse, &column(second));
         for (a, &first) in read.iter().enumerate().take(b + 1) {
-            let products = column(first).into_iter().zip(&velocity).map(|(force, velocity)| force * *velocity);
+            let products = column(first).into_iter().zip(&velocity).map(|(impulse, velocity)| impulse * *velocity);
             let entry = graph.total(Shape::scalar(), products);
             let twice = if a == b { 1 } else { 2 };
             terms.push(twice * (entry * (place.entry(first.0, first.1) * place.entry(second.0, second.1))));

@@ -189,6 +189,45 @@ fn units_do_not_matter() {
     }
 }
 
+/// So with the units of mass and time of a top, by matrices and by quaternions, and of a pendulum.
+/// Squares of forces, ∝ T⁻⁴, would overflow.
+#[test]
+fn units_of_tops_do_not_matter() {
+    let (r, pi) = start();
+    let turn = UnitQuaternion::from_matrix(&r).into_inner();
+    macro_rules! check {
+        ($top:expr, $place:expr) => {
+            let stepped = |mass: f64, time: f64| {
+                let stepper = $top(mass, 3.0 * mass / time / time).stepper(0.1 * time).expect("regular");
+                let start = stepper.state($place, pi * (mass / time)).expect("a state");
+                let end = stepper.advance(&start, 20).expect("steps");
+                (*end.configuration(), end.momentum() / (mass / time))
+            };
+            let plain = stepped(1.0, 1.0);
+            for exponent in [-480, -300, -1, 300, 480] {
+                assert_eq!(stepped(2.0_f64.powi(exponent), 1.0), plain, "mass, 2^{exponent}");
+                assert_eq!(stepped(1.0, 2.0_f64.powi(exponent)), plain, "time, 2^{exponent}");
+            }
+        };
+    }
+    let (inertia, center) = (Matrix3::from_diagonal(&MOMENTS), Vector3::new(0.2, -0.1, 0.6));
+    check!(|mass, weight| fourth::Top { inertia: inertia * mass, weight, center }, r);
+    check!(|mass, weight| sixth::Top { inertia: inertia * mass, weight, center }, r);
+    check!(|mass, weight| fourth::QuaternionTop { moments: MOMENTS * mass, moment: center * weight }, turn);
+    let swung = |time: f64| {
+        let unit = 1.0 / time / time;
+        let pendulum = fourth::Pendulum { gravity: 9.81 * unit, waves: 0.5 * unit };
+        let stepper = pendulum.stepper(0.1 * time).expect("regular");
+        let start = stepper.state(Vector3::x(), Vector3::new(0.0, 0.4, -0.7) / time).expect("a state");
+        let end = stepper.advance(&start, 20).expect("steps");
+        (*end.configuration(), end.momentum() * time)
+    };
+    // h³ is a constant of its kick
+    for exponent in [-300, -1, 300] {
+        assert_eq!(swung(2.0_f64.powi(exponent)), swung(1.0), "time, 2^{exponent}");
+    }
+}
+
 /// Moments that differ by the last place, or by a factor of a million, and steps from nothing to two hundred turns.
 #[test]
 fn any_body_and_any_step() {
