@@ -1,11 +1,21 @@
 //! Methods for any differential equation, to compare with: the classical Runge–Kutta method of order 4 and DOP853.
 
 use crate::dormand_prince::{Adaptive, DormandPrince};
+use crate::motion::Field;
 use crate::setting::{Dial, Family, Name, Observe, READING, SAMPLES, Setting, clock_steps, fixed, is_observed};
 use clebsch::Error;
 use nalgebra::SVector;
 use std::hint::black_box;
 use std::time::Instant;
+
+/// ẏ = f(y) in M numbers.
+///
+/// Methods evaluate it at several places. Where the optimiser chooses, it inlines some of them, and the times of one method
+/// differ from build to build. So each implementation says whether to inline, whichever is faster for DOP853.
+pub trait VectorField<const M: usize> {
+    /// f(y)
+    fn rates(&self, y: &SVector<f64, M>) -> SVector<f64, M>;
+}
 
 /// ẏ = f(y) in M numbers, the fast form of a person, next to the N of the scene.
 #[derive(Clone)]
@@ -18,34 +28,33 @@ pub struct Equation<F, const M: usize, const N: usize> {
     pub flat: fn(&SVector<f64, M>) -> SVector<f64, N>,
 }
 
-impl<F, const M: usize, const N: usize> Equation<F, M, N>
-where
-    F: Fn(&SVector<f64, M>) -> SVector<f64, M> + Clone + 'static,
-{
+impl<F: VectorField<M> + Clone + 'static, const M: usize, const N: usize> Equation<F, M, N> {
     /// Both classical methods for it.
     pub fn settings(self) -> [Box<dyn Setting<N>>; 2] {
         [Box::new(RungeKutta(self.clone())), Box::new(Embedded(self))]
     }
 }
 
+impl<const N: usize> VectorField<N> for Field<N> {
+    fn rates(&self, y: &SVector<f64, N>) -> SVector<f64, N> {
+        self(y)
+    }
+}
+
 /// One step of the classical method of order 4.
 #[inline]
-pub fn runge_kutta<const M: usize>(
-    field: &impl Fn(&SVector<f64, M>) -> SVector<f64, M>,
-    y: &SVector<f64, M>,
-    h: f64,
-) -> SVector<f64, M> {
-    let a = field(y);
-    let b = field(&(y + a * (h / 2.0)));
-    let c = field(&(y + b * (h / 2.0)));
-    let d = field(&(y + c * h));
+pub fn runge_kutta<const M: usize>(field: &impl VectorField<M>, y: &SVector<f64, M>, h: f64) -> SVector<f64, M> {
+    let a = field.rates(y);
+    let b = field.rates(&(y + a * (h / 2.0)));
+    let c = field.rates(&(y + b * (h / 2.0)));
+    let d = field.rates(&(y + c * h));
     (a + (b + c) * 2.0 + d) * (h / 6.0)
 }
 
 /// Steps of equal length.
 struct RungeKutta<F, const M: usize, const N: usize>(Equation<F, M, N>);
 
-impl<F: Fn(&SVector<f64, M>) -> SVector<f64, M>, const M: usize, const N: usize> Setting<N> for RungeKutta<F, M, N> {
+impl<F: VectorField<M>, const M: usize, const N: usize> Setting<N> for RungeKutta<F, M, N> {
     fn name(&self) -> Name {
         Name { method: "RK4", order: 4, family: Family::Classical, tolerance: None }
     }
@@ -72,7 +81,7 @@ impl<F: Fn(&SVector<f64, M>) -> SVector<f64, M>, const M: usize, const N: usize>
 /// Steps as long as a tolerance allows.
 struct Embedded<F, const M: usize, const N: usize>(Equation<F, M, N>);
 
-impl<F: Fn(&SVector<f64, M>) -> SVector<f64, M>, const M: usize, const N: usize> Setting<N> for Embedded<F, M, N> {
+impl<F: VectorField<M>, const M: usize, const N: usize> Setting<N> for Embedded<F, M, N> {
     fn name(&self) -> Name {
         Name { method: "DOP853", order: 8, family: Family::Classical, tolerance: None }
     }
@@ -106,10 +115,11 @@ impl<F: Fn(&SVector<f64, M>) -> SVector<f64, M>, const M: usize, const N: usize>
     }
 }
 
-fn adaptive<'a, F, const M: usize>(field: &'a F, start: &SVector<f64, M>, dial: Dial) -> Adaptive<'a, F, M>
-where
-    F: Fn(&SVector<f64, M>) -> SVector<f64, M>,
-{
+fn adaptive<'a, F: VectorField<M>, const M: usize>(
+    field: &'a F,
+    start: &SVector<f64, M>,
+    dial: Dial,
+) -> Adaptive<'a, F, M> {
     let tolerance = if let Dial::Tolerance(tolerance) = dial { tolerance } else { f64::NAN };
     Adaptive::new(DormandPrince { field }, start, tolerance)
 }

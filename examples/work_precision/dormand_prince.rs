@@ -3,6 +3,7 @@
 //!
 //! Source: Hairer, Nørsett and Wanner, *Solving Ordinary Differential Equations I*, §II.5 and §II.10; coefficients of its program DOP853.
 
+use crate::classical::VectorField;
 use nalgebra::SVector;
 
 /// a_ij of the stages 2 to 12.
@@ -54,14 +55,14 @@ impl<F> DormandPrince<'_, F> {
     #[inline]
     fn step<const M: usize>(&self, y: &SVector<f64, M>, slope: &SVector<f64, M>, h: f64) -> Step<M>
     where
-        F: Fn(&SVector<f64, M>) -> SVector<f64, M>,
+        F: VectorField<M>,
     {
         let mut k = [SVector::zeros(); 12];
         k[0] = *slope;
         // unrolled, so that the optimiser sees the coefficients that are 0
         macro_rules! stages {
             ($($stage:literal)*) => { $(
-                k[$stage] = (self.field)(&(y + sum::<M, $stage>(&A[$stage - 1], &k) * h));
+                k[$stage] = self.field.rates(&(y + sum::<M, $stage>(&A[$stage - 1], &k) * h));
             )* };
         }
         stages!(1 2 3 4 5 6 7 8 9 10 11);
@@ -94,10 +95,10 @@ pub struct Adaptive<'a, F, const M: usize> {
     steps: u64,
 }
 
-impl<'a, F: Fn(&SVector<f64, M>) -> SVector<f64, M>, const M: usize> Adaptive<'a, F, M> {
+impl<'a, F: VectorField<M>, const M: usize> Adaptive<'a, F, M> {
     /// At the start; `tolerance` is relative for numbers above 1 and absolute for those below.
     pub fn new(method: DormandPrince<'a, F>, start: &SVector<f64, M>, tolerance: f64) -> Self {
-        let slope = (method.field)(start);
+        let slope = method.field.rates(start);
         // an eighth root of the tolerance in the time in which y changes by itself
         let h = tolerance.powf(0.125) * 0.1 * (1.0 + start.amax()) / slope.amax().max(f64::MIN_POSITIVE);
         Self { method, tolerance, time: 0.0, h, y: *start, slope, steps: 0 }
@@ -122,7 +123,7 @@ impl<'a, F: Fn(&SVector<f64, M>) -> SVector<f64, M>, const M: usize> Adaptive<'a
             }
             self.time = if last { end } else { self.time + h };
             self.y = step.next;
-            self.slope = (self.method.field)(&self.y);
+            self.slope = self.method.field.rates(&self.y);
             // a step that was shortened to end here says little about the next
             self.h = if last { self.h.max(h * factor) } else { h * factor };
             observe(self.time, &self.y);

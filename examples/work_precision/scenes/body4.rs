@@ -1,6 +1,6 @@
 //! The free rigid body in four dimensions.
 
-use crate::classical::Equation;
+use crate::classical::{Equation, VectorField};
 use crate::motion::Scene;
 use crate::setting::{Setting, declared};
 use clebsch::{Clebsch, Declared};
@@ -101,25 +101,35 @@ fn declarations() -> Vec<Box<dyn Setting<22>>> {
     ]
 }
 
+/// Euler's equations.
+#[derive(Clone)]
+struct Turning {
+    /// Of the moments of inertia in each plane.
+    inverse: Vector6<f64>,
+}
+
+impl VectorField<22> for Turning {
+    #[inline(never)]
+    fn rates(&self, y: &Body) -> Body {
+        let (attitude, momentum) = split(y);
+        let omega = momentum.component_mul(&self.inverse);
+        pack(&turning(&attitude, &omega), &bracket(&momentum, &omega))
+    }
+}
+
 /// J_d = diag(1, 1.5, 2, 2.5).
 pub fn scene() -> Scene<22> {
     let inertia = inertia();
-    let field = move |y: &Body| {
-        let (attitude, momentum) = split(y);
-        let (omega, m) = (skew(&momentum.component_div(&inertia)), skew(&momentum));
-        let product = m * omega;
-        // MΩ − ΩM, and ΩM = (MΩ)ᵀ
-        pack(&(attitude * omega), &above(&(product - product.transpose())))
-    };
+    let field = Turning { inverse: inertia.map(f64::recip) };
     let mut settings = declarations();
     let start = pack(&Matrix4::identity(), &MOMENTUM);
-    settings.extend(Equation { field, start, flat: |y| *y }.settings());
+    settings.extend(Equation { field: field.clone(), start, flat: |y| *y }.settings());
     Scene {
         name: "body4",
         title: "free body on SO(4)",
         duration: 100.0,
         start,
-        field: Box::new(field),
+        field: Box::new(move |y| field.rates(y)),
         energy: Box::new(move |y| split(y).1.component_div(&inertia).dot(&split(y).1)),
         momenta,
         constraint,
@@ -155,11 +165,38 @@ fn constraint(y: &Body) -> f64 {
 }
 
 fn pack(attitude: &Matrix4<f64>, momentum: &Vector6<f64>) -> Body {
-    Body::from_iterator(attitude.iter().chain(momentum.iter()).copied())
+    let mut y = Body::zeros();
+    y.fixed_rows_mut::<16>(0).copy_from_slice(attitude.as_slice());
+    y.fixed_rows_mut::<6>(16).copy_from(momentum);
+    y
 }
 
 fn split(y: &Body) -> (Matrix4<f64>, Vector6<f64>) {
     (Matrix4::from_column_slice(&y.as_slice()[..16]), y.fixed_rows::<6>(16).into())
+}
+
+/// R Ω by columns, without the zeros on the diagonal of Ω.
+#[inline]
+fn turning(r: &Matrix4<f64>, omega: &Vector6<f64>) -> Matrix4<f64> {
+    let [a, b, c, d, e, f] = omega.data.0[0];
+    let [r1, r2, r3, r4] = [0, 1, 2, 3].map(|column| Vector4::from(r.column(column)));
+    let columns =
+        [r2 * -a - r3 * b - r4 * c, r1 * a - r3 * d - r4 * e, r1 * b + r2 * d - r4 * f, r1 * c + r2 * e + r3 * f];
+    Matrix4::from_columns(&columns)
+}
+
+/// M Ω − Ω M above the diagonal.
+#[inline]
+fn bracket(m: &Vector6<f64>, omega: &Vector6<f64>) -> Vector6<f64> {
+    let ([a, b, c, d, e, f], [u, v, w, x, y, z]) = (m.data.0[0], omega.data.0[0]);
+    Vector6::new(
+        d * v - b * x + e * w - c * y,
+        a * x - d * u + f * w - c * z,
+        a * y - e * u + b * z - f * v,
+        b * u - a * v + f * y - e * z,
+        c * u - a * w + d * z - f * x,
+        c * v - b * w + e * x - d * y,
+    )
 }
 
 /// The skew matrix with these entries above the diagonal.

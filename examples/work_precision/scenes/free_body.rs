@@ -1,9 +1,9 @@
 //! A body that nothing acts on, turning near its middle axis.
 
 use super::rotation::{
-    compact, compact_rates, defect, pack, pack_quaternion, rates, split, split_compact, unpack_compact,
+    Compact, compact, compact_rates, defect, pack, pack_quaternion, rates, split, split_compact, unpack_compact,
 };
-use crate::classical::Equation;
+use crate::classical::{Equation, VectorField};
 use crate::motion::Scene;
 use crate::setting::{Setting, declared};
 use clebsch::Clebsch;
@@ -144,6 +144,21 @@ fn unit() -> Quaternion<f64> {
     Quaternion::identity()
 }
 
+/// Euler's equations.
+#[derive(Clone)]
+struct Turning {
+    inverse: Vector3<f64>,
+}
+
+impl VectorField<7> for Turning {
+    #[inline(always)]
+    fn rates(&self, y: &Compact) -> Compact {
+        let (attitude, momentum) = split_compact(y);
+        let omega = self.inverse.component_mul(&momentum);
+        compact_rates(&attitude, &omega, &momentum.cross(&omega))
+    }
+}
+
 /// Moments of inertia 1, 2 and 3.
 pub fn scene() -> Scene<12> {
     let inertia = Matrix3::from_diagonal(&black_box(MOMENTS));
@@ -153,13 +168,9 @@ pub fn scene() -> Scene<12> {
         let omega = inverse * momentum;
         rates(&attitude, &omega, &momentum.cross(&omega))
     };
-    let fast = move |y: &_| {
-        let (attitude, momentum) = split_compact(y);
-        let omega = inverse * momentum;
-        compact_rates(&attitude, &omega, &momentum.cross(&omega))
-    };
     let mut settings = declarations(inertia);
-    settings.extend(Equation { field: fast, start: compact(&unit(), &MOMENTUM), flat: unpack_compact }.settings());
+    let equation = Turning { inverse: inverse.diagonal() };
+    settings.extend(Equation { field: equation, start: compact(&unit(), &MOMENTUM), flat: unpack_compact }.settings());
     Scene {
         name: "free_body",
         title: "free rigid body",

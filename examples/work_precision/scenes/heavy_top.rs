@@ -1,9 +1,9 @@
 //! A fast top with three moments of inertia.
 
 use super::rotation::{
-    compact, compact_rates, defect, pack, pack_quaternion, rates, split, split_compact, unpack_compact,
+    Compact, compact, compact_rates, defect, pack, pack_quaternion, rates, split, split_compact, unpack_compact,
 };
-use crate::classical::Equation;
+use crate::classical::{Equation, VectorField};
 use crate::motion::Scene;
 use crate::setting::{Setting, declared};
 use clebsch::Clebsch;
@@ -223,6 +223,24 @@ fn tilted_quaternion() -> Quaternion<f64> {
     UnitQuaternion::from_axis_angle(&Vector3::x_axis(), TILT).into_inner()
 }
 
+/// Euler's equations with the torque of the weight.
+#[derive(Clone)]
+struct Swinging {
+    inverse: Vector3<f64>,
+    /// Of the weight, about the pivot.
+    moment: Vector3<f64>,
+}
+
+impl VectorField<7> for Swinging {
+    #[inline(always)]
+    fn rates(&self, y: &Compact) -> Compact {
+        let (attitude, momentum) = split_compact(y);
+        let omega = self.inverse.component_mul(&momentum);
+        let torque = vertical(&attitude).cross(&self.moment);
+        compact_rates(&attitude, &omega, &(momentum.cross(&omega) + torque))
+    }
+}
+
 /// m·g = 1, the centre of mass one metre up the third axis.
 pub fn scene() -> Scene<12> {
     let (inertia, weight, center) = (Matrix3::from_diagonal(&black_box(MOMENTS)), black_box(1.0), black_box(CENTER));
@@ -234,18 +252,14 @@ pub fn scene() -> Scene<12> {
         let omega = inverse * momentum;
         rates(&attitude, &omega, &(momentum.cross(&omega) + torque(&attitude.row(2).transpose())))
     };
-    let fast = move |y: &_| {
-        let (attitude, momentum) = split_compact(y);
-        let omega = inverse * momentum;
-        compact_rates(&attitude, &omega, &(momentum.cross(&omega) + torque(&vertical(&attitude))))
-    };
     let energy = move |y: &_| {
         let (attitude, momentum) = split(y);
         momentum.dot(&(inverse * momentum)) / 2.0 + weight * (attitude * center).z
     };
     let mut settings = declarations(inertia, weight, center);
     let start = compact(&tilted_quaternion(), &momentum);
-    settings.extend(Equation { field: fast, start, flat: unpack_compact }.settings());
+    let equation = Swinging { inverse: inverse.diagonal(), moment: center * weight };
+    settings.extend(Equation { field: equation, start, flat: unpack_compact }.settings());
     Scene {
         name: "heavy_top",
         title: "heavy top",

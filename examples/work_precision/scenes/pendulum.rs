@@ -1,6 +1,6 @@
 //! A spherical pendulum of unit mass and length.
 
-use crate::classical::Equation;
+use crate::classical::{Equation, VectorField};
 use crate::motion::Scene;
 use crate::setting::{Setting, declared};
 use clebsch::Clebsch;
@@ -100,21 +100,32 @@ fn declarations(gravity: f64) -> Vec<Box<dyn Setting<6>>> {
     ]
 }
 
+/// q̇ = n × q and the torque of the weight.
+#[derive(Clone)]
+struct Falling {
+    gravity: f64,
+}
+
+impl VectorField<6> for Falling {
+    #[inline(always)]
+    fn rates(&self, y: &Bob) -> Bob {
+        let (q, n) = split(y);
+        pack(&n.cross(&q), &(Vector3::new(-q.y, q.x, 0.0) * self.gravity))
+    }
+}
+
 /// g = 1.
 pub fn scene() -> Scene<6> {
     let gravity = black_box(1.0);
-    let field = move |y: &Bob| {
-        let (q, n) = split(y);
-        pack(&n.cross(&q), &(Vector3::new(-q.y, q.x, 0.0) * gravity))
-    };
+    let field = Falling { gravity };
     let mut settings = declarations(gravity);
-    settings.extend(Equation { field, start: pack(&POSITION, &MOMENTUM), flat: |y| *y }.settings());
+    settings.extend(Equation { field: field.clone(), start: pack(&POSITION, &MOMENTUM), flat: |y| *y }.settings());
     Scene {
         name: "pendulum",
         title: "spherical pendulum",
         duration: 100.0,
         start: pack(&POSITION, &MOMENTUM),
-        field: Box::new(field),
+        field: Box::new(move |y| field.rates(y)),
         energy: Box::new(move |y| split(y).1.norm_squared() / 2.0 + gravity * y[2]),
         momenta: |y| Vector6::new(y[5], 0.0, 0.0, 0.0, 0.0, 0.0),
         constraint: |y| (split(y).0.norm_squared() - 1.0).abs(),
@@ -127,9 +138,9 @@ pub fn scene() -> Scene<6> {
 }
 
 fn pack(q: &Vector3<f64>, n: &Vector3<f64>) -> Bob {
-    Bob::from_iterator(q.iter().chain(n.iter()).copied())
+    Bob::new(q.x, q.y, q.z, n.x, n.y, n.z)
 }
 
 fn split(y: &Bob) -> (Vector3<f64>, Vector3<f64>) {
-    (y.fixed_rows::<3>(0).into(), y.fixed_rows::<3>(3).into())
+    (Vector3::new(y[0], y[1], y[2]), Vector3::new(y[3], y[4], y[5]))
 }

@@ -25,7 +25,7 @@ pub fn unpack_compact(y: &Compact) -> Body {
 
 /// A quaternion and a momentum in one vector.
 pub fn compact(attitude: &Quaternion<f64>, momentum: &Vector3<f64>) -> Compact {
-    Compact::from_iterator(attitude.coords.iter().chain(momentum.iter()).copied())
+    Compact::from([attitude.i, attitude.j, attitude.k, attitude.w, momentum.x, momentum.y, momentum.z])
 }
 
 /// Attitude and body momentum.
@@ -35,7 +35,7 @@ pub fn split(y: &Body) -> (Matrix3<f64>, Vector3<f64>) {
 
 /// Quaternion and body momentum.
 pub fn split_compact(y: &Compact) -> (Quaternion<f64>, Vector3<f64>) {
-    (Quaternion::from(nalgebra::Vector4::from(y.fixed_rows::<4>(0))), y.fixed_rows::<3>(4).into())
+    (Quaternion::new(y[3], y[0], y[1], y[2]), Vector3::new(y[4], y[5], y[6]))
 }
 
 /// Ṙ = R ω^ and π̇.
