@@ -1,21 +1,16 @@
 //! Lowering of matrix expressions: a grid of scalars for each.
-//!
-//! Factors that do not change during a step are gathered first. `2/h·(𝕄 + 𝕄ᵀ)/2·x^` is one constant matrix times `x^`,
-//! however the derivation has distributed it.
 
-use std::collections::BTreeMap;
+mod products;
+
 use std::rc::Rc;
 
 use clebsch_symbolic::{
-    Algebra, Analytic, Basis, Elements, Expr, Graph, IntoElements, IntoList, Operation, Property, Rational, Shape,
-    Sparse, Symbol, View, WordTerm, integer,
+    Algebra, Basis, Elements, Expr, Graph, IntoElements, IntoList, Operation, Property, Rational, Shape, Sparse,
+    Symbol, View, WordTerm, integer,
 };
 
 use super::entries::{Grid, Scalar};
 use super::scalar::{Callee, Input, Rate, Scalars};
-
-/// The most rows of a matrix φ(A) that is made for the product with a vector.
-const LARGEST_MADE: usize = 3;
 
 impl<'g> Scalars {
     /// The scalars of an expression.
@@ -132,48 +127,6 @@ impl<'g> Scalars {
         Grid::vector(basis.elements.each(component))
     }
 
-    /// The product of letters, associated so that vectors are multiplied first. A column times a row is made last.
-    fn word(&mut self, word: &[Expr<'g>]) -> Grid {
-        if let Some(cut) = between_column_and_row(word).filter(|_| word.len() > 2) {
-            let (column, row) = (self.word(&word[..cut]), self.word(&word[cut..]));
-            return self.multiply(&column, &row);
-        }
-        let from_right = word.last().is_some_and(|letter| letter.shape().columns == 1) && word[0].shape().rows != 1;
-        // by construction: words are not empty
-        let ends = if from_right { word.split_last() } else { word.split_first() };
-        let (first, others) = ends.expect("a word has letters");
-        let first = (*self.grid(*first)).clone();
-        if !from_right {
-            return others.iter().fold(first, |product, letter| {
-                let letter = self.grid(*letter);
-                self.multiply(&product, &letter)
-            });
-        }
-        others.iter().rev().fold(first, |vector, letter| self.times_vector(*letter, vector))
-    }
-
-    /// A letter times a column. Of φ(A), and of a block of it, the product alone is computed.
-    fn times_vector(&mut self, letter: Expr<'g>, vector: Grid) -> Grid {
-        let (function, (row, column)) = match letter.view() {
-            View::Of(Operation::Block(row, column), function) => (function, (row, column)),
-            _ => (letter, (0, 0)),
-        };
-        match function.view() {
-            View::Of(Operation::Analytic(Analytic::Phi), a) if a.shape().rows > LARGEST_MADE => {
-                let (a, zero) = (self.grid(a), self.zero());
-                let whole = Shape::new(a.shape.rows, 1);
-                let entry = |i: usize| i.checked_sub(column).and_then(|i| vector.entries.get(i)).copied();
-                let vector = Grid::from_fn(whole, |(i, _)| entry(i).unwrap_or(zero));
-                let product = self.call(Callee::PhiTimes, vec![a, Rc::new(vector)], 0, whole);
-                Grid::from_fn(Shape::new(letter.shape().rows, 1), |(i, _)| product.at(row + i, 0))
-            }
-            _ => {
-                let letter = self.grid(letter);
-                self.multiply(&letter, &vector)
-            }
-        }
-    }
-
     fn multiply(&mut self, a: &Grid, b: &Grid) -> Grid {
         Grid::from_fn(Shape::new(a.shape.rows, b.shape.columns), |(i, j)| {
             let factors = (0..a.shape.columns).map(|k| [a.at(i, k), b.at(k, j)]);
@@ -201,66 +154,6 @@ impl<'g> Scalars {
             return only.clone();
         }
         Grid::from_fn(shape, |(i, j)| self.total(grids.iter().map(|grid| grid.at(i, j))))
-    }
-
-    fn gathered(&mut self, shape: Shape, terms: Vec<WordTerm<'g>>) -> Grid {
-        type Key<'g> = (Vec<(Expr<'g>, (i64, i64))>, Vec<Expr<'g>>, Vec<Expr<'g>>);
-        type Run<'g> = (Scalar, Vec<Expr<'g>>);
-        let mut groups: BTreeMap<Key<'g>, Vec<Run<'g>>> = BTreeMap::new();
-        let mut grids = Vec::new();
-        for term in terms {
-            let scalars: Vec<_> = term.scalars.each(|(base, exponent)| (*base, exponent.parts()));
-            if !term.word.is_empty() && !term.word.iter().any(|letter| self.is_constant(*letter)) {
-                let product = self.word(&term.word);
-                let scale = self.monomial(&term.coefficient, &scalars);
-                grids.push(self.scaled(&product, scale));
-                continue;
-            }
-            let (constant, varying): (Vec<_>, Vec<_>) =
-                scalars.into_iter().partition(|(base, _)| self.is_constant(*base));
-            let scale = self.monomial(&term.coefficient, &constant);
-            let start = term.word.iter().position(|letter| self.is_constant(*letter)).unwrap_or(0);
-            let length = term.word[start..].iter().take_while(|letter| self.is_constant(**letter)).count();
-            let (prefix, suffix) = (term.word[..start].to_vec(), term.word[start + length..].to_vec());
-            let run = term.word[start..start + length].to_vec();
-            groups.entry((varying, prefix, suffix)).or_default().push((scale, run));
-        }
-        for ((varying, prefix, suffix), runs) in groups {
-            let product = self.of_rank_one(&prefix, &runs, &suffix).unwrap_or_else(|| {
-                let rows = suffix.first().map_or(shape.columns, |letter| letter.shape().rows);
-                let runs: Vec<Grid> = runs.each(|(scale, run)| self.constant_run(rows, *scale, run));
-                let middle = self.total_of(runs[0].shape, &runs);
-                self.between(&prefix, middle, &suffix)
-            });
-            let scale = self.monomial(&integer(1), &varying);
-            grids.push(self.scaled(&product, scale));
-        }
-        self.total_of(shape, &grids)
-    }
-
-    /// The product of the constant letters of a term, or a multiple of the identity where there are none.
-    fn constant_run(&mut self, rows: usize, scale: Scalar, run: &[Expr<'g>]) -> Grid {
-        if run.is_empty() {
-            return self.scaled_identity(rows, scale);
-        }
-        let product = self.word(run);
-        self.scaled(&product, scale)
-    }
-
-    /// prefix · run · suffix of one term whose constant letters are a column times a row: vectors first. `None` for others.
-    fn of_rank_one(
-        &mut self,
-        prefix: &[Expr<'g>],
-        runs: &[(Scalar, Vec<Expr<'g>>)],
-        suffix: &[Expr<'g>],
-    ) -> Option<Grid> {
-        let [(scale, run)] = runs else { return None };
-        let cut = between_column_and_row(run)?;
-        let column = self.word(&run[..cut]);
-        let column = self.scaled(&column, *scale);
-        let column = self.between(prefix, column, &[]);
-        let row = self.word(&[&run[cut..], suffix].concat());
-        Some(self.multiply(&column, &row))
     }
 
     /// Whether an expression is fixed once per stepper.
@@ -344,29 +237,6 @@ impl<'g> Scalars {
         }
         self.sum(integer(0), terms)
     }
-
-    /// prefix · middle · suffix, vectors first.
-    fn between(&mut self, prefix: &[Expr<'g>], middle: Grid, suffix: &[Expr<'g>]) -> Grid {
-        let product = if suffix.last().is_some_and(|last| last.shape().columns == 1) {
-            let vector = self.word(suffix);
-            self.multiply(&middle, &vector)
-        } else {
-            suffix.iter().fold(middle, |product, letter| {
-                let letter = self.grid(*letter);
-                self.multiply(&product, &letter)
-            })
-        };
-        prefix.iter().rev().fold(product, |product, letter| {
-            let letter = self.grid(*letter);
-            self.multiply(&letter, &product)
-        })
-    }
-}
-
-/// The place in a product of matrices where a column meets a row, so that the product has rank one.
-fn between_column_and_row(word: &[Expr<'_>]) -> Option<usize> {
-    let is_tall = word.first().is_some_and(|letter| letter.shape().rows != 1);
-    (1..word.len()).find(|&cut| is_tall && word[cut].shape().rows == 1)
 }
 
 fn without(indices: &[usize], index: usize) -> Vec<usize> {

@@ -1,6 +1,7 @@
 //! Kernels: straight-line code for some outputs. Terms that change less often are hoisted, and common terms are shared.
 
 mod hoisted;
+mod proportional;
 mod shorten;
 
 use clebsch_symbolic::{
@@ -255,12 +256,17 @@ impl Builder<'_, '_> {
 
     /// Replaces the pair of factors that most products share by a product of its own, as long as there is one.
     fn share_pairs(&mut self) {
+        self.share_pairs_of(Self::flat);
+    }
+
+    /// The same of the factors that `flat` makes of those of a product.
+    fn share_pairs_of(&mut self, flat: fn(&Self, &[Id]) -> Vec<Id>) {
         let used = self.used();
         let divides = |id: &Id| matches!(self.operations.value(*id), Operation::Reciprocal(_));
         let mut divisors = vec![false; self.operations.len()];
         used.iter().filter(|id| divides(id)).for_each(|id| divisors[*id] = true);
         let products = used.into_iter().filter_map(|id| match self.operations.value(id) {
-            Operation::Product(factors) => Some((id, factors.clone())),
+            Operation::Product(factors) => Some((id, flat(self, factors))),
             _ => None,
         });
         self.products = Pairs::new(products, divisors);

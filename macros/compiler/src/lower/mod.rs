@@ -51,7 +51,7 @@ const LARGEST_PROGRAM: usize = 60_000;
 const LARGEST_KERNEL: usize = 20_000;
 
 /// The work of all searches for fewer operations in one program, or as much as is left for its other work. It is not counted with that.
-const SEARCHES: u64 = 2_500_000;
+const SEARCHES: u64 = 2_800_000;
 
 /// Lowers formulas to kernels.
 ///

@@ -78,3 +78,14 @@ fn what_cancels_leaves_nothing() {
     let whole = sum(&mut scalars, &[(1, &[k, first]), (-1, &[k, second])]);
     assert_eq!(operations(&mut scalars, vec![whole]), (1, 1));
 }
+
+/// c (1 + k a + k b) = c (1 + k (a + b)). The sum of a constant and one product is not taken apart.
+#[test]
+fn a_constant_beside_a_common_factor_stays() {
+    let mut scalars = scalars();
+    let [a, b, c, k] = inputs(&mut scalars);
+    let terms = [[k, a], [k, b]].map(|factors| (scalars.product(factors), integer(1)));
+    let inner = scalars.sum(integer(1), terms);
+    let whole = scalars.product([c, inner]);
+    assert_eq!(operations(&mut scalars, vec![whole]), (2, 2));
+}

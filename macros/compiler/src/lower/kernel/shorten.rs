@@ -35,15 +35,29 @@ impl Builder<'_, '_> {
         self.operations.len() > LARGEST_KERNEL && self.count_operations() > BEYOND * LARGEST_KERNEL
     }
 
-    /// Looks for fewer operations, within the allowance of the program for that. A search that does not end within it leaves no
-    /// trace, and no other one is begun.
+    /// Looks for fewer operations, within the allowance of the program for that. A search that does not end within it changes
+    /// nothing. If it is one of the first, of pairs of factors and of terms, no other one is begun.
     pub(super) fn shorten(&mut self) {
+        if !self.scalars.keeps_sums {
+            self.search(Self::share_multiples, JOINED);
+        }
         let is_complete = self.search(Self::share_pairs, u64::MAX)
             && (self.scalars.keeps_sums || self.search(Self::share_terms, u64::MAX));
         if !is_complete {
             (self.scalars.is_plain, self.scalars.searches) = (true, 0);
         } else if !self.scalars.keeps_sums {
             self.search(Self::join_sums, JOINED);
+            self.search(Self::share_pairs_around_sums, JOINED);
+        }
+    }
+
+    /// Pairs of factors once more, without those of the sums among them, where that leaves fewer operations.
+    fn share_pairs_around_sums(&mut self) {
+        let before = self.count_operations();
+        let products = self.products.clone();
+        self.share_pairs_of(|_, factors| factors.to_vec());
+        if self.count_operations() >= before {
+            self.products = products;
         }
     }
 
@@ -61,11 +75,10 @@ impl Builder<'_, '_> {
 
     /// Common factors and sums within sums; where numbers can be separated, with them and without.
     fn share_terms(&mut self) {
-        let separated = self.separate_numbers();
-        let products = (!separated.is_empty()).then(|| self.products.clone());
+        let separated = self.separate_numbers().map(|separated| (separated, self.products.clone()));
         self.factor_sums(false);
         self.share_sums();
-        if let Some(products) = products {
+        if let Some((separated, products)) = separated {
             let before = self.count_operations();
             let plain = (std::mem::replace(&mut self.sums, separated), std::mem::replace(&mut self.products, products));
             self.factor_sums(false);
@@ -89,12 +102,15 @@ impl Builder<'_, '_> {
     }
 
     /// A product a x with a = n b is written as n times b x. The condition is that a occurs nowhere else and b x is at
-    /// hand. Then b x of other sums is found in this one.
-    fn separate_numbers(&self) -> Table<Id, Vec<(Rational, Id)>> {
-        let mut sums = Table::default();
+    /// hand. Then b x of other sums is found in this one. `None` where there is no such product.
+    fn separate_numbers(&self) -> Option<Table<Id, Vec<(Rational, Id)>>> {
+        let (mut sums, mut is_found) = (self.sums.clone(), false);
         let used = self.used();
         let mut uses = vec![0_usize; self.operations.len()];
-        let operands = used.iter().flat_map(|&id| self.operations.value(id).operands());
+        let operands = used.iter().flat_map(|&id| match self.operations.value(id) {
+            Operation::Sum(_, terms) => self.terms(id, terms).each(|(_, term)| *term),
+            operation => operation.operands(),
+        });
         operands.chain(self.outputs.iter().copied()).for_each(|id| uses[id] += 1);
         let separate = |(coefficient, term): &(Rational, Id)| {
             let found = self.separated(*term).filter(|(_, product)| uses[*term] == 1 && uses[*product] > 0);
@@ -102,12 +118,16 @@ impl Builder<'_, '_> {
         };
         for &id in &used {
             let Operation::Sum(_, terms) = self.operations.value(id) else { continue };
+            if self.sums.contains(&id) {
+                continue;
+            }
             let separated: Vec<_> = terms.each(separate);
             if separated != *terms {
                 sums.insert(id, separated);
+                is_found = true;
             }
         }
-        sums
+        is_found.then_some(sums)
     }
 
     /// A product of something that is taken out as a number times the product without the number, where that one is known.
