@@ -308,6 +308,11 @@ impl<C: Copy> TermOf<C> {
 }
 
 impl<'g> WordTerm<'g> {
+    /// The product of its number, its scalars and its letters.
+    pub fn product(&self, graph: &'g Graph) -> Expr<'g> {
+        self.word.iter().fold(self.scale(graph), |product, letter| product * *letter)
+    }
+
     /// The term without its word.
     pub fn scale(&self, graph: &'g Graph) -> Expr<'g> {
         self.scale_over(graph, |base| base)

@@ -4,7 +4,6 @@ use clebsch_symbolic::{Chart, Expr, IntoList, Property, Role, WordTerm, identity
 
 use super::equation::{Momentum, Sources};
 use super::moves::from_increment;
-use super::summation::expression;
 use super::symbols::at_zero;
 
 /// The letters of the residuals of a substep, with the formulas in x that replace them.
@@ -85,7 +84,7 @@ impl<'a, 'g> Letters<'a, 'g> {
             if !letters.iter().any(|(letter, _)| sum.depends_on(*letter)) {
                 return sum;
             }
-            let terms = sum.word_terms().into_iter().map(|term: WordTerm<'g>| expression(term, graph));
+            let terms = sum.word_terms().into_iter().map(|term: WordTerm<'g>| term.product(graph));
             let (small, others): (Vec<_>, Vec<_>) =
                 terms.partition(|term| identity::vanishes(term.substitute(&at_identity)));
             graph.total(shape, small) + graph.total(shape, others).substitute(letters).expand()

@@ -8,7 +8,7 @@
 //!
 //! Source: Hairer, Lubich and Wanner, *Geometric Numerical Integration*, §VIII.5 (compensated summation, Kahan 1965, Møller 1965).
 
-use clebsch_symbolic::{Expr, Graph, IntoElements, IntoList, Property, Role, WordTerm, identity, integer};
+use clebsch_symbolic::{Expr, IntoElements, IntoList, Property, Role, WordTerm, identity, integer};
 
 use super::moves::inverse_by;
 use super::symbols::at_zero;
@@ -86,7 +86,7 @@ impl<'g> MechanicsFormulas<'g> {
             near.push((*image, leaf.symbol));
         }
         let is_small = |term: WordTerm<'g>| {
-            let term = expression(term, change.graph());
+            let term = term.product(change.graph());
             let vanishes = |part: Expr<'g>| identity::vanishes(part.substitute(&near));
             term.least_exponent(model.step_size).is_some_and(|least| least >= integer(1))
                 || vanishes(term) && vanishes(term.differential(&directions))
@@ -179,13 +179,8 @@ pub(super) fn check(formulas: &MechanicsFormulas<'_>) -> Result<(), Diagnostics>
 /// Whether `from` is in no term without D, or cancels in their sum.
 fn cancels<'g>(added: Expr<'g>, from: Expr<'g>, increments: &[Expr<'g>]) -> bool {
     let graph = added.graph();
-    let terms = added.word_terms().into_iter().map(|term| expression(term, graph));
+    let terms = added.word_terms().into_iter().map(|term| term.product(graph));
     let left = terms.filter(|term| !increments.iter().any(|d| term.depends_on(*d)));
     let left = graph.total(added.shape(), left);
     identity::equal(&[left], &[left.substitute(&[(from, graph.zero(from.shape()))])])
-}
-
-/// The product of the scalars and the letters of a term.
-pub(super) fn expression<'g>(term: WordTerm<'g>, graph: &'g Graph) -> Expr<'g> {
-    term.word.iter().fold(term.scale(graph), |product, letter| product * *letter)
 }

@@ -9,9 +9,7 @@
 use std::collections::BTreeMap;
 use std::rc::Rc;
 
-use clebsch_symbolic::{
-    Analytic, Elements, Expr, Graph, IntoElements, Operation, Rational, Shape, View, WordTerm, integer,
-};
+use clebsch_symbolic::{Analytic, Elements, Expr, IntoElements, Operation, Rational, Shape, View, WordTerm, integer};
 
 use super::super::entries::{Grid, Scalar};
 use super::super::scalar::{Callee, Rate, Scalars};
@@ -238,13 +236,13 @@ fn opened<'g>(word: &[Expr<'g>]) -> Option<Vec<Expr<'g>>> {
         let parts = if first.shape().columns == 1 && terms.iter().all(|term| term.word[0] == first) {
             let others = terms.into_iter().map(|mut term| {
                 term.word.remove(0);
-                product(term, graph)
+                term.product(graph)
             });
             [first, graph.total(Shape::new(1, letter.shape().columns), others)]
         } else if last.shape().rows == 1 && terms.iter().all(|term| term.word.last() == Some(&last)) {
             let others = terms.into_iter().map(|mut term| {
                 term.word.pop();
-                product(term, graph)
+                term.product(graph)
             });
             [graph.total(Shape::new(letter.shape().rows, 1), others), last]
         } else {
@@ -273,11 +271,6 @@ fn distributed<'g>(word: &[Expr<'g>]) -> Option<Vec<WordTerm<'g>>> {
         term
     };
     (terms.len() <= MOST_DISTRIBUTED).then(|| terms.into_each(around))
-}
-
-/// The product of the scalars and the letters of a term.
-fn product<'g>(term: WordTerm<'g>, graph: &'g Graph) -> Expr<'g> {
-    term.word.iter().fold(term.scale(graph), |product, letter| product * *letter)
 }
 
 fn is_matrix(letter: Expr<'_>) -> bool {

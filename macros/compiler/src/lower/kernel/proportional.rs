@@ -1,7 +1,7 @@
 //! Sums that are multiples of other sums: for constants a, b and k, k a x + k b y is k (a x + b y).
 //!
-//! Constants are multiplied with each other first. So k a and k b are constants of their own, and their sum costs as much as a x + b y.
-//! Where that is there anyway, one multiplication is left of it.
+//! Constants are multiplied with each other first. So k a and k b are constants of their own, and their sum costs as much
+//! as a x + b y. Where that is there anyway, one multiplication is left of it.
 
 use clebsch_symbolic::{Elements, Rational, Table, integer, work};
 
@@ -94,15 +94,12 @@ impl Builder<'_, '_> {
             let (mut bases, mut others): (Vec<&Member>, Vec<&Member>) = (Vec::new(), Vec::new());
             for member in members {
                 let multiple_of = |base: &&Member| Some((ratio(&member.1, &base.1)?, base.0));
-                // else a number might be taken out of the base later, which would make the base a multiple of this sum
-                let by_number = |base: &&Member| {
-                    base.2.1 == 0 && ratio(&member.1, &base.1).is_some_and(|(_, factors)| factors.is_empty())
-                };
-                let by_factors =
-                    |base: &&Member| ratio(&member.1, &base.1).is_some_and(|(_, factors)| !factors.is_empty());
-                let base = bases.iter().chain(&others).find(|base| by_number(base));
-                let base = base.or_else(|| bases.iter().find(|base| by_factors(base)));
-                match base.and_then(multiple_of) {
+                let is_by_number = |((_, factors), _): &((Rational, Factors), Id)| factors.is_empty();
+                // of other bases a number could be taken out later: they could become multiples of this sum
+                let plain = bases.iter().chain(&others).filter(|base| base.2.1 == 0);
+                let by_number = plain.filter_map(multiple_of).find(is_by_number);
+                let by_factors = || bases.iter().filter_map(multiple_of).find(|multiple| !is_by_number(multiple));
+                match by_number.or_else(by_factors) {
                     Some((ratio, base)) => {
                         found.push((member.0, ratio, base));
                         others.push(member);
@@ -114,7 +111,7 @@ impl Builder<'_, '_> {
         found
     }
 
-    /// A term as a constant, a number with factors, and the factors that change.
+    /// A term as a constant and the factors that change. A constant is a number with factors.
     fn parted(&self, coefficient: &Rational, term: Id) -> ((Rational, Factors), Vec<Id>) {
         let factors = match self.operations.value(term) {
             Operation::Product(factors) => factors.as_slice(),

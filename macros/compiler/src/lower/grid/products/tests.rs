@@ -74,11 +74,11 @@ fn a_common_column_is_taken_out_of_a_sum() {
     let Letters { r, u, v, j, .. } = Letters::of(&graph);
     let rows = [r, j, j * r, r * j];
     let sum = graph.total(Shape::square(3), rows.map(|matrix| u * v.transpose() * matrix));
-    // y, vᵀR and vᵀJ, each of them times the other matrix, three sums and a product of vectors
+    // y, vᵀR, vᵀJ, vᵀR J and vᵀJ R, three sums, and a product of vectors.
     assert_eq!(operations(&[moment(r.transpose() * sum)]), (42, 51));
 }
 
-/// The moments of u aᵀ + v bᵀ are y × a + z × b, with y = Rᵀu and z = Rᵀv.
+/// The moments of u aᵀ + v bᵀ are y × a + z × b. Here y = Rᵀu and z = Rᵀv.
 #[test]
 fn a_sum_of_columns_times_rows_is_distributed() {
     let graph = Graph::new();
