@@ -83,10 +83,10 @@ fn mark(front: Front) -> &'static str {
 
 /// Errors between which a power of h shows: below, rounding is near; above, the next powers are.
 pub const WINDOW: [f64; 2] = [6e-11, 1e-2];
-/// Ratio of the step sizes that an order is measured over: two halvings, and a rounding.
-const SPAN: f64 = 4.1;
+/// Ratio of the step sizes that an order is measured over: a halving, and a rounding. In longer steps the next powers are seen where V is small.
+const SPAN: f64 = 2.1;
 
-/// The measured order: between the shortest steps whose error is in [`WINDOW`] and those that are, if they can, four times as long.
+/// The measured order: between the shortest steps whose error is in [`WINDOW`] and those that are, if they can, twice as long.
 ///
 /// At order 1 it is that of the energy error. Its steps are those of order 2 seen from other momenta, by half a kick.
 /// So over long times the phase is wrong by h² t, and h shows only in bounded errors.

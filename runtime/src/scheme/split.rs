@@ -12,9 +12,16 @@
 //! Source: kicks with force gradients are those of S. A. Chin, *Symplectic integrators from composite operator
 //! factorizations*, Phys. Lett. A 226 (1997). The nodes here are those of quadrature to high order in V, so the error
 //! for a weak potential is small. With four kicks the order is 4, and (8, 4) in (V, V²): the nodes of Gauss and
-//! Legendre. With five kicks the order is 6, and (8, 6, 6). Without gradients they are those of S. Blanes and P. C.
-//! Moan, *Practical symplectic partitioned Runge–Kutta and Runge–Kutta–Nyström methods*, J. Comput. Appl. Math. 142
-//! (2002).
+//! Legendre. With seven kicks the order is 6, and (8, 6, 6).
+//!
+//! Without gradients seven kicks have order 4 and ten order 6. S. Blanes and P. C. Moan, *Practical symplectic partitioned
+//! Runge–Kutta and Runge–Kutta–Nyström methods*, J. Comput. Appl. Math. 142 (2002), have such for T that is quadratic in
+//! the momenta too. Their SRKN14a takes fewer kicks for errors below 10⁻⁸, and more above 10⁻⁷.
+//!
+//! But for the nodes of Gauss and Legendre, the conditions of order leave three or four numbers free. These numbers give
+//! the fewest kicks in a unit of time for an error, as its terms of order up to 9 say. The mean is geometric: over errors
+//! of 10⁻³ and 10⁻⁵ at order 4, of 10⁻⁶ and 10⁻⁹ at order 6. It is over three sizes of V too: T/25, 0.3 T and T. Those
+//! for seven kicks of order 4 are T/10, T/2 and 2 T.
 
 use super::sequence::{Apart, From, InSequence, Sequence, To};
 use super::substep::{Moving, moved};
@@ -64,32 +71,35 @@ splittings! {
         kick(0.339_981_043_584_856_26, 0.326_072_577_431_273_05, 0.001_460_348_652_924_354_3),
         kick(0.260_577_634_004_598_16, 0.173_927_422_568_726_92, 0.000_238_038_871_179_946_26),
     ];
-    "Order 6, five kicks; the second and the fourth lie outside the step and are weak." GradientSix: 5 = [
-        kick(0.132_793_133_546_899_34, 0.293_280_560_323_112_45, 0.002_167_707_618_081_581),
-        kick(-0.290_604_120_144_448_3, 0.004_900_351_437_300_99, -0.000_033_260_037_789_472_71),
-        kick(0.657_810_986_597_549, 0.403_638_176_479_173_16, 0.001_637_619_689_152_927),
-        kick(0.657_810_986_597_549, 0.004_900_351_437_300_99, -0.000_033_260_037_789_472_71),
-        kick(-0.290_604_120_144_448_3, 0.293_280_560_323_112_45, 0.002_167_707_618_081_581),
+    "Order 6, seven kicks; the drifts about the middle one run back, as it pulls back." GradientSix: 7 = [
+        kick(0.046_967_663_565_765_046, 0.118_250_711_130_744_84, 0.000_087_913_256_962_208_44),
+        kick(0.181_174_075_798_053_28, 0.232_277_881_783_518_74, 0.000_449_286_186_915_822_5),
+        kick(0.301_199_950_204_886_1, 0.267_326_403_780_724_36, 0.003_635_898_469_324_983_6),
+        kick(-0.029_341_689_568_704_407, -0.235_709_993_389_975_9, -0.005_546_222_874_839_022),
+        kick(-0.029_341_689_568_704_407, 0.267_326_403_780_724_36, 0.003_635_898_469_324_983_6),
+        kick(0.301_199_950_204_886_1, 0.232_277_881_783_518_74, 0.000_449_286_186_915_822_5),
+        kick(0.181_174_075_798_053_28, 0.118_250_711_130_744_84, 0.000_087_913_256_962_208_44),
     ];
-    "Order 4 without force gradients, six kicks." PlainFour: 6 = [
-        kick(0.079_203_696_431_195_7, 0.209_515_106_613_362, 0.0),
-        kick(0.353_172_906_049_774, -0.143_851_773_179_818, 0.0),
-        kick(-0.042_065_080_357_719_5, 0.434_336_666_566_456, 0.0),
-        kick(0.219_376_955_753_499_6, 0.434_336_666_566_456, 0.0),
-        kick(-0.042_065_080_357_719_5, -0.143_851_773_179_818, 0.0),
-        kick(0.353_172_906_049_774, 0.209_515_106_613_362, 0.0),
+    "Order 4 without force gradients, seven kicks." PlainFour: 7 = [
+        kick(0.060_634_119_033_030_134, 0.151_818_560_833_871_77, 0.0),
+        kick(0.194_437_715_187_219_03, 0.426_585_930_365_103_67, 0.0),
+        kick(-0.022_021_303_665_517_99, -0.185_674_736_102_886_37, 0.0),
+        kick(0.266_949_469_445_268_8, 0.214_540_489_807_821_8, 0.0),
+        kick(0.266_949_469_445_268_8, -0.185_674_736_102_886_37, 0.0),
+        kick(-0.022_021_303_665_517_99, 0.426_585_930_365_103_67, 0.0),
+        kick(0.194_437_715_187_219_03, 0.151_818_560_833_871_77, 0.0),
     ];
     "Order 6 without force gradients, ten kicks." PlainSix: 10 = [
-        kick(0.050_262_764_400_392_2, 0.148_816_447_901_042, 0.0),
-        kick(0.413_514_300_428_344, -0.132_385_865_767_784, 0.0),
-        kick(0.045_079_889_794_397_7, 0.067_307_604_692_185, 0.0),
-        kick(-0.188_054_853_819_569, 0.432_666_402_578_175, 0.0),
-        kick(0.541_960_678_450_78, -0.016_404_589_403_618, 0.0),
-        kick(-0.725_525_558_508_689_8, -0.016_404_589_403_618, 0.0),
-        kick(0.541_960_678_450_78, 0.432_666_402_578_175, 0.0),
-        kick(-0.188_054_853_819_569, 0.067_307_604_692_185, 0.0),
-        kick(0.045_079_889_794_397_7, -0.132_385_865_767_784, 0.0),
-        kick(0.413_514_300_428_344, 0.148_816_447_901_042, 0.0),
+        kick(0.059_042_315_482_706_824, 0.175_280_705_061_374_28, 0.0),
+        kick(0.324_850_808_748_176_96, -0.058_839_699_625_822_64, 0.0),
+        kick(-0.127_880_033_532_485_56, 0.092_596_910_010_161_24, 0.0),
+        kick(-0.241_044_031_963_101_87, -0.014_956_041_455_533_775, 0.0),
+        kick(0.340_573_626_873_188_93, 0.305_918_126_009_820_9, 0.0),
+        kick(0.288_914_628_783_029_37, 0.305_918_126_009_820_9, 0.0),
+        kick(0.340_573_626_873_188_93, -0.014_956_041_455_533_775, 0.0),
+        kick(-0.241_044_031_963_101_87, 0.092_596_910_010_161_24, 0.0),
+        kick(-0.127_880_033_532_485_56, -0.058_839_699_625_822_64, 0.0),
+        kick(0.324_850_808_748_176_96, 0.175_280_705_061_374_28, 0.0),
     ];
 }
 
@@ -199,5 +209,7 @@ pub fn split<T: Scalar, S, const K: usize>(
     }
 }
 
+#[cfg(test)]
+mod quadratic;
 #[cfg(test)]
 mod tests;

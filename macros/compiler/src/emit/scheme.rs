@@ -22,10 +22,10 @@ impl Emitter<'_, '_> {
         let carry = if self.shares_impulse() { quote!(runtime::Shared) } else { quote!(runtime::Apart) };
         if let Some(splitting) = &self.formulas.splitting {
             return match (self.model.order.number(), splitting.has_gradient) {
-                (6, true) => quote!(runtime::Split<runtime::GradientSix, 5>),
+                (6, true) => quote!(runtime::Split<runtime::GradientSix, 7>),
                 (6, false) => quote!(runtime::Split<runtime::PlainSix, 10>),
                 (_, true) => quote!(runtime::Split<runtime::GradientFour, 4>),
-                (_, false) => quote!(runtime::Split<runtime::PlainFour, 6>),
+                (_, false) => quote!(runtime::Split<runtime::PlainFour, 7>),
             };
         }
         if self.formulas.collocation.is_some() {

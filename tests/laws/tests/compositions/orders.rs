@@ -111,7 +111,9 @@ macro_rules! orders {
                 let error = |x: &Vector2<f64>, p: &Vector2<f64>| {
                     (flat::<4>(&[x.as_slice(), p.as_slice()]) - exact.fixed_rows::<4>(0)).amax()
                 };
-                assert_order(&Driven { rate }, (x, p), &(), &counts($order), error);
+                // order 6 is a splitting here: in the steps of a composition its error is rounding
+                let counts = if $order == 6 { [16, 32, 64] } else { counts($order) };
+                assert_order(&Driven { rate }, (x, p), &(), &counts, error);
             }
 
             #[test]

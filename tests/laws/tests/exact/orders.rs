@@ -197,7 +197,7 @@ orders! { fourth:
 }
 orders! { sixth:
     top [16, 32, 64],
-    #[cfg(feature = "heavy")] quaternions [16, 32, 64], mirrored [16, 32, 64],
+    #[cfg(feature = "heavy")] quaternions [12, 24, 48], mirrored [12, 24, 48],
     satellite [16, 32, 64],
     #[cfg(feature = "heavy")] flying [16, 32, 64],
     points [12, 24, 48], opaque [16, 32, 64]

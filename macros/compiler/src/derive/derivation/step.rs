@@ -193,10 +193,10 @@ fn collocated(formulas: &MechanicsFormulas<'_>, collocation: &Collocation<'_>) -
 
 fn split(order: Order, has_gradient: bool) -> String {
     let (kicks, kind) = match (order, has_gradient) {
-        (Order::Sixth, true) => (5, "with force gradients, of order (8, 6, 6) in V, V² and V³"),
+        (Order::Sixth, true) => (7, "with force gradients, of order (8, 6, 6) in V, V² and V³"),
         (_, true) => (4, "with force gradients at the nodes of Gauss and Legendre, of order (8, 4) in V and V²"),
-        (Order::Sixth, false) => (10, "without force gradients, as the potential is opaque (Blanes and Moan)"),
-        (_, false) => (6, "without force gradients, as the potential is opaque (Blanes and Moan)"),
+        (Order::Sixth, false) => (10, "without force gradients, as the potential is opaque"),
+        (_, false) => (7, "without force gradients, as the potential is opaque"),
     };
     format!(
         "The drift is exact, so drifts and kicks in turn make a step of order {order}: {kicks} kicks {kind}, the same forwards and backwards. A part a of the drift with the momentum μ is the full drift with the momentum a μ.\n"
