@@ -44,7 +44,7 @@ struct Collocation;
 struct ToleratedRough;
 struct ToleratedFourth;
 struct ToleratedSixth;
-struct ToleratedSixthRough;
+struct ToleratedMedium;
 struct QuaternionExactFirst;
 struct QuaternionExactSecond;
 struct QuaternionExactFourth;
@@ -97,7 +97,7 @@ struct ChordEighth;
     method ToleratedRough     = (order = 4, discretization = exact, tolerance = 1e-4),
     method ToleratedFourth    = (order = 4, discretization = exact, tolerance = 1e-7),
     method ToleratedSixth     = (order = 6, discretization = exact, tolerance = 1e-10),
-    method ToleratedSixthRough = (order = 6, discretization = exact, tolerance = 1e-7),
+    method ToleratedMedium    = (order = 6, discretization = exact, tolerance = 1e-7),
 )]
 struct Top {
     /// Inertia tensor about the pivot, kg·m².
@@ -211,7 +211,7 @@ fn declarations(inertia: Matrix3<f64>, weight: f64, center: Vector3<f64>) -> Vec
         declared(ToleratedRough, "exact", top, start, pack).to(1e-4),
         declared(ToleratedFourth, "exact", top, start, pack).to(1e-7),
         declared(ToleratedSixth, "exact", top, start, pack).to(1e-10),
-        declared(ToleratedSixthRough, "exact", top, start, pack).to(1e-7),
+        declared(ToleratedMedium, "exact", top, start, pack).to(1e-7),
         // sweeps that end early
         declared(QuaternionCollocationLoose, "quaternion collocation", turn, turned, pack_quaternion).to(1e-10),
         declared(ExactFirst, "exact synchronized", top, start, pack).synchronized(),
