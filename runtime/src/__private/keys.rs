@@ -90,7 +90,7 @@ pub mod target {}
 /// * 1: Drift, then kick: h·V at the end of the step.
 /// * 2: Half kick, drift, half kick: h·V/2 at each end. Time-symmetric, with one gradient a step.
 /// * 4: Composed of 5 steps of order 2, or a splitting where the drift is exact.
-/// * 6: Composed of 9 steps of order 2, or a splitting where the drift is exact.
+/// * 6: Composed of 11 steps of order 2, or a splitting where the drift is exact.
 /// * 8: Composed of 17 steps of order 2.
 /// * 16: Collocation of Hamilton's equations at the eight nodes of Gauss and Legendre.
 pub mod order {}

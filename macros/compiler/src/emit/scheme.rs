@@ -148,7 +148,7 @@ pub(super) fn composed(stages: Option<usize>, single: TokenStream) -> TokenStrea
     let Some(stages) = stages else { return single };
     let order = match stages {
         5 => quote!(OfOrderFour),
-        9 => quote!(OfOrderSix),
+        11 => quote!(OfOrderSix),
         _ => quote!(OfOrderEight),
     };
     // the sizes of a composed step are the same forwards and backwards

@@ -200,7 +200,7 @@ const ORDERS: [(Order, &str); 6] = [
     (Order::First, "Drift, then kick: h·V at the end of the step."),
     (Order::Second, "Half kick, drift, half kick: h·V/2 at each end. Time-symmetric, with one gradient a step."),
     (Order::Fourth, "Composed of 5 steps of order 2, or a splitting where the drift is exact."),
-    (Order::Sixth, "Composed of 9 steps of order 2, or a splitting where the drift is exact."),
+    (Order::Sixth, "Composed of 11 steps of order 2, or a splitting where the drift is exact."),
     (Order::Eighth, "Composed of 17 steps of order 2."),
     (Order::Sixteenth, "Collocation of Hamilton's equations at the eight nodes of Gauss and Legendre."),
 ];
@@ -221,7 +221,7 @@ impl Order {
         match self {
             Order::First | Order::Second | Order::Sixteenth => None,
             Order::Fourth => Some(5),
-            Order::Sixth => Some(9),
+            Order::Sixth => Some(11),
             Order::Eighth => Some(17),
         }
     }

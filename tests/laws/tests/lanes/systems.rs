@@ -68,7 +68,7 @@ pub struct Top<T: Scalar> {
     pub center: Vector3<T>,
 }
 
-/// The same in nine steps.
+/// The same in eleven steps.
 #[cfg(feature = "heavy")]
 #[derive(Clebsch, Clone, Debug)]
 #[clebsch(

@@ -349,13 +349,13 @@ proptest! {
         };
         let whole = private::compose(&all, t, (1.0, 0.5), step, |state, _| state)?;
         let mut state = (1.0, 0.5);
-        for number in 0..9 {
+        for number in 0..11 {
             let stage = all.stage(number);
             prop_assert!((times.borrow()[number] - t - stage.start).abs() < 1e-15);
             state = leapfrog(omega, *stage.constants, state);
         }
         prop_assert_eq!(state, whole);
-        prop_assert_eq!(times.borrow().len(), 9);
+        prop_assert_eq!(times.borrow().len(), 11);
     }
 
     /// Splittings of an oscillator, with and without force gradients: steps at once are steps one by one; and errors of h⁵ and h⁷.
