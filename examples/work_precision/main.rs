@@ -1,4 +1,4 @@
-//! The price of accuracy: every setting of four scenes and two classical methods, from long steps to short ones.
+//! The price of accuracy: every setting of five scenes and two classical methods, from long steps to short ones.
 //!
 //! A setting is a discretization with an order. Times are those of one core; machines are noisy, so take their ratios.
 
@@ -22,7 +22,7 @@ use report::Csv;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-/// Work and precision: error against time for all settings of four scenes, next to RK4 and DOP853
+/// Work and precision: error against time for all settings of five scenes, next to RK4 and DOP853
 #[derive(Parser, Debug)]
 #[command(name = "work_precision")]
 struct Flags {
@@ -48,6 +48,7 @@ enum Choice {
     Pendulum,
     #[value(name = "body4")]
     Body4,
+    Satellite,
 }
 
 impl Flags {
@@ -82,6 +83,9 @@ fn run(flags: &Flags) -> Result<Claims, Failure> {
     }
     if flags.includes(Choice::Body4) {
         study.scene(&scenes::body4::scene())?;
+    }
+    if flags.includes(Choice::Satellite) {
+        study.scene(&scenes::satellite::scene())?;
     }
     say("advice: the cheapest declaration for an error, and what classical methods need");
     for line in &study.advice {

@@ -38,6 +38,10 @@ pub struct Scene<const N: usize> {
     pub closed_form: Option<ClosedForm>,
     /// Steps of the reference in each tenth of the duration; half as many tell its error.
     pub reference_steps: u64,
+    /// The energy is followed for so many durations: for many of the slowest periods.
+    pub longer: u64,
+    /// Whether errors of order 16 show it: its steps are as long as the motion, and other powers of h may be as large.
+    pub shows_sixteen: bool,
     /// The settings that are compared.
     pub settings: Vec<Box<dyn Setting<N>>>,
 }

@@ -90,6 +90,9 @@ pub type Observe<'a, const N: usize> = dyn FnMut(f64, &SVector<f64, N>) + 'a;
 /// Writes a state as the numbers of the scene.
 pub type Flat<S, const N: usize> = fn(&<S as Clebsch>::Configuration, &<S as Clebsch>::Momentum) -> SVector<f64, N>;
 
+/// The same motion at a time, in axes that move.
+pub type Frame<const N: usize> = fn(f64, &SVector<f64, N>) -> SVector<f64, N>;
+
 /// A declared system from its start, by the method M.
 pub struct Declared<S: Clebsch, M: Method<S>, const N: usize> {
     by: PhantomData<M>,
@@ -100,6 +103,7 @@ pub struct Declared<S: Clebsch, M: Method<S>, const N: usize> {
     /// Whether momenta are read half a kick earlier, at the time of their configuration: steps of order 1 are of second order then.
     is_synchronized: bool,
     tolerance: Option<f64>,
+    frame: Option<Frame<N>>,
 }
 
 /// A stepper and its start.
@@ -113,7 +117,16 @@ pub fn declared<S: Clebsch, M: Method<S>, const N: usize>(
     start: (S::Configuration, S::Momentum),
     flat: Flat<S, N>,
 ) -> Box<Declared<S, M, N>> {
-    Box::new(Declared { by: PhantomData, method, system, start, flat, is_synchronized: false, tolerance: None })
+    Box::new(Declared {
+        by: PhantomData,
+        method,
+        system,
+        start,
+        flat,
+        is_synchronized: false,
+        tolerance: None,
+        frame: None,
+    })
 }
 
 impl<S: Clebsch<Scalar = f64> + Clone, M: Method<S>, const N: usize> Declared<S, M, N> {
@@ -127,6 +140,11 @@ impl<S: Clebsch<Scalar = f64> + Clone, M: Method<S>, const N: usize> Declared<S,
         Box::new(Self { tolerance: Some(tolerance), ..self })
     }
 
+    /// The same, compared in these axes.
+    pub fn seen_from(self, frame: Frame<N>) -> Box<Self> {
+        Box::new(Self { frame: Some(frame), ..self })
+    }
+
     fn prepare(&self, h: f64) -> Result<Begun<S, M>, Error> {
         let stepper = self.system.clone().into_stepper_by(h)?;
         let start = match self.is_synchronized {
@@ -136,12 +154,13 @@ impl<S: Clebsch<Scalar = f64> + Clone, M: Method<S>, const N: usize> Declared<S,
         Ok((stepper, start))
     }
 
-    /// The numbers of a state, as it is read.
-    fn read(&self, stepper: &Stepper<S, M>, state: &State<S, M>) -> SVector<f64, N> {
-        match self.is_synchronized {
+    /// The numbers of a state at a time, as it is read.
+    fn read(&self, time: f64, stepper: &Stepper<S, M>, state: &State<S, M>) -> SVector<f64, N> {
+        let y = match self.is_synchronized {
             true => (self.flat)(state.configuration(), &stepper.synchronized(state)),
             false => (self.flat)(state.configuration(), &state.momentum()),
-        }
+        };
+        self.frame.map_or(y, |frame| frame(time, &y))
     }
 }
 
@@ -156,7 +175,8 @@ impl<S: Clebsch<Scalar = f64> + Clone, M: Method<S>, const N: usize> Setting<N> 
         let (stepper, mut state) = self.prepare(h)?;
         for step in 0..=steps {
             if is_observed(step, steps) {
-                observe(step as f64 * h, &self.read(&stepper, &state));
+                let time = step as f64 * h;
+                observe(time, &self.read(time, &stepper, &state));
             }
             if step < steps {
                 state = stepper.step(&state)?;

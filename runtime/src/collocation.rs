@@ -89,34 +89,35 @@ impl<const H: usize> Gauss<H> {
 
 /// y⁺ − y of a step of the size h that starts at the time t in y = (q, p), N numbers, q first. Of the S = 2H stages the second half are mirrored.
 ///
-/// `guess` is a place near that after a part of the step, `slope` is (q′, p′) at a time and a place. Sweeps end where they change q and p by less than
+/// `guess` is a place near that after a part of the step. `terms` are K numbers of a time. `slope` is (q′, p′) at a time with these and a place. Sweeps end where they change q and p by less than
 /// `tolerance` of them, where only rounding changes them, or after `most`. Ended one sweep earlier, energies would drift ten times as fast.
 ///
 /// # Errors
 /// [`Error::NotFinite`] where a slope is not, [`Error::NotConverged`] where sweeps do not contract: the step is too
 /// long. An error stands for all lanes. A lane that fails while others succeed becomes NaN.
 #[inline]
-pub fn collocate<T: Scalar, const N: usize, const S: usize, const H: usize>(
+pub fn collocate<T: Scalar, const N: usize, const K: usize, const S: usize, const H: usize>(
     gauss: &Gauss<H>,
     (t, h): (T, T),
     start: &[T; N],
-    tolerance: f64,
-    most: u32,
+    (tolerance, most): (f64, u32),
     guess: impl Fn(T) -> [T; N],
-    slope: impl Fn(T, &[T; N]) -> [T; N],
+    terms: impl Fn(T) -> [T; K],
+    slope: impl Fn(T, &[T; K], &[T; N]) -> [T; N],
 ) -> Result<[T; N], Error> {
     const { assert!(S == 2 * H && N.is_multiple_of(2)) };
     let table = gauss.scaled(h);
     let tolerance = larger(T::from_f64(tolerance), T::EPSILON * T::from_ratio(4, 1));
     let (mut slopes, mut stages) = ([[T::zero(); S]; N], [[T::zero(); S]; N]);
     table.guess(&guess, &mut stages);
+    let times = table.times((t, h), &terms);
     let (mut open, mut solved) = (T::Mask::everywhere(), T::Mask::nowhere());
-    table.sweep((t, h), &stages, open, &mut slopes, &slope);
+    table.sweep((t, h), &times, &stages, open, &mut slopes, &slope);
     let (mut before, mut count) = (T::zero(), 0);
     while count < most && open.any() {
         T::iterated();
         table.stages(start, &slopes, &mut stages);
-        let changes = table.sweep((t, h), &stages, open, &mut slopes, &slope);
+        let changes = table.sweep((t, h), &times, &stages, open, &mut slopes, &slope);
         count += 1;
         let sizes = sizes(h, start, &slopes);
         let change = changes[0] / positive(sizes[0]) + changes[1] / positive(sizes[1]);
@@ -133,7 +134,7 @@ pub fn collocate<T: Scalar, const N: usize, const S: usize, const H: usize>(
     }
     for _ in 0..T::DERIVATIVES * SWEEPS_OF_DERIVATIVES {
         table.stages(start, &slopes, &mut stages);
-        table.sweep((t, h), &stages, solved, &mut slopes, &slope);
+        table.sweep((t, h), &times, &stages, solved, &mut slopes, &slope);
     }
     let mut change = *start;
     for v in 0..N {
@@ -160,6 +161,19 @@ impl<T: Scalar, const H: usize> Table<T, H> {
                 stages[v][i] = place[v];
             }
         }
+    }
+
+    /// The terms of the times of all stages.
+    #[inline]
+    fn times<const K: usize, const S: usize>(&self, (t, h): (T, T), terms: &impl Fn(T) -> [T; K]) -> [[T; S]; K] {
+        let mut times = [[T::zero(); S]; K];
+        for i in 0..S {
+            let found = terms(t + self.node(i) * h);
+            for k in 0..K {
+                times[k][i] = found[k];
+            }
+        }
+        times
     }
 
     /// h/2 Σ b_j (K̃_j + K_j)
@@ -205,13 +219,14 @@ impl<T: Scalar, const H: usize> Table<T, H> {
     /// The slopes at all stages, in the lanes that are open. With them, |h ΔK| of q and of p: the sums over all stages
     /// and entries.
     #[inline(always)]
-    fn sweep<const N: usize, const S: usize>(
+    fn sweep<const N: usize, const K: usize, const S: usize>(
         &self,
         (t, h): (T, T),
+        times: &[[T; S]; K],
         stages: &[[T; S]; N],
         open: T::Mask,
         slopes: &mut [[T; S]; N],
-        slope: &impl Fn(T, &[T; N]) -> [T; N],
+        slope: &impl Fn(T, &[T; K], &[T; N]) -> [T; N],
     ) -> [T; 2] {
         let mut changes = [[T::zero(); S]; 2];
         for i in 0..S {
@@ -219,7 +234,11 @@ impl<T: Scalar, const H: usize> Table<T, H> {
             for v in 0..N {
                 place[v] = stages[v][i];
             }
-            let found = slope(t + self.node(i) * h, &place);
+            let mut terms = [T::zero(); K];
+            for k in 0..K {
+                terms[k] = times[k][i];
+            }
+            let found = slope(t + self.node(i) * h, &terms, &place);
             for v in 0..N {
                 let change = found[v] - slopes[v][i];
                 changes[2 * v / N][i] += change.abs();

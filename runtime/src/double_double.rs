@@ -48,17 +48,6 @@ impl DoubleDouble {
         let square = rest * rest;
         (rest * series(1, square), series(0, square), libm::fmod(turns, 4.0) as i64)
     }
-
-    /// sin(x + kπ/2)
-    fn sine(self, quarters: i64) -> Self {
-        let (sine, cosine, turns) = self.turned();
-        match (turns + quarters).rem_euclid(4) {
-            0 => sine,
-            1 => cosine,
-            2 => -sine,
-            _ => -cosine,
-        }
-    }
 }
 
 impl From<f64> for DoubleDouble {
@@ -179,13 +168,23 @@ impl Scalar for DoubleDouble {
         if self.to_f64() == f64::INFINITY { self } else { Self(self.0.sqrt()) }
     }
     fn sin(self) -> Self {
-        self.sine(0)
+        self.sin_cos().0
     }
     fn cos(self) -> Self {
-        self.sine(1)
+        self.sin_cos().1
+    }
+    fn sin_cos(self) -> (Self, Self) {
+        let (sine, cosine, turns) = self.turned();
+        match turns.rem_euclid(4) {
+            0 => (sine, cosine),
+            1 => (cosine, -sine),
+            2 => (-sine, -cosine),
+            _ => (-cosine, sine),
+        }
     }
     fn tan(self) -> Self {
-        self.sine(0) / self.sine(1)
+        let (sine, cosine) = self.sin_cos();
+        sine / cosine
     }
     fn asin(self) -> Self {
         let one = Self::one();
@@ -203,7 +202,7 @@ impl Scalar for DoubleDouble {
             let quarter = Self::PI / Self::from(2.0);
             return if self.to_f64() > 0.0 { quarter } else { -quarter };
         }
-        let (sine, cosine) = (near.sin(), near.cos());
+        let (sine, cosine) = near.sin_cos();
         near + (self * cosine - sine) / (cosine + self * sine)
     }
     fn sinh(self) -> Self {

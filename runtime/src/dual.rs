@@ -55,6 +55,10 @@ macro_rules! duals {
             fn powi(self, exponent: i32) -> Self {
                 DualNum::powi(&self, exponent)
             }
+            #[inline]
+            fn sin_cos(self) -> (Self, Self) {
+                DualNum::sin_cos(&self)
+            }
             elementary!(sqrt recip sin cos tan asin acos atan sinh cosh tanh exp ln);
         }
     )*};

@@ -237,6 +237,11 @@ macro_rules! lanes {
             fn powf(self, exponent: Self) -> Self {
                 Self::from_lanes(|i| Scalar::powf(Scalar::lane(self, i), Scalar::lane(exponent, i)))
             }
+            #[inline]
+            fn sin_cos(self) -> (Self, Self) {
+                let both = self.0.to_array().map(<$number as Scalar>::sin_cos);
+                (Self(both.map(|(sine, _)| sine).into()), Self(both.map(|(_, cosine)| cosine).into()))
+            }
             elementary!($number; sin, cos, tan, asin, acos, atan, sinh, cosh, tanh, exp, ln);
         }
     };

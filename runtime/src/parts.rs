@@ -5,6 +5,7 @@
 use crate::constraint::edge::PassedEdge;
 use crate::sums::Sums;
 use crate::{Carried, Clebsch, Declared, Edge, Ends, Error, Method, Momenta, Space};
+use num_traits::Zero;
 
 /// The values of a system S, by the letters that formulas have for them: t, q, F, μ and u.
 pub(crate) type T<S> = <S as Clebsch>::Scalar;
@@ -190,8 +191,8 @@ pub trait SplitKicks<M: Method<Self> = Declared>: Parts<M> {
     fn kick_gradient(&self, c: &M::Constants, t: T<Self>, q: &Q<Self>, weight: T<Self>, gradient: T<Self>) -> Q<Self>;
 }
 
-/// Hamilton's equations of (q, p): N numbers, the first half for q.
-pub trait HamiltonEquations<const N: usize, M: Method<Self> = Declared>: Parts<M> {
+/// Hamilton's equations of (q, p): N numbers, the first half for q. K numbers are made of the time alone.
+pub trait HamiltonEquations<const N: usize, const K: usize = 0, M: Method<Self> = Declared>: Parts<M> {
     /// Sweeps end where they change q and p by less than this part of them; 0 where only rounding ends them.
     const TOLERANCE: f64 = 0.0;
     /// The most sweeps of one step.
@@ -202,8 +203,15 @@ pub trait HamiltonEquations<const N: usize, M: Method<Self> = Declared>: Parts<M
     /// The size h of a step.
     fn step_size(c: &M::Constants) -> T<Self>;
 
-    /// (q′, p′) at y = (q, p), all entries of q and then those of p.
-    fn slope(&self, c: &M::Constants, t: T<Self>, y: &[T<Self>; N]) -> [T<Self>; N];
+    /// The numbers of the time alone that slopes take: found once a step for each stage, and not in each sweep.
+    #[inline]
+    #[allow(unused_variables, reason = "a system without time has none")]
+    fn terms_of_time(&self, c: &M::Constants, t: T<Self>) -> [T<Self>; K] {
+        [T::<Self>::zero(); K]
+    }
+
+    /// (q′, p′) at y = (q, p), all entries of q and then those of p; `terms` are those of the time t.
+    fn slope(&self, c: &M::Constants, t: T<Self>, terms: &[T<Self>; K], y: &[T<Self>; N]) -> [T<Self>; N];
 
     /// A covector p at q with the momentum J(q, p) = μ.
     fn covector(&self, c: &M::Constants, q: &Q<Self>, mu: &Mu<Self>) -> Q<Self>;

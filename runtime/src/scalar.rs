@@ -94,6 +94,11 @@ pub trait Scalar:
     fn sin(self) -> Self;
     /// cos x
     fn cos(self) -> Self;
+    /// (sin x, cos x), the same numbers. Types that reduce the angle once for both do it here.
+    #[inline]
+    fn sin_cos(self) -> (Self, Self) {
+        (self.sin(), self.cos())
+    }
     /// tan x
     fn tan(self) -> Self;
     /// arcsin x, NaN for |x| > 1
@@ -252,7 +257,7 @@ macro_rules! one_number {
 
 /// A floating point type, whose functions are those of `std`, or of `libm` by the name that stands behind.
 macro_rules! floating_point {
-    ($scalar:ident, $sqrt:ident; $($method:ident $(($argument:ident))? $libm:ident),*) => {
+    ($scalar:ident, $sqrt:ident, $sin_cos:ident; $($method:ident $(($argument:ident))? $libm:ident),*) => {
         impl Scalar for $scalar {
             $crate::one_number!();
 
@@ -288,6 +293,13 @@ macro_rules! floating_point {
                 #[cfg(not(feature = "roots"))]
                 { libm::$sqrt(self) }
             }
+            #[inline]
+            fn sin_cos(self) -> (Self, Self) {
+                #[cfg(feature = "std")]
+                { <$scalar>::sin_cos(self) }
+                #[cfg(not(feature = "std"))]
+                { libm::$sin_cos(self) }
+            }
             $(
                 #[inline]
                 fn $method(self $(, $argument: Self)?) -> Self {
@@ -301,9 +313,9 @@ macro_rules! floating_point {
     };
 }
 
-floating_point!(f64, sqrt; sin sin, cos cos, tan tan, asin asin, acos acos, atan atan,
+floating_point!(f64, sqrt, sincos; sin sin, cos cos, tan tan, asin asin, acos acos, atan atan,
                 sinh sinh, cosh cosh, tanh tanh, exp exp, ln log, powf(exponent) pow);
-floating_point!(f32, sqrtf; sin sinf, cos cosf, tan tanf, asin asinf, acos acosf, atan atanf,
+floating_point!(f32, sqrtf, sincosf; sin sinf, cos cosf, tan tanf, asin asinf, acos acosf, atan atanf,
                 sinh sinhf, cosh coshf, tanh tanhf, exp expf, ln logf, powf(exponent) powf);
 
 #[cfg(test)]

@@ -96,8 +96,8 @@ pub(crate) fn series<T: Real>(k: u32, s: T) -> T {
 
 fn closed<T: Real>(k: u32, s: T) -> T {
     let root = s.abs().sqrt();
-    let (even, odd) = if s > T::zero() { (root.cos(), root.sin() / root) } else { (root.cosh(), root.sinh() / root) };
-    let (mut value, mut index) = if k.is_multiple_of(2) { (even, 0) } else { (odd, 1) };
+    let (odd, even) = if s > T::zero() { root.sin_cos() } else { (root.sinh(), root.cosh()) };
+    let (mut value, mut index) = if k.is_multiple_of(2) { (even, 0) } else { (odd / root, 1) };
     while index < k {
         value = (inverse_factorial::<T>(index) - value) / s;
         index += 2;

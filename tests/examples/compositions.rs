@@ -18,7 +18,7 @@ use nalgebra::{DMatrix, DVector};
 
 /// ‖X1‖, ‖X3‖, ‖X5‖, … of the model: h³/24 is the first error of an oscillator, 2 arcsin(h/2) = h + h³/24 + ….
 ///
-/// The next ones halve. Larger ones count Σ γᵖ⁺¹ for more, the whole error of free bodies, whose X1, X3, … commute.
+/// The next ones halve. Larger ones count Σ γᵖ⁺¹ for more: the error of free bodies, whose X1, X3, … commute.
 /// Smaller ones count commutators for more, the error of particles in potentials.
 /// A rank here is a guess: sizes are taken after their steps are counted on random problems that are not in the model.
 const NORMS: [f64; 6] = [1.0, 1.0 / 24.0, 1.0 / 48.0, 1.0 / 96.0, 1.0 / 192.0, 1.0 / 384.0];
@@ -110,7 +110,7 @@ fn is_lyndon(word: &[usize]) -> bool {
     !word.is_empty() && (1..word.len()).all(|at| word < &word[at..])
 }
 
-/// An order p, and what it needs.
+/// An order p, and its conditions.
 struct Conditions {
     order: usize,
     /// The words of weight < p.

@@ -137,6 +137,8 @@ pub fn scene() -> Scene<22> {
         momentum_size: MOMENTUM.norm(),
         closed_form: None,
         reference_steps: 40_000,
+        longer: 10,
+        shows_sixteen: true,
         settings,
     }
 }

@@ -184,6 +184,8 @@ pub fn scene() -> Scene<12> {
         momentum_size: MOMENTUM.norm(),
         closed_form: Some(closed_form),
         reference_steps: 80_000,
+        longer: 10,
+        shows_sixteen: true,
         settings,
     }
 }

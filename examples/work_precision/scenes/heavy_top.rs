@@ -276,6 +276,8 @@ pub fn scene() -> Scene<12> {
         momentum_size: momentum.norm(),
         closed_form: None,
         reference_steps: 200_000,
+        longer: 10,
+        shows_sixteen: true,
         settings,
     }
 }

@@ -5,3 +5,4 @@ pub mod free_body;
 pub mod heavy_top;
 pub mod pendulum;
 mod rotation;
+pub mod satellite;

@@ -133,6 +133,8 @@ pub fn scene() -> Scene<6> {
         momentum_size: MOMENTUM.norm(),
         closed_form: None,
         reference_steps: 100_000,
+        longer: 10,
+        shows_sixteen: true,
         settings,
     }
 }

@@ -24,7 +24,11 @@ fn stages_are_those_of_gauss() {
 }
 
 fn step(h: f64, t: f64, y: [f64; 2], slope: impl Fn(f64, &[f64; 2]) -> [f64; 2]) -> Result<[f64; 2], Error> {
-    let change = collocate::<f64, 2, 8, 4>(&GAUSS_16, (t, h), &y, 0.0, SWEEPS, |_| y, slope)?;
+    let slope = |t: f64, [time]: &[f64; 1], y: &[f64; 2]| {
+        assert_eq!(*time, t, "the terms of a stage are those of its time");
+        slope(t, y)
+    };
+    let change = collocate::<f64, 2, 1, 8, 4>(&GAUSS_16, (t, h), &y, (0.0, SWEEPS), |_| y, |t| [t], slope)?;
     Ok([y[0] + change[0], y[1] + change[1]])
 }
 

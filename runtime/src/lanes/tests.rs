@@ -62,6 +62,8 @@ fn all_agree<L: Scalar<Lane = f64>>(x: [f64; 8], y: [f64; 8]) {
         "recip" |a, _b| Scalar::recip(a);
         "sin" |a, _b| Scalar::sin(a);
         "cos" |a, _b| Scalar::cos(a);
+        "sine of both" |a, _b| Scalar::sin_cos(a).0;
+        "cosine of both" |a, _b| Scalar::sin_cos(a).1;
         "tan" |a, _b| Scalar::tan(a);
         "asin" |a, _b| Scalar::asin(a);
         "acos" |a, _b| Scalar::acos(a);

@@ -9,13 +9,15 @@ use crate::space::{minus, plus};
 use crate::sums::Sums;
 use crate::{Error, Method, Scalar, Space};
 
-/// Steps of order 16 by collocation of (q, p), N numbers.
-pub type Collocated<const N: usize> = InSequence<Order<N>>;
+/// Steps of order 16 by collocation of (q, p), N numbers, whose slopes take K numbers of the time alone.
+pub type Collocated<const N: usize, const K: usize = 0> = InSequence<Order<N, K>>;
 
 /// The order of a [`Collocated`] step.
-pub struct Order<const N: usize>;
+pub struct Order<const N: usize, const K: usize>;
 
-impl<S: Substep<0, M> + HamiltonEquations<N, M>, M: Method<S>, const N: usize> Sequence<S, M> for Order<N> {
+impl<S: Substep<0, M> + HamiltonEquations<N, K, M>, M: Method<S>, const N: usize, const K: usize> Sequence<S, M>
+    for Order<N, K>
+{
     type Carry = Apart;
 
     /// N⁺ − N = J(q⁺, p⁺) − J(q, p) is computed from the changes of q and p at the middle of the step. This is exact,
@@ -49,7 +51,7 @@ impl<S: Substep<0, M> + HamiltonEquations<N, M>, M: Method<S>, const N: usize> S
 
 /// (q⁺ − q, p⁺ − p), by collocation at eight nodes.
 #[inline]
-fn change<S: HamiltonEquations<N, M>, M: Method<S>, const N: usize>(
+fn change<S: HamiltonEquations<N, K, M>, M: Method<S>, const N: usize, const K: usize>(
     At { system, constants, t, .. }: At<'_, S, M>,
     q: &Q<S>,
     p: &Q<S>,
@@ -63,14 +65,14 @@ fn change<S: HamiltonEquations<N, M>, M: Method<S>, const N: usize>(
         let q_there = moved(system, q, &x, &d);
         S::joined(&q_there, &system.lift(&q_there, p, &d))
     };
-    let change = collocate::<S::Scalar, N, 8, 4>(
+    let change = collocate::<S::Scalar, N, K, 8, 4>(
         &GAUSS_16,
         (t, S::step_size(constants)),
         &S::joined(q, p),
-        S::TOLERANCE,
-        S::SWEEPS,
+        (S::TOLERANCE, S::SWEEPS),
         along,
-        |t, y| system.slope(constants, t, y),
+        |t| system.terms_of_time(constants, t),
+        |t, terms, y| system.slope(constants, t, terms, y),
     )?;
     Ok(S::parted(&change))
 }

@@ -339,6 +339,8 @@ catalogue! {
     Isotropy = unlisted("", Hot);
     /// J(q, p) as a step computes it that maps covectors.
     MomentumOfStep = unlisted("", Hot);
+    /// The numbers of the time alone that the slopes of a step of order 16 take.
+    TermsOfTime = unlisted("", Hot);
     /// A covector p at q with J(q, p) = μ.
     Covector = unlisted("", Hot);
     /// The gradient of a term at all places that it reads.

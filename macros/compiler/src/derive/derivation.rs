@@ -230,12 +230,13 @@ fn energy(formulas: &MechanicsFormulas<'_>, lowered: &Lowered) -> String {
     let refused =
         if formulas.is_definite() { ", and `stepper()` refuses it without `signature = indefinite`" } else { "" };
     let symmetric = formulas.symmetric.sentences();
+    let parameters = formulas.parameters_of_signature();
     let signature = match formulas.signature() {
-        Some((_, 0)) => "positive definite for positive parameters".to_string(),
-        Some((0, _)) => format!("negative definite for positive parameters{refused}"),
+        Some((_, 0)) => format!("positive definite for {parameters}"),
+        Some((0, _)) => format!("negative definite for {parameters}{refused}"),
         Some((positive, negative)) => {
             format!(
-                "indefinite, of signature ({positive}, {negative}) for positive parameters: extremals are no minima{refused}"
+                "indefinite, of signature ({positive}, {negative}) for {parameters}: extremals are no minima{refused}"
             )
         }
         None => "of a signature that depends on the parameters".to_string(),

@@ -143,6 +143,17 @@ fn limit<'g>(expr: Expr<'g>, h: Expr<'g>) -> Option<Expr<'g>> {
     limit.is_defined().then_some(limit)
 }
 
+/// An energy that does not change with h, or the one that it is for short steps. A Lagrangian of the time is the mean of its
+/// values at t and at t + h.
+fn without_step<'g>(model: &System<'g>, energy: Expr<'g>) -> Option<Expr<'g>> {
+    let h = model.step_size;
+    if is_free_of_step(energy, h) {
+        let is_written = energy.depends_on(h);
+        return Some(if is_written { energy.substitute(&[(h, model.graph.integer(1))]) } else { energy });
+    }
+    if energy.depends_on(model.time) { limit(energy, h) } else { None }
+}
+
 /// Whether an expression does not change with h.
 fn is_free_of_step<'g>(expr: Expr<'g>, h: Expr<'g>) -> bool {
     let scaled = expr.substitute(&[(h, 2 * h)]);
@@ -268,19 +279,32 @@ pub(super) fn uniform<'g>(symbols: &Symbols<'g>, energy: Expr<'g>, inertia: Expr
     (is_still && symbols.algebra.iter().all(is_multiple)).then_some(kappa)
 }
 
-/// V(t, q): the declared potential and the potential in the cost.
-pub(super) fn potential<'g>(model: &System<'g>, lagrangian: &DiscreteLagrangian<'g>) -> Result<Expr<'g>, Diagnostics> {
+/// Whether a potential energy may push: the constants of a Lagrangian do not.
+pub(super) fn pushes(model: &Mechanics<'_>, potential: Expr<'_>) -> bool {
+    let is_declared = model.potential.is_some() || model.opaque.is_some();
+    !potential.is_zero() && (is_declared || model.reads_configuration(potential))
+}
+
+/// V(t, q): the declared potential and the potential in the cost, whose value for F = I is given.
+pub(super) fn potential<'g>(
+    model: &Mechanics<'g>,
+    lagrangian: &DiscreteLagrangian<'g>,
+    at_rest: Expr<'g>,
+) -> Result<Expr<'g>, Diagnostics> {
     let (h, graph) = (model.step_size, model.graph);
-    let held = if lagrangian.couples { lagrangian.kinetic.substitute(&identities(model)) } else { graph.integer(0) };
-    let energy = -((lagrangian.start + held) / h + lagrangian.end / h);
-    if is_free_of_step(energy, h) {
-        return Ok(if energy.depends_on(h) { energy.substitute(&[(h, graph.integer(1))]) } else { energy });
-    }
-    // a Lagrangian of the time is the mean of its values at t and at t + h
-    if energy.depends_on(model.time)
-        && let Some(limit) = limit(energy, h)
+    let energy = |held: Expr<'g>| -((lagrangian.start + held) / h + lagrangian.end / h);
+    // an energy that a body at rest has at every place, as m c², moves nothing; another value is left out
+    let is_single = model.power.is_none() && !lagrangian.couples;
+    let is_constant = is_single && !model.reads_configuration(at_rest) && at_rest.is_defined();
+    if is_constant
+        && !identity::vanishes(at_rest)
+        && let Some(energy) = without_step(model, energy(at_rest))
     {
-        return Ok(limit);
+        return Ok(energy);
+    }
+    let energy = energy(if lagrangian.couples { at_rest } else { graph.integer(0) });
+    if let Some(energy) = without_step(model, energy) {
+        return Ok(energy);
     }
     let place = model.spans.kinetic.place;
     bail!(place, "the part of the cost that depends on the configuration does not scale like an action";

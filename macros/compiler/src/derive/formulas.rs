@@ -3,7 +3,7 @@
 use std::fmt;
 use std::ops::Deref;
 
-use clebsch_symbolic::{Chart, Expr, Group, IntoList};
+use clebsch_symbolic::{Chart, Expr, Group, IntoList, Property, Role};
 
 use super::energy::is_multiple_of_identity;
 use super::{
@@ -129,15 +129,33 @@ impl<'g> Formulas<'g> {
     }
 }
 
-impl MechanicsFormulas<'_> {
+impl<'g> MechanicsFormulas<'g> {
     /// How many directions the kinetic energy is positive and negative in, for positive parameters.
     pub fn signature(&self) -> Option<(usize, usize)> {
-        if !is_multiple_of_identity(self.inertia) {
-            return signature::signature(self.inertia);
+        let (positive, negative) = signature::signature(self.block_of_inertia())?;
+        let copies = self.inertia.shape().rows / self.block_of_inertia().shape().rows;
+        Some((positive * copies, negative * copies))
+    }
+
+    /// Σ, or κ where it is κI.
+    fn block_of_inertia(&self) -> Expr<'g> {
+        if is_multiple_of_identity(self.inertia) { self.inertia.entry(0, 0) } else { self.inertia }
+    }
+
+    /// Whose parameters that is: those of any size, or typical ones, where others may have another signature.
+    pub fn parameters_of_signature(&self) -> &'static str {
+        let inertia = self.block_of_inertia();
+        let is_symmetric = |symbol: &Expr<'_>| {
+            matches!(symbol.role(), Some(Role::Parameter(_))) && symbol.property() == Property::Symmetric
+        };
+        let are_symmetric = inertia.symbols().iter().any(is_symmetric);
+        if !are_symmetric && signature::holds_for_all(inertia, false) {
+            "positive parameters"
+        } else if signature::holds_for_all(inertia, true) {
+            "positive parameters and positive definite matrices"
+        } else {
+            "typical parameters, and not for all positive ones"
         }
-        let (positive, negative) = signature::signature(self.inertia.entry(0, 0))?;
-        let dimension = self.inertia.shape().rows;
-        Some((positive * dimension, negative * dimension))
     }
 
     /// Of how many steps of second order a step is composed, where it is.
@@ -147,7 +165,7 @@ impl MechanicsFormulas<'_> {
 
     /// Whether nothing but the kinetic energy moves the system: no potential, and no other site.
     pub(super) fn moves_freely(&self) -> bool {
-        self.potential_energy.is_zero() && self.links.is_empty() && self.field.is_none()
+        !super::energy::pushes(&self.model, self.potential_energy) && self.links.is_empty() && self.field.is_none()
     }
 
     /// Whether this is the model of one of many sites.

@@ -111,6 +111,7 @@ fn mechanics(mut model: Mechanics<'_>) -> Result<MechanicsFormulas<'_>, Diagnost
         *energy = cross::shortened(*energy);
     }
     let KineticPart { declared, cost, energy, inertia, vertical } = kinetic_part(&mut model, &system)?;
+    let at_rest = declared.kinetic.substitute(&symbols::identities(&model));
     let lagrangian = discrete_lagrangian::separate(&model, cost);
     // symmetries and Legendre transforms are those of the declared cost
     let declared = if declared == cost { lagrangian } else { discrete_lagrangian::separate(&model, declared) };
@@ -119,7 +120,7 @@ fn mechanics(mut model: Mechanics<'_>) -> Result<MechanicsFormulas<'_>, Diagnost
     let field = field::of(&model, &system, cost.kinetic, covector.as_deref())?;
     let potential_energy = match &model.field {
         Some(field) => field.potential.unwrap_or_else(|| model.graph.integer(0)),
-        None => energy::potential(&model, &declared)?,
+        None => energy::potential(&model, &declared, at_rest)?,
     };
     let pushes = (potential_energy, covector.as_deref());
     let constraint = ConstraintFormulas::of(&model, &system, (&energy, inertia), pushes)?;
@@ -166,7 +167,8 @@ fn mechanics(mut model: Mechanics<'_>) -> Result<MechanicsFormulas<'_>, Diagnost
     let symmetries = symmetry::find(&sources(1), &declared, pushes, &tied);
     check_offers(&model, &symmetries)?;
     let splitting = splitting::splitting(&sources(1), &lagrangian, &substeps);
-    let is_exact = potential_energy.is_zero() && splitting::drifts_exactly(&model, &system.symbols, &substeps);
+    let is_exact =
+        !energy::pushes(&model, potential_energy) && splitting::drifts_exactly(&model, &system.symbols, &substeps);
     let is_free = system.is_free();
     let collocation =
         if is_exact { None } else { collocation::collocation(&sources(1), &energy, potential_energy, is_free)? };

@@ -1,6 +1,6 @@
 //! The signature of the kinetic energy: how many directions it is positive and negative in, for typical parameters.
 
-use clebsch_symbolic::{Expr, Matrix, Property, indexed};
+use clebsch_symbolic::{Expr, Matrix, Property, Role, indexed};
 
 #[cfg(test)]
 mod tests;
@@ -13,14 +13,70 @@ pub(super) fn signature(inertia: Expr<'_>) -> Option<(usize, usize)> {
     (1..4).all(|seed| at(seed) == Some(first)).then_some(first)
 }
 
+/// Whether the signature stays the same for positive parameters of different sizes and for stretched symmetric matrices. Other square
+/// matrices are positive definite too, or have positive entries.
+pub(super) fn holds_for_all(inertia: Expr<'_>, are_definite: bool) -> bool {
+    const TRIALS: u64 = 8;
+    let found = signature(inertia);
+    (0..TRIALS).all(|seed| {
+        let matrix = inertia.evaluate(&mut |symbol| extreme(symbol, seed, are_definite));
+        // in units in which all directions are alike, so that sizes do not hide a sign
+        let root = |i: usize| matrix.at(i, i).abs().sqrt();
+        let entry =
+            |(i, j)| if root(i) * root(j) > 0.0 { matrix.at(i, j) / (root(i) * root(j)) } else { matrix.at(i, j) };
+        squares(&Matrix::from_fn(matrix.shape, entry)) == found
+    })
+}
+
+/// A positive value of a parameter, between a thirtieth and thirty, or a positive definite matrix; other symbols are typical.
+fn extreme(symbol: Expr<'_>, seed: u64, are_definite: bool) -> Matrix<f64> {
+    let usual = typical(symbol, seed);
+    if !matches!(symbol.role(), Some(Role::Parameter(_) | Role::Constant(_))) {
+        return usual;
+    }
+    // each symbol has numbers of its own
+    let own = symbol.to_string().bytes().fold(seed, |own, byte| scrambled(own ^ u64::from(byte)));
+    let number = |i: usize, j: usize| (scrambled(own ^ (64 * i as u64 + j as u64)) >> 33) as f64 / (1_u64 << 31) as f64;
+    let shape = symbol.shape();
+    match symbol.property() {
+        property
+            if shape.is_square()
+                && !shape.is_scalar()
+                && (property == Property::Symmetric || property == Property::General && are_definite) =>
+        {
+            let product =
+                |i: usize, j: usize| (0..shape.rows).map(|k| (number(i, k) - 0.5) * (number(j, k) - 0.5)).sum();
+            Matrix::from_fn(shape, |(i, j)| product(i, j))
+        }
+        Property::Diagonal => {
+            Matrix::from_fn(shape, |(i, j)| if i == j { 30_f64.powf(2.0 * number(i, j) - 1.0) } else { 0.0 })
+        }
+        Property::General => Matrix::from_fn(shape, |(i, j)| 30_f64.powf(2.0 * number(i, j) - 1.0)),
+        _ => usual,
+    }
+}
+
+/// A number that has nothing to do with that of the next seed.
+///
+/// Source: Steele, Lea and Flood, *Fast splittable pseudorandom number generators*, 2014.
+fn scrambled(seed: u64) -> u64 {
+    let mixed = seed.wrapping_add(1).wrapping_mul(0x9e37_79b9_7f4a_7c15);
+    let mixed = (mixed ^ (mixed >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+    let mixed = (mixed ^ (mixed >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+    mixed ^ (mixed >> 31)
+}
+
+/// A number between 0 and 1 for a seed and a place.
+fn number(seed: u64, (i, j): (usize, usize)) -> f64 {
+    let place = ((i * 31 + j) as u64).wrapping_mul(0x2545_f491_4f6c_dd1d);
+    let mixed = (seed + 1).wrapping_mul(0x9e37_79b9_7f4a_7c15).wrapping_add(place);
+    (mixed >> 33) as f64 / (1_u64 << 31) as f64
+}
+
 /// A positive value of a symbol: a matrix is a multiple of the identity and a small rest.
 fn typical(symbol: Expr<'_>, seed: u64) -> Matrix<f64> {
     let shape = symbol.shape();
-    let number = |i: usize, j: usize| {
-        let place = ((i * 31 + j) as u64).wrapping_mul(0x2545_f491_4f6c_dd1d);
-        let mixed = (seed + 1).wrapping_mul(0x9e37_79b9_7f4a_7c15).wrapping_add(place);
-        (mixed >> 33) as f64 / (1_u64 << 31) as f64
-    };
+    let number = |i: usize, j: usize| number(seed, (i, j));
     let small = 0.1 / shape.rows as f64;
     Matrix::from_fn(shape, |(i, j)| match (shape.is_column(), i == j, symbol.property()) {
         (true, ..) => 0.5 + number(i, j),

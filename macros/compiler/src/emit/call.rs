@@ -19,6 +19,10 @@ impl Scope<'_, '_> {
             let is_gradient = matches!(callee, Callee::Gradient(_));
             return self.call_of_method(is_gradient, &arguments[0].1[0], quote!(&#configuration));
         }
+        if *callee == Callee::SineAndCosine {
+            let angle = self.code(&arguments[0].1[0], false);
+            return quote!(runtime::Scalar::sin_cos(#angle));
+        }
         let function = format_ident!("{callee}");
         let arguments = arguments.iter().map(|argument| self.grid(argument, false));
         quote!(runtime::#function(#(&#arguments),*))
@@ -55,6 +59,10 @@ impl Scope<'_, '_> {
             Callee::Gradient(_) => {
                 let access = &self.model.configurations[output.leaf - usize::from(self.takes_time())].accessor;
                 quote!(#name #access #index)
+            }
+            Callee::SineAndCosine => {
+                let place = syn::Index::from(output.row);
+                quote!(#name.#place)
             }
             _ => quote!(#name #index),
         }

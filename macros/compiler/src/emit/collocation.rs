@@ -12,15 +12,17 @@ use crate::derive::Id;
 impl Emitter<'_, '_> {
     /// The implementation of `HamiltonEquations`: the slope of (q, p), the covector of a momentum, and a guess.
     pub(super) fn hamilton_equations(&self) -> TokenStream {
-        let numbers = self.numbers_of_pair();
+        let (numbers, times) = (self.numbers_of_pair(), self.terms_of_time());
         let (scope, count) = (self.scope_of_step(), size(self.formulas.weighted().len()));
         let words = |word: &str| {
             let [q, p] = both([quote!(q), quote!(p)], |name| self.entries(&name));
             Some(match word {
                 "Numbers" => quote!([T; #numbers]),
-                "Equations" => self.trait_of_parts("HamiltonEquations", std::slice::from_ref(&numbers)),
-                "Slopes" => {
-                    let outputs = self.program.kernel(Id::HamiltonEquations).outputs.iter();
+                "Times" => quote!([T; #times]),
+                "Equations" => self.trait_of_parts("HamiltonEquations", &[numbers.clone(), times.clone()]),
+                "Slopes" | "Found" => {
+                    let id = if word == "Slopes" { Id::HamiltonEquations } else { Id::TermsOfTime };
+                    let outputs = self.program.kernel(id).outputs.iter();
                     let entries = outputs.flat_map(|(_, entries)| entries).map(|entry| scope.code(entry, false));
                     quote!([#(#entries),*])
                 }
@@ -46,7 +48,7 @@ impl Emitter<'_, '_> {
         let most = self.iterations().map(|most| quote!(const SWEEPS: ::core::primitive::u32 = #most;));
         let collocation = self.formulas.collocation.as_ref();
         let affine = collocation.filter(|collocation| collocation.is_affine).map(|_| flag("IS_AFFINE", true));
-        self.implementation("HamiltonEquations", &[numbers], quote!(#tolerance #most #affine #functions))
+        self.implementation("HamiltonEquations", &[numbers, times], quote!(#tolerance #most #affine #functions))
     }
 
     /// The entries of a configuration, leaf by leaf and rows first.
@@ -74,6 +76,11 @@ impl Emitter<'_, '_> {
                 _ => quote!(runtime::matrix([#(#rows),*])),
             }
         })
+    }
+
+    /// How many numbers slopes take of the time alone.
+    pub(super) fn terms_of_time(&self) -> Literal {
+        size(self.program.find(Id::TermsOfTime).map_or(0, |kernel| kernel.outputs.len()))
     }
 
     /// How many entries q and p have.

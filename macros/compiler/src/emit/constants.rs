@@ -5,6 +5,7 @@ use proc_macro2::{Ident, TokenStream};
 use quote::{format_ident, quote};
 
 use super::block::matrix;
+use super::functions::takes_constants;
 use super::scope::{Scope, index, size};
 use super::{Emitter, SystemEmitter};
 use crate::derive::{Id, RotatingBody, Solution};
@@ -60,10 +61,17 @@ impl Emitter<'_, '_> {
         });
         let formulas = &self.formulas;
         let is_scheduled = formulas.splitting.is_some() || formulas.collocation.is_some();
-        let needs_step_size = is_scheduled || self.keeps_matrices || self.has_constrained_edges();
+        let needs_step_size =
+            is_scheduled || self.keeps_matrices || self.has_constrained_edges() || self.reads_step_size();
         let step_size = needs_step_size.then(|| [quote!(step_size), quote!(T), quote!(: h)]);
         let inverse = (!formulas.inertia_moves()).then(|| [quote!(inertia_inverse), self.inverse().0, quote!()]);
         numbers.chain(orientations).chain(rotations).chain(bodies).chain(step_size).chain(inverse).into_list()
+    }
+
+    /// Whether unrolled code of a step reads h: together with the time it is no constant, as in cos(t + h).
+    fn reads_step_size(&self) -> bool {
+        let reads = |kernel: &Kernel| kernel.inputs().iter().any(|(input, _)| input.role == Role::StepSize);
+        self.kernels.all().any(|(id, kernel)| id != Id::Constants && takes_constants(id) && reads(kernel))
     }
 
     /// The type of Σ⁻¹, and the function that makes it.

@@ -50,6 +50,12 @@ macro_rules! functions {
     };
 }
 
+/// Whether a function that is handed the constants computes this kernel.
+pub(super) fn takes_constants(kernel: Id) -> bool {
+    let takes = |function: &Function| function.kernel.is_like(kernel) && function.arguments.contains("c: &C");
+    ALL.iter().copied().flatten().any(takes)
+}
+
 functions! {
     /// `Clebsch`, and those of `Method` among them, which are told the system.
     SYSTEM(false) {
@@ -306,8 +312,10 @@ functions! {
     /// `HamiltonEquations`: the equations that a step of order 16 collocates.
     HAMILTON_EQUATIONS(true) {
         fn step_size(c: &C) -> T { Id::Constants } = { c.step_size }
+        /// The numbers of the time alone that slopes take.
+        fn terms_of_time(&self, c: &C, t: T) -> Times { Id::TermsOfTime } = { Locals Found }
         /// Hamilton's equations: (q′, p′) at y = (q, p), all entries of q and then those of p, rows first.
-        fn slope(&self, c: &C, t: T, y: &Numbers) -> Numbers { Id::HamiltonEquations } = {
+        fn slope(&self, c: &C, t: T, terms: &Times, y: &Numbers) -> Numbers { Id::HamiltonEquations } = {
             let (q, p) = <Self as Equations>::parted(y); Locals Slopes
         }
         /// A covector p at q with the momentum J(q, p) = μ.

@@ -29,8 +29,8 @@ impl Emitter<'_, '_> {
             };
         }
         if self.formulas.collocation.is_some() {
-            let numbers = self.numbers_of_pair();
-            return quote!(runtime::Collocated<#numbers>);
+            let (numbers, times) = (self.numbers_of_pair(), self.terms_of_time());
+            return quote!(runtime::Collocated<#numbers, #times>);
         }
         if self.program.turns_in_plane() {
             return if self.is_free_on_great_circles() {

@@ -8,7 +8,7 @@ use quote::{ToTokens, quote};
 use super::block::{Block, Target, anonymous, leaf, matrix, time_type, types_of_system};
 use super::control::ControlTypes;
 use super::function::{Body, Function, Words, no_words};
-use super::functions::{BOUNDED, ENDED, EXPANDED, FORCED, PRICED, STEERED, SYSTEM};
+use super::functions::{BOUNDED, CONSERVES, ENDED, EXPANDED, FORCED, PRICED, STEERED, SYSTEM};
 use super::names::Names;
 use super::scope::nested_type;
 use crate::model::{Nested, Outline};
@@ -78,7 +78,14 @@ fn system(block: &Block<'_>, declaration: &Declaration, outline: &Outline) -> Op
         let functions = uncalled(&block, SYSTEM.iter().filter(|function| function.is_of_method()), &no_words);
         block.implementation_of_method(&method.name, &quote!(#stepping #functions))
     });
-    Some(quote!(#system #(#methods)*))
+    let functions = uncalled(block, CONSERVES, &no_words);
+    let conserved = quote! {
+        type Conserved = runtime::Conserved<T, 1>;
+        const CONSERVED_NAMES: &'static [&'static ::core::primitive::str] = &[""];
+        #functions
+    };
+    let conserves = block.target.derived(Some(quote!(runtime::Conserves)), conserved);
+    Some(quote!(#system #(#methods)* #conserves))
 }
 
 /// The trait `Controlled`, where the declaration chooses inputs.

@@ -1,5 +1,6 @@
 //! Kernels: straight-line code for some outputs. Terms that change less often are hoisted, and common terms are shared.
 
+mod angles;
 mod hoisted;
 mod proportional;
 mod shorten;
@@ -26,6 +27,8 @@ pub enum Hoisting<'a> {
     Constants(&'a mut Hoisted),
     /// In the stepper's constants and in the terms of the solve.
     Terms(&'a mut Hoisted, &'a mut Hoisted),
+    /// In the stepper's constants and in the terms of a time.
+    Times(&'a mut Hoisted, &'a mut Hoisted),
 }
 
 /// Makes a kernel of grids of outputs.
@@ -33,7 +36,10 @@ pub fn kernel(scalars: &mut Scalars, outputs: &[Grid], hoisting: Hoisting<'_>) -
     let is_iterated = matches!(hoisting, Hoisting::Terms(..));
     let (operations, products) = (Interner::default(), Pairs::default());
     let (sums, known, delays) = (Table::default(), Table::default(), Vec::new());
-    let mut builder = Builder { scalars, hoisting, outputs: Vec::new(), operations, products, sums, known, delays };
+    let (angles, entries) = (Vec::new(), Vec::new());
+    let mut builder =
+        Builder { scalars, hoisting, angles, outputs: entries, operations, products, sums, known, delays };
+    builder.angles = builder.angles_of(outputs);
     for entry in outputs.iter().flat_map(|grid| &grid.entries) {
         let entry = builder.convert(*entry);
         builder.outputs.push(entry);
@@ -94,6 +100,8 @@ impl Operation {
 struct Builder<'a, 'b> {
     scalars: &'a mut Scalars,
     hoisting: Hoisting<'b>,
+    /// Angles whose sine and cosine come from one call.
+    angles: Vec<Scalar>,
     /// The entries of all outputs.
     outputs: Vec<Id>,
     operations: Operations,
@@ -113,6 +121,15 @@ impl Builder<'_, '_> {
             Hoisting::Nothing => &[],
             Hoisting::Constants(_) => &[Rate::Once],
             Hoisting::Terms(..) => &[Rate::Once, Rate::Step],
+            Hoisting::Times(..) => &[Rate::Once, Rate::Time],
+        }
+    }
+
+    /// How often a value changes. A value of a time is fixed during a step where times are not told apart.
+    fn rate(&self, scalar: Scalar) -> Rate {
+        match (self.scalars.rate(scalar), &self.hoisting) {
+            (Rate::Time, Hoisting::Nothing | Hoisting::Constants(_) | Hoisting::Terms(..)) => Rate::Step,
+            (rate, _) => rate,
         }
     }
 
@@ -126,7 +143,7 @@ impl Builder<'_, '_> {
     }
 
     fn is_hoisted(&self, scalar: Scalar) -> bool {
-        !self.is_entry(scalar) && self.slow_rates().contains(&self.scalars.rate(scalar))
+        !self.is_entry(scalar) && self.slow_rates().contains(&self.rate(scalar))
     }
 
     fn intern(&mut self, operation: Operation) -> Id {
@@ -151,6 +168,9 @@ impl Builder<'_, '_> {
                 let operation = match node {
                     ScalarNode::Reciprocal(x) => Operation::Reciprocal(self.convert(x)),
                     ScalarNode::Root(x, exponent) => Operation::Root(self.convert(x), exponent),
+                    ScalarNode::Function(function @ (Function::Sin | Function::Cos), x) if self.angles.contains(&x) => {
+                        self.sine_or_cosine(function, x)
+                    }
                     ScalarNode::Function(function, x) => Operation::Function(function, self.convert(x)),
                     ScalarNode::Output(call, output) => {
                         let (callee, arguments) = self.scalars.call_of(call).clone();
@@ -171,8 +191,7 @@ impl Builder<'_, '_> {
     fn convert_sum(&mut self, mut constant: Rational, mut terms: Vec<(Scalar, Rational)>) -> Id {
         let mut parts = Vec::new();
         for &rate in self.slow_rates() {
-            let (slow, fast): (Vec<_>, Vec<_>) =
-                terms.into_iter().partition(|(term, _)| self.scalars.rate(*term) == rate);
+            let (slow, fast): (Vec<_>, Vec<_>) = terms.into_iter().partition(|(term, _)| self.rate(*term) == rate);
             terms = fast;
             if slow.is_empty() {
                 continue;
@@ -234,8 +253,7 @@ impl Builder<'_, '_> {
         let mut factors: Vec<Scalar> = repeated(factors).into_list();
         let mut parts = Vec::new();
         for &rate in self.slow_rates() {
-            let (slow, fast): (Vec<_>, Vec<_>) =
-                factors.into_iter().partition(|factor| self.scalars.rate(*factor) == rate);
+            let (slow, fast): (Vec<_>, Vec<_>) = factors.into_iter().partition(|factor| self.rate(*factor) == rate);
             factors = fast;
             if slow.is_empty() {
                 continue;
@@ -423,10 +441,15 @@ impl Builder<'_, '_> {
 
     fn leaf(&mut self, scalar: Scalar) -> Code {
         let hoisted = self.is_hoisted(scalar);
-        let rate = self.scalars.rate(scalar);
+        let rate = self.rate(scalar);
         let (known, kind): (_, fn(usize) -> Code) = match &mut self.hoisting {
             Hoisting::Terms(_, terms) if rate == Rate::Step => (terms, Code::Term),
-            Hoisting::Terms(constants, _) | Hoisting::Constants(constants) if hoisted => (constants, Code::Constant),
+            Hoisting::Times(_, terms) if hoisted && rate == Rate::Time => (terms, Code::Term),
+            Hoisting::Terms(constants, _) | Hoisting::Times(constants, _) | Hoisting::Constants(constants)
+                if hoisted =>
+            {
+                (constants, Code::Constant)
+            }
             _ => match self.scalars.node(scalar) {
                 ScalarNode::Input(input) => return Code::Read(input.clone()),
                 ScalarNode::Pi => return Code::Pi,

@@ -1,7 +1,7 @@
 //! The fourth stage: from matrix formulas to kernels of straight-line scalar code.
 //!
-//! A kernel is one small function of generated code. Three rates decide where a value is computed: once per stepper (the
-//! constants), once per solve (the terms), or where it is used.
+//! A kernel is one small function of generated code. Rates decide where a value is computed: once per stepper (the
+//! constants), once per solve (the terms), or where it is used. Steps of order 16 have a fourth: once for the time of a stage.
 
 mod balance;
 mod code;

@@ -170,6 +170,7 @@ impl fmt::Display for Callee {
             Callee::Analytic(Analytic::MotionLogarithm) => f.write_str("motion_logarithm"),
             Callee::PhiTimes => f.write_str("phi_times"),
             Callee::Inverse => f.write_str("inverse"),
+            Callee::SineAndCosine => f.write_str("sin_cos"),
             Callee::Value(name) => f.write_str(name),
             Callee::Gradient(name) => write!(f, "gradient of {name}"),
         }

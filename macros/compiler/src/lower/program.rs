@@ -83,6 +83,7 @@ const OF_SYSTEM: Names<Id> = &[
     ("kick", Id::SplittingKick),
     ("kick_gradient", Id::SplittingGradient),
     ("slope", Id::HamiltonEquations),
+    ("terms_of_time", Id::TermsOfTime),
     ("covector", Id::Covector),
     ("whole_guess", Id::Guess),
     ("momentum_of_step", Id::MomentumOfStep),
@@ -171,6 +172,11 @@ impl KernelTable {
     /// The kernel with an id, where a system has it.
     pub fn find(&self, id: Id) -> Option<&Kernel> {
         self.kernels.iter().find(|(other, _)| *other == id).map(|(_, kernel)| kernel)
+    }
+
+    /// All kernels, with their ids.
+    pub fn all(&self) -> impl Iterator<Item = (Id, &Kernel)> {
+        self.kernels.iter().map(|(id, kernel)| (*id, kernel))
     }
 
     /// Those that a system has of these kernels.

@@ -15,6 +15,8 @@ pub(super) type Factors = Vec<(Scalar, u32)>;
 pub enum Rate {
     /// Fixed by the parameters and the step size.
     Once,
+    /// Fixed at a time.
+    Time,
     /// Fixed during a step.
     Step,
     /// Different in each iteration.
@@ -26,6 +28,7 @@ impl Rate {
     pub fn of(role: Role) -> Rate {
         match role {
             Role::StepSize | Role::Parameter(_) | Role::Constant(_) | Role::InertiaInverse => Rate::Once,
+            Role::Time => Rate::Time,
             Role::Chart(_) => Rate::Iteration,
             _ => Rate::Step,
         }
@@ -63,6 +66,8 @@ pub enum Callee {
     PhiTimes,
     /// The inverse of a matrix, with pivoting.
     Inverse,
+    /// (sin x, cos x), which share the reduction of the angle.
+    SineAndCosine,
     /// A method of the user's.
     Value(String),
     /// The gradient method of the same potential, with one matrix for each argument of the configuration.
@@ -131,6 +136,8 @@ pub struct Scalars {
     pub keeps_matrices: bool,
     /// The names of sums that have one in formulas.
     pub(super) names: Vec<(Scalar, String)>,
+    /// Angles whose sine and cosine have both been met.
+    pub(super) angles: Vec<Scalar>,
     nodes: Interner<ScalarNode>,
     rates: Vec<Rate>,
     calls: Interner<(Callee, Vec<Rc<Grid>>)>,
@@ -149,6 +156,20 @@ impl Scalars {
     /// The identity of an expression that is there.
     pub(super) fn known(&self, node: &ScalarNode) -> Option<Scalar> {
         self.nodes.position(node).map(|position| Scalar(position as u32))
+    }
+
+    /// Hands on the scalars that an expression is made of.
+    pub(super) fn each_part(&self, scalar: Scalar, mut visit: impl FnMut(Scalar)) {
+        match self.node(scalar) {
+            ScalarNode::Input(_) | ScalarNode::Pi => {}
+            ScalarNode::Sum(_, terms) => terms.iter().for_each(|(term, _)| visit(*term)),
+            ScalarNode::Product(factors) => factors.iter().for_each(|(factor, _)| visit(*factor)),
+            ScalarNode::Reciprocal(x) | ScalarNode::Root(x, _) | ScalarNode::Function(_, x) => visit(*x),
+            ScalarNode::Output(call, _) => {
+                let (_, arguments) = self.call_of(*call);
+                arguments.iter().flat_map(|grid| &grid.entries).for_each(|entry| visit(*entry));
+            }
+        }
     }
 
     /// How often its value changes.
@@ -363,6 +384,15 @@ impl Scalars {
     /// An elementary function.
     pub fn function(&mut self, function: Function, x: Scalar) -> Scalar {
         let rate = self.rate(x);
+        let other = match function {
+            Function::Sin => Some(Function::Cos),
+            Function::Cos => Some(Function::Sin),
+            _ => None,
+        };
+        let is_both = other.is_some_and(|other| self.known(&ScalarNode::Function(other, x)).is_some());
+        if is_both && !self.angles.contains(&x) {
+            self.angles.push(x);
+        }
         self.intern(ScalarNode::Function(function, x), rate)
     }
 

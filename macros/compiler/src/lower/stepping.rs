@@ -102,8 +102,14 @@ impl<'g> Maker<'_, 'g> {
         let Some(collocation) = &formulas.collocation else { return };
         let slopes: Vec<_> = collocation.velocity.iter().chain(&collocation.force).copied().into_list();
         self.known_rows([Id::Guess]);
-        for (id, expressions) in [(Id::HamiltonEquations, &slopes), (Id::Covector, &collocation.lift)] {
-            self.add(id, |scalars, hoisted| separate(scalars, expressions, Hoisting::Constants(hoisted)));
+        let mut terms = Hoisted::default();
+        self.add(Id::HamiltonEquations, |scalars, hoisted| match scalars.keeps_matrices {
+            true => separate(scalars, &slopes, Hoisting::Constants(hoisted)),
+            false => separate(scalars, &slopes, Hoisting::Times(hoisted, &mut terms)),
+        });
+        self.add(Id::Covector, |scalars, hoisted| separate(scalars, &collocation.lift, Hoisting::Constants(hoisted)));
+        if terms.kept().next().is_some() {
+            self.add(Id::TermsOfTime, |scalars, hoisted| terms.kernel(scalars, Hoisting::Constants(hoisted)));
         }
     }
 

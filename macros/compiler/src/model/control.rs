@@ -99,6 +99,10 @@ impl<'g> ActedSystem<'_, '_, 'g> {
     pub fn choice(&mut self, control: &parse::Choice, input: &Space<'g>, is_steered: bool) -> Option<InputChoice<'g>> {
         let diagnostics = self.context.diagnostics;
         let [leaf] = input.leaves.as_slice() else {
+            if input.leaves.is_empty() {
+                refuse!(diagnostics, control.price.head, "no force takes the input that `effort` prices";
+                    help "write `force = |omega, u: Vector3| …`, with the input behind the velocity");
+            }
             refuse!(diagnostics, control.price.head, "the input has to be one vector";
                 help "write `u: Vector3`, with all inputs in one vector");
         };

@@ -145,7 +145,9 @@ fn explain(field: &Field) -> Diagnostic {
         "bool" => Some("write `f64`, with the values 0 and 1".into()),
         "String" | "str" => Some("write a number".into()),
         _ if matches!(field.ty, Type::Reference(_)) => Some("keep the value itself, without `&`".into()),
-        _ => hint(&ty).or_else(|| Some(format!("write the numbers of `{text}` as fields of this struct"))),
+        _ => hint(&ty).or_else(|| {
+            Some(format!("write the numbers of `{text}` as fields of this struct; if it is another name of a type, write that type, as `f64`"))
+        }),
     };
     error!(&field.ty, "a closure reads `self.{name}`, and its type `{text}` has no meaning there")
         .maybe_help(help)

@@ -84,9 +84,9 @@ impl<'g> Scope<'g> {
         }
         let name = ident.unraw().to_string();
         if self.arguments().any(|argument| *argument == name) {
+            // the lines that follow mean the new value
             report!(diagnostics, ident, "`{name}` is an argument and cannot be redefined";
                 help "choose another name"; note "a `let` may replace a `let`, and nothing else");
-            return;
         }
         self.names.push((name, value));
     }

@@ -4,6 +4,7 @@ use clebsch_symbolic::{Elements, IntoList};
 use syn::ext::IdentExt;
 
 use super::arguments::TypedArguments;
+use super::elaborate::reserved;
 use super::references;
 use super::scope::check_reserved;
 use crate::diagnostic::{Diagnostic, error, report};
@@ -154,6 +155,15 @@ impl<'d> TypedArguments<'d> {
     }
 }
 
+/// The time or the step among these slots, where a pattern is its name in other programs.
+fn other_name(pattern: &Pattern, slots: &[Slot]) -> Option<Slot> {
+    let slot = match reserved(&pattern.spell())? {
+        "t" => Slot::Time,
+        _ => Slot::Step,
+    };
+    slots.contains(&slot).then_some(slot)
+}
+
 /// Whether slots are those of a step: of its motion, its price or its bounds.
 fn is_of_step(slots: &[Slot]) -> bool {
     slots.contains(&Slot::Chosen) || slots.contains(&Slot::Input)
@@ -200,11 +210,15 @@ impl<'d> Matched<'d> {
         if let Some(last) = untyped.checked_sub(1).filter(|_| slots.contains(&Slot::Velocity))
             && taken[last].is_none()
             && !names.is_known(&arguments[last].pattern)
+            && other_name(&arguments[last].pattern, slots).is_none()
         {
             taken[last] = Some(Slot::Velocity);
         }
         // a velocity before the other arguments is in another order
-        let is_new = |position: &usize| taken[*position].is_none() && !names.is_known(&arguments[*position].pattern);
+        let is_new = |position: &usize| {
+            let pattern = &arguments[*position].pattern;
+            taken[*position].is_none() && !names.is_known(pattern) && other_name(pattern, slots).is_none()
+        };
         let new: Vec<usize> = (0..untyped).filter(is_new).into_list();
         if let &[only] = new.as_slice()
             && slots.contains(&Slot::Velocity)
@@ -378,24 +392,36 @@ impl<'d> Matched<'d> {
     fn unknown(&self, position: usize) -> Diagnostic {
         let Argument { pattern, .. } = &self.closure.arguments[position];
         let (name, key) = (pattern.spell(), &self.closure.key);
-        if let Some(error) = self.without_type(position).or_else(|| self.reference_without_type(position)) {
+        if let Some(error) = self
+            .in_other_order(position)
+            .or_else(|| self.without_type(position))
+            .or_else(|| self.reference_without_type(position))
+        {
             return error;
         }
         if let Some((_, help)) = self.of_velocity().filter(|(velocity, _)| velocity.matches(pattern)) {
             return error!(pattern.place(), "the {key} cannot depend on the velocity `{name}`"; help "{help}");
+        }
+        let is_input = self.names.input.is_some_and(|input| input.holds(pattern));
+        if key == "lagrangian" && is_input && !self.has(Slot::Velocity) {
+            return error!(pattern.place(), "`{name}` is the velocity in the {key}, and the input of a force or of the price";
+                help "give one of them another name"; note "a force takes the velocity, and the input behind it with its type");
         }
         let error = if self.names.is_known(pattern) {
             error!(pattern.place(), "the {key} cannot depend on `{name}`")
         } else {
             error!(pattern.place(), "cannot find `{name}` in the {key}")
         };
-        let meant = self.meant(position);
+        let meant = self.called_otherwise(pattern).or_else(|| self.meant(position));
         let head = self.head(meant);
         let error = error.help(match meant.map(|slot| (slot, self.names.names(slot))) {
             Some((Slot::Velocity, (name, _))) if self.is_price() && self.names.declared_velocity().is_some() => {
                 format!("the velocity is called `{name}`: write `{head}`")
             }
             Some((Slot::Velocity, (_, meaning))) => format!("give {meaning}: write `{head}`"),
+            Some((Slot::Time | Slot::Step, (known, meaning))) => {
+                format!("{meaning} is called `{known}`: write `{head}`")
+            }
             Some((_, (known, meaning))) => format!("the action calls {meaning} `{known}`: write `{head}`"),
             None => format!("write `{head}`"),
         });
@@ -413,6 +439,40 @@ impl<'d> Matched<'d> {
         };
         let order = if self.slots.len() > 1 { ", in this order" } else { "" };
         error.note(format!("arguments go by name: {}{order}", joined(self.slots.iter().map(describe))))
+    }
+
+    /// The error for an input before the velocity, where all other arguments are known.
+    fn in_other_order(&self, position: usize) -> Option<Diagnostic> {
+        let arguments = &self.closure.arguments;
+        let has_input = self.slots.contains(&Slot::Velocity) && self.slots.contains(&Slot::Input);
+        let input = arguments.iter().position(|argument| argument.ty.is_some()).filter(|_| has_input)?;
+        let is_new = |&at: &usize| arguments[at].ty.is_none() && !self.names.is_known(&arguments[at].pattern);
+        let new: Vec<usize> = (0..arguments.len()).filter(is_new).into_list();
+        let &[velocity] = new.as_slice() else { return None };
+        let is_declared =
+            self.names.declared_velocity().is_some_and(|known| known.matches(&arguments[velocity].pattern));
+        // with references behind the input, another new name may be one of these that has no type
+        let is_other = self.slots.contains(&Slot::Reference) && !is_declared;
+        let is_slip = other_name(&arguments[velocity].pattern, self.slots).is_some();
+        let is_one = |at: usize| at == input || at == velocity;
+        let are_known =
+            (0..arguments.len()).all(|at| is_one(at) || self.taken[at].is_some() && arguments[at].ty.is_none());
+        if is_other || is_slip || velocity < input || !is_one(position) || !are_known {
+            return None;
+        }
+        let of_slot = |slot: &Slot| match slot {
+            Slot::Velocity => vec![arguments[velocity].spell()],
+            Slot::Input => vec![arguments[input].spell()],
+            slot => {
+                let takes = |at: &usize| !is_one(*at) && self.taken[*at] == Some(*slot);
+                (0..arguments.len()).filter(takes).map(|at| arguments[at].spell()).into_list()
+            }
+        };
+        let head = joined(self.slots.iter().flat_map(of_slot));
+        let (key, place) = (&self.closure.key, arguments[position].pattern.place());
+        let (input, velocity) = (arguments[input].pattern.spell(), arguments[velocity].pattern.spell());
+        Some(error!(place, "the input `{input}` of the {key} stands before the velocity `{velocity}`";
+            help "write `|{head}|`"; note "the velocity has no type, and the input has one"))
     }
 
     /// The error for two new names at the end: the velocity, and an input without a type.
@@ -457,6 +517,11 @@ impl<'d> Matched<'d> {
             help "write `|{head}|`, with the type of the reference"; note "{note}"))
     }
 
+    /// The time or the step where an unknown argument has another name for it.
+    fn called_otherwise(&self, pattern: &Pattern) -> Option<Slot> {
+        other_name(pattern, self.slots).filter(|slot| !self.has(*slot))
+    }
+
     /// The slot that an unknown argument most likely stands for: the last one that is free before those behind it.
     fn meant(&self, position: usize) -> Option<Slot> {
         let behind = &self.taken[position + 1..];
@@ -473,7 +538,13 @@ impl<'d> Matched<'d> {
 
     /// The arguments as they should be.
     pub fn head(&self, meant: Option<Slot>) -> String {
-        let wanted = self.slots.iter().copied().filter(|slot| self.has(*slot) || Some(*slot) == meant);
+        // also those that are there by other names
+        let is_called = |slot: Slot| {
+            let free = self.arguments().filter(|(_, taken)| taken.is_none());
+            free.into_iter().any(|(argument, _)| self.called_otherwise(&argument.pattern) == Some(slot))
+        };
+        let is_wanted = |slot: &Slot| self.has(*slot) || Some(*slot) == meant || is_called(*slot);
+        let wanted = self.slots.iter().copied().filter(is_wanted);
         let given = |slot: Slot| -> Vec<String> {
             let arguments = self.arguments().filter(|(_, taken)| *taken == Some(slot));
             arguments.map(|(argument, _)| argument.spell()).into_list()

@@ -186,7 +186,7 @@ pub enum Order {
     Second = 2,
     /// Five steps of second order.
     Fourth = 4,
-    /// Nine steps of second order.
+    /// Eleven steps of second order.
     Sixth = 6,
     /// Seventeen steps of second order.
     Eighth = 8,

@@ -31,6 +31,10 @@ pub(super) fn read(word: &Ident, stream: ParseStream, keys: &mut Keys) -> Result
         bail!(&name, "the method `{name}` is declared twice";
             help "remove one of the two, or write another unit struct for it");
     }
+    if stream.peek(Token![::]) {
+        bail!(&name, "a method is named by one word";
+            help "write `use` with the path of the unit struct, and its last word here: `method Fine = (order = 6)`");
+    }
     let is_list = stream.parse::<Token![=]>().is_ok() && stream.peek(syn::token::Paren);
     if !is_list {
         bail!(&name, "the method `{name}` has no dials"; help "write `method {name} = (order = 6)`");

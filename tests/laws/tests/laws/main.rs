@@ -5,6 +5,7 @@
 mod agreement;
 mod composition;
 mod double_double;
+mod energies;
 mod equivalence;
 mod groups;
 mod language;

@@ -101,7 +101,7 @@ macro_rules! largest {
     };
 }
 
-/// Unrolled code shares terms among sites, and multiplies gradients with h at once. It differs by rounding, 20 steps of at most 9 stages.
+/// Unrolled code shares terms among sites, and multiplies gradients with h at once. It differs by rounding, 20 steps of at most 11 stages.
 #[test]
 fn tied_sites_differ_by_rounding() {
     let in_double = largest!(f64, [first_order second_order fourth_order] [one three]);

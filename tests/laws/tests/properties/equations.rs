@@ -316,8 +316,8 @@ proptest! {
     fn collocation_follows_linear_equations(omega in 0.1_f64..2.0, nu in 0.1_f64..2.0, h in -0.5_f64..0.5, start in vector::<4>(1.0)) {
         prop_assume!(h.abs() > 1e-3);
         let [q, r, p, s]: [f64; 4] = start.into();
-        let slope = |_: f64, y: &[f64; 4]| [y[2], y[3], -omega * omega * y[0], -nu * nu * y[1]];
-        let change = private::collocate::<_, 4, 8, 4>(&private::GAUSS_16, (0.0, h), &[q, r, p, s], 0.0, private::SWEEPS, |_| [q, r, p, s], slope)?;
+        let slope = |_: f64, &[]: &[f64; 0], y: &[f64; 4]| [y[2], y[3], -omega * omega * y[0], -nu * nu * y[1]];
+        let change = private::collocate::<_, 4, 0, 8, 4>(&private::GAUSS_16, (0.0, h), &[q, r, p, s], (0.0, private::SWEEPS), |_| [q, r, p, s], |_| [], slope)?;
         let (first, second) = (oscillation(omega, h, (q, p)), oscillation(nu, h, (r, s)));
         let found = (SVector::from(change) + start).into();
         let [q, r, p, s]: [f64; 4] = found;

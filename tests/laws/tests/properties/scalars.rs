@@ -77,6 +77,16 @@ proptest! {
         are_elementary::<f32>(x, y, 3.0);
     }
 
+    /// An expansion may take both for one angle where another takes one of them: bits must not depend on that.
+    #[test]
+    fn both_functions_of_an_angle_are_those_taken_apart(angle in prop_oneof![-20.0_f64..20.0, any::<f64>()]) {
+        let (sine, cosine) = Scalar::sin_cos(angle);
+        prop_assert_eq!([sine.to_bits(), cosine.to_bits()], [Scalar::sin(angle).to_bits(), Scalar::cos(angle).to_bits()]);
+        let angle = angle as f32;
+        let (sine, cosine) = Scalar::sin_cos(angle);
+        prop_assert_eq!([sine.to_bits(), cosine.to_bits()], [Scalar::sin(angle).to_bits(), Scalar::cos(angle).to_bits()]);
+    }
+
     /// By repeated multiplication: n roundings at most, and one of the reciprocal for each.
     #[test]
     fn powers_are_products(x in 0.5_f64..2.0, n in -40_i32..40) {

@@ -47,6 +47,19 @@ fn symmetric(top: &WatchedTop, q: &Matrix3<f64>, p: &Matrix3<f64>) -> Result<(Ma
     Ok((next, p + Substep::<0>::end_gradient(top, &constants, 0.0, &next).expect("a gradient")))
 }
 
+/// A point on a line that the time pushes and pulls.
+#[derive(Clebsch, Clone, Debug)]
+#[clebsch(
+    action     = |a: Translation<1>, x: Vector1| x + a,
+    lagrangian = |v| v.norm_squared() / 2,
+    potential  = |t, x| self.strength * ((self.rate * t).sin() * x.norm_squared() - (self.rate * t).cos() * x.x),
+    order      = 16,
+)]
+struct Pushed {
+    strength: f64,
+    rate: f64,
+}
+
 /// How a top of sixth order is stepped.
 type SixthOrder = <SixthOrderTop as Clebsch>::Scheme;
 
@@ -187,7 +200,7 @@ proptest! {
         assert_near(&HamiltonEquations::<8>::momentum(&top, &q, &p), &mu, NEAR, "J(q, p) of a step");
         let y = <CollocatedTop as HamiltonEquations<8>>::joined(&q, &p);
         prop_assert_eq!(<CollocatedTop as HamiltonEquations<8>>::parted(&y), (q, p));
-        let (dq, dp) = <CollocatedTop as HamiltonEquations<8>>::parted(&HamiltonEquations::<8>::slope(&top, &constants, 0.0, &y));
+        let (dq, dp) = <CollocatedTop as HamiltonEquations<8>>::parted(&HamiltonEquations::<8>::slope(&top, &constants, 0.0, &[], &y));
         // Ad* keeps |μ| and the potential pushes across the vertical: μ̇·Rᵀe₃ = 0
         let slope = top.momentum_map(&dq, &p) + top.momentum_map(&q, &dp);
         let velocity = mu.component_div(&top.moments);
@@ -198,6 +211,18 @@ proptest! {
         let half = <CollocatedTop as HamiltonEquations<8>>::part(&guess, 0.5);
         let f = CollocatedTop::element(&top.increment(&half));
         assert_near(&(f.imag() * 4.0 / H), &velocity, 1e-2, "ω");
+    }
+
+    /// A force of the time alone: p′ is made of the terms of that time, and q′ of p.
+    #[test]
+    fn slopes_take_the_terms_of_their_time(strength in 0.5_f64..2.0, rate in 0.1_f64..3.0, t in -5.0_f64..5.0, x in vector::<1>(1.0), p in vector::<1>(1.0)) {
+        let pushed = Pushed { strength, rate };
+        let constants = pushed.constants(H)?;
+        let terms: [f64; 2] = pushed.terms_of_time(&constants, t);
+        let [velocity, force] = pushed.slope(&constants, t, &terms, &[x.x, p.x]);
+        prop_assert_eq!(velocity, p.x);
+        let expected = strength * ((rate * t).cos() - 2.0 * (rate * t).sin() * x.x);
+        prop_assert!((force - expected).abs() < NEAR, "{force} for {expected}");
     }
 
     /// A great circle is turned by h/κ: of a point that nothing pushes that is its angle.

@@ -78,6 +78,10 @@ impl Run<'_> {
                 Matrix::from_fn(arguments[1].shape, |(i, _)| row(i))
             }
             Callee::Inverse => arguments[0].inverse().0,
+            Callee::SineAndCosine => {
+                let (sine, cosine) = arguments[0].at(0, 0).sin_cos();
+                Matrix::new(Shape::new(2, 1), vec![sine, cosine])
+            }
             Callee::Value(name) | Callee::Gradient(name) => panic!("no numbers are known of the method `{name}`"),
         }
     }

@@ -163,7 +163,8 @@ impl<'a, 'g> Stepper<'a, 'g> {
         let found = self.momentum_map(&state.q, &p);
         let missed = found.iter().zip(&state.mu).fold(0.0, |most: f64, (a, b)| most.max((a - b).abs()));
         self.momentum_map(&state.q, &p);
-        let slopes = self.run(self.program.kernel(Id::HamiltonEquations));
+        let terms = self.run(self.program.kernel(Id::TermsOfTime)).concat();
+        let slopes = self.values.run(self.program.kernel(Id::HamiltonEquations), &self.constants, &terms);
         let (q, slope) = slopes.split_at(state.q.len());
         let origin: Vec<Vec<f64>> = state.q.iter().map(|leaf| vec![0.0; leaf.len()]).collect();
         let [along, at_origin, pushed] =

@@ -147,7 +147,7 @@ fn a_forgotten_transpose_is_a_negative_energy() {
         message.starts_with("the kinetic energy is negative for every velocity") && message.contains("`.transpose()`")
     );
     assert!(ForgottenTranspose::DERIVATION.contains(
-        "It is negative definite for positive parameters, and `stepper()` refuses it without `signature = indefinite`."
+        "It is negative definite for positive parameters and positive definite matrices, and `stepper()` refuses it without `signature = indefinite`."
     ));
 }
 

@@ -3,7 +3,7 @@
 use clebsch::{Clebsch, Scalar};
 use nalgebra::Matrix3;
 
-/// Nine steps in one, each at its own time.
+/// Eleven steps in one, each at its own time.
 #[derive(Clebsch, Clone, Debug)]
 #[clebsch(
     action     = |F: SO<3>, R: SO<3>| R * F,

@@ -1,12 +1,13 @@
 //! Blocks: `let`s, then a value; or an equation `a == b`, which stands only where a key asks for one.
 
+use clebsch_symbolic::IntoList;
 use syn::{BinOp, Block, Expr as Syntax, Local, Stmt};
 
 use super::super::scope::bindings;
 use super::errors::is_assignment;
 use super::{Elaborator, Value};
 use crate::diagnostic::{error, refuse, report};
-use crate::parse::{Pattern, shortened};
+use crate::parse::{Pattern, shortened, spell_tokens};
 
 /// The loop or the assignment that a statement is.
 fn imperative(statement: &Stmt) -> Option<&Syntax> {
@@ -65,15 +66,36 @@ impl<'g> Elaborator<'_, '_, 'g> {
             report!(diagnostics, &typed.ty, "a `let` has no type"; help "remove it: the shape follows from the value");
             pattern = &typed.pat;
         }
-        let pattern = Pattern::read(pattern, diagnostics);
         let value = match &local.init {
             Some(init) if init.diverge.is_none() => self.elaborate(&init.expr),
             _ => {
                 diagnostics.refuse(error!(local, "a `let` has a value and no `else`"; help "write `let name = value;`"))
             }
         };
-        if let Some(pattern) = pattern {
-            self.bind(&pattern, value, "a `let`");
+        self.bind_parts(pattern, value);
+    }
+
+    /// Introduces the names of a pattern: a name, a tuple, or `[a, b]` of an array.
+    fn bind_parts(&mut self, pattern: &syn::Pat, value: Option<Value<'g>>) {
+        let diagnostics = self.context.diagnostics;
+        let syn::Pat::Slice(slice) = pattern else {
+            if let Some(pattern) = Pattern::read(pattern, diagnostics) {
+                self.bind(&pattern, value, "a `let`");
+            }
+            return;
+        };
+        let parts = match value {
+            Some(Value::Array(parts)) if parts.len() == slice.elems.len() => parts.into_iter().map(Some).into_list(),
+            other => {
+                if let Some(value) = other {
+                    report!(diagnostics, slice, "`{}` does not fit {}", spell_tokens(slice), value.describe();
+                        help "write as many names as the array has parts, or one for all");
+                }
+                vec![None; slice.elems.len()]
+            }
+        };
+        for (pattern, value) in slice.elems.iter().zip(parts) {
+            self.bind_parts(pattern, value);
         }
     }
 

@@ -170,7 +170,11 @@ impl<'g> Elaborator<'_, '_, 'g> {
         let error = error!(&call.func, "the function `{}` is not known in the {}", spell(&call.func), self.key);
         let is_method = METHODS.iter().any(|(method, ..)| *method == name);
         self.refuse(match call.args.first().filter(|_| is_method) {
-            Some(first) => error.help(format!("write `{}.{name}()`", parenthesized(strip(first)))),
+            Some(first) => {
+                let is_of_number = name == "log" && self.key != "space" && call.args.len() == 1;
+                let method = if is_of_number { "ln" } else { &name };
+                error.help(format!("write `{}.{method}()`", parenthesized(strip(first))))
+            }
             None => {
                 let error = error.help("write its formula here").maybe_help(self.opaque());
                 error.note("a macro cannot look into functions")

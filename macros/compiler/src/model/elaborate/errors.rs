@@ -95,7 +95,7 @@ pub(super) fn no_product(link: &ExprBinary, left: Expr, right: Expr, meant: Opti
             String::new()
         };
         error.help(format!("write the matrix first: `{b} * {a}`{quadratic}"))
-    } else if left.rows == right.rows {
+    } else if left.rows == right.rows && (left.rows > 1 || left.columns != right.columns) {
         error.help(format!("transpose the first: `{a}.transpose() * {b}`"))
     } else if left.columns == right.columns {
         error.help(format!("transpose the second: `{a} * {b}.transpose()`"))

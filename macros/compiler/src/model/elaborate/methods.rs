@@ -146,6 +146,10 @@ impl<'g> Elaborator<'_, '_, 'g> {
             return self.refuse(error.help(format!("write `{}`", parts.len())));
         }
         if NEEDLESS.contains(&name) {
+            // the error of the receiver names the text for both
+            if has_error {
+                return None;
+            }
             let error = error.help(format!("write `{receiver}` alone"));
             return self.refuse(error.note("every value is copied, and arrays are mapped as they are"));
         }
@@ -250,8 +254,9 @@ impl<'g> Elaborator<'_, '_, 'g> {
             (false, Value::Sequence(range, body)) => self.sum_over_sites(call, range, *body),
             (is_map, other) => {
                 let (text, is, sum) = (spell(&call.receiver), other.describe(), if is_map { "" } else { ".sum()" });
+                let sites = self.context.power.as_ref().map_or("3".to_string(), |power| power.length.to_string());
                 refuse!(self, method, "`{text}` is {is}: `{method}` is of an array or a range";
-                    help "write `(0..3).map(|i| …){sum}`")
+                    help "write `(0..{sites}).map(|i| …){sum}`")
             }
         }
     }

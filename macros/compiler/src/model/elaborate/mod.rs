@@ -31,6 +31,7 @@ use super::value::Value;
 use super::{Constant, Written};
 use crate::diagnostic::{Diagnostic, Diagnostics, error, refuse};
 use crate::parse::{Closure, parenthesized, shortened, spell};
+pub(super) use names::reserved;
 
 /// Operators and methods inside each other.
 const DEPTH: usize = 200;

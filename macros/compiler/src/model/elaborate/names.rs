@@ -17,6 +17,11 @@ const DIGITS: usize = 400;
 /// Usual names of the time and of the step, with those in closures.
 const RESERVED: [(&[&str], &str); 2] = [(&["time", "now"], "t"), (&["dt", "step", "timestep", "time_step"], "h")];
 
+/// The reserved name that other programs replace by this one.
+pub(in crate::model) fn reserved(name: &str) -> Option<&'static str> {
+    RESERVED.iter().find(|(others, _)| others.contains(&name)).map(|&(_, reserved)| reserved)
+}
+
 impl<'g> Elaborator<'_, '_, 'g> {
     /// A name, or the path of a constant.
     pub(super) fn path(&mut self, path: &ExprPath) -> Option<Value<'g>> {
@@ -82,8 +87,7 @@ impl<'g> Elaborator<'_, '_, 'g> {
         let names = || self.scope.names.iter().map(|(name, _)| name.as_str());
         let advice =
             |name: &str| self.scope.missing.iter().find(|(known, _)| known == name).map(|(_, help)| help.clone());
-        let reserved = RESERVED.iter().find(|(others, _)| others.contains(&name)).map(|&(_, reserved)| reserved);
-        let of_reserved = reserved.map(|reserved| match advice(reserved) {
+        let of_reserved = reserved(name).map(|reserved| match advice(reserved) {
             Some(help) => format!("the name is `{reserved}`; {help}"),
             None => format!("write `{reserved}`"),
         });
@@ -91,6 +95,7 @@ impl<'g> Elaborator<'_, '_, 'g> {
         let missing = advice(name).or(of_reserved.filter(|_| !is_field));
         self.refuse(match missing.or_else(|| self.similar(name, names())) {
             Some(help) => error.help(help),
+            None if name == "pi" => error.help("write `core::f64::consts::PI`"),
             None if name.chars().all(char::is_uppercase) => error
                 .help(format!("if it is a constant, write `self::{name}`, or its path"))
                 .note("a single letter is taken for an argument, a longer name in capitals for a constant"),

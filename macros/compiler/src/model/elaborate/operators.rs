@@ -34,6 +34,11 @@ impl<'g> Elaborator<'_, '_, 'g> {
         let first = &chain[chain.len() - 1].left;
         let mut value = self.elaborate(first);
         for link in chain.into_iter().rev() {
+            if let (BinOp::Mul(_), Some(power)) = (&link.op, power(&link.right)) {
+                let base = base(&link.left);
+                refuse!(self, &link.op, "there is no operator `**`";
+                    help "write `{}.powi({1})` for a whole number, `.powf({1})` for another one", parenthesized(base), spell(power));
+            }
             let right = self.elaborate(&link.right);
             value = match &link.op {
                 BinOp::Add(_) | BinOp::Sub(_) | BinOp::Mul(_) | BinOp::Div(_) | BinOp::Rem(_) => {
@@ -298,6 +303,23 @@ impl<'g> Elaborator<'_, '_, 'g> {
             _ => refuse!(self, &unary.op, "this operator has no meaning in the {}", self.key;
                 note "the only sign is `-`"),
         }
+    }
+}
+
+/// The number in `* 2`, the second half of `x**2`.
+fn power(right: &Syntax) -> Option<&Syntax> {
+    match right {
+        Syntax::Unary(ExprUnary { op: UnOp::Deref(_), expr, .. }) if matches!(**expr, Syntax::Lit(_)) => Some(expr),
+        _ => None,
+    }
+}
+
+/// The last factor before it, which it is a power of: without a sign.
+fn base(left: &Syntax) -> &Syntax {
+    match left {
+        Syntax::Binary(product) => &product.right,
+        Syntax::Unary(ExprUnary { op: UnOp::Neg(_), expr, .. }) => expr,
+        other => other,
     }
 }
 
