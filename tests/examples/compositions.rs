@@ -12,6 +12,7 @@
 //! Sources: Hairer, Lubich and Wanner, *Geometric Numerical Integration*, section V.3.2; Sofroniou and Spaletta,
 //! *Derivation of symmetric composition constants for symmetric integrators*, Optim. Methods Softw. 20 (2005) 597–613.
 
+use clebsch::__private::{OfOrderEight, OfOrderFour, OfOrderSix, Sizes};
 use clebsch::{DoubleDouble, Scalar};
 use clebsch_tests::oracle::random::Random;
 use nalgebra::{DMatrix, DVector};
@@ -262,13 +263,14 @@ fn rough(numbers: &[DoubleDouble]) -> Vec<f64> {
     numbers.iter().map(|number| number.parts()[0]).collect()
 }
 
-/// Published sizes: Suzuki (1990), Kahan and Li (1997), Sofroniou and Spaletta (2005).
-const PUBLISHED: [(usize, &str, &[f64]); 6] = [
-    (4, "Suzuki", &[0.414_490_771_794_375_7, 0.414_490_771_794_375_7, -0.657_963_087_177_503]),
+/// Sizes of others and of the runtime: Suzuki (1990), Kahan and Li (1997), Sofroniou and Spaletta (2005).
+const KNOWN: [(usize, &str, &[f64]); 7] = [
+    (4, "Suzuki", &<OfOrderFour as Sizes<3>>::SIZES),
+    (6, "in use", &<OfOrderSix as Sizes<6>>::SIZES),
     (6, "K and L", &KL6),
     (6, "S and S", &SS11),
     (6, "S and S", &SS13),
-    (8, "K and L", &KL8),
+    (8, "K and L", &<OfOrderEight as Sizes<9>>::SIZES),
     (8, "S and S", &SS21),
 ];
 
@@ -295,17 +297,6 @@ const SS13: [f64; 7] = [
     -0.350_003_248_939_209,
     0.118_055_306_530_023_87,
     0.399_077_515_348_714_55,
-];
-const KL8: [f64; 9] = [
-    0.130_202_483_088_890_07,
-    0.561_162_981_775_108_4,
-    -0.389_474_962_644_847_27,
-    0.158_841_906_555_155_6,
-    -0.395_903_894_133_237_57,
-    0.184_539_640_978_315_7,
-    0.258_374_387_686_322_04,
-    0.295_011_723_609_310_3,
-    -0.605_508_533_830_034_6,
 ];
 const SS21: [f64; 11] = [
     0.106_477_289_845_500_32,
@@ -335,7 +326,7 @@ fn main() {
     println!("order steps  sizes     steps a s  largest |γ|    ‖log_p+1‖ ‖log_p+3‖");
     for (order, searches) in SEARCHES {
         let conditions = Conditions::new(order);
-        for (_, name, half) in PUBLISHED.iter().filter(|(of, _, _)| *of == order) {
+        for (_, name, half) in KNOWN.iter().filter(|(of, _, _)| *of == order) {
             conditions.report(name, half);
         }
         for &(steps, starts, width) in searches {

@@ -1,13 +1,14 @@
 //! A fast top with three moments of inertia.
 
 use super::rotation::{
-    Compact, compact, compact_rates, defect, pack, pack_quaternion, rates, split, split_compact, unpack_compact,
+    Compact, compact, compact_rates, defect, last_row, pack, pack_quaternion, rates, split, split_compact, tilted,
+    tilted_quaternion, unpack_compact,
 };
 use crate::classical::{Equation, VectorField};
 use crate::motion::Scene;
 use crate::setting::{Setting, declared};
 use clebsch::Clebsch;
-use nalgebra::{Matrix3, Quaternion, Rotation3, UnitQuaternion, Vector3, Vector6};
+use nalgebra::{Matrix3, Vector3, Vector6};
 use std::hint::black_box;
 
 const MOMENTS: Vector3<f64> = Vector3::new(1.0, 1.5, 2.0);
@@ -163,8 +164,8 @@ fn declarations(inertia: Matrix3<f64>, weight: f64, center: Vector3<f64>) -> Vec
     let top = Top { inertia, weight, center };
     let turn = Turn { inertia, weight, center };
     let chord = Chord { inertia, weight, center };
-    let start = (tilted(), inertia * VELOCITY);
-    let turned = (tilted_quaternion(), inertia * VELOCITY);
+    let start = (tilted(TILT), inertia * VELOCITY);
+    let turned = (tilted_quaternion(TILT), inertia * VELOCITY);
     vec![
         declared(ExactFirst, "exact", top, start, pack),
         declared(ExactSecond, "exact", top, start, pack),
@@ -218,14 +219,6 @@ fn declarations(inertia: Matrix3<f64>, weight: f64, center: Vector3<f64>) -> Vec
     ]
 }
 
-fn tilted() -> Matrix3<f64> {
-    *Rotation3::from_axis_angle(&Vector3::x_axis(), TILT).matrix()
-}
-
-fn tilted_quaternion() -> Quaternion<f64> {
-    UnitQuaternion::from_axis_angle(&Vector3::x_axis(), TILT).into_inner()
-}
-
 /// Euler's equations with the torque of the weight.
 #[derive(Clone)]
 struct Swinging {
@@ -239,7 +232,7 @@ impl VectorField<7> for Swinging {
     fn rates(&self, y: &Compact) -> Compact {
         let (attitude, momentum) = split_compact(y);
         let omega = self.inverse.component_mul(&momentum);
-        let torque = vertical(&attitude).cross(&self.moment);
+        let torque = last_row(&attitude).cross(&self.moment);
         compact_rates(&attitude, &omega, &(momentum.cross(&omega) + torque))
     }
 }
@@ -260,14 +253,14 @@ pub fn scene() -> Scene<12> {
         momentum.dot(&(inverse * momentum)) / 2.0 + weight * (attitude * center).z
     };
     let mut settings = declarations(inertia, weight, center);
-    let start = compact(&tilted_quaternion(), &momentum);
+    let start = compact(&tilted_quaternion(TILT), &momentum);
     let equation = Swinging { inverse: inverse.diagonal(), moment: center * weight };
     settings.extend(Equation { field: equation, start, flat: unpack_compact }.settings());
     Scene {
         name: "heavy_top",
         title: "heavy top",
         duration: 50.0,
-        start: pack(&tilted(), &momentum),
+        start: pack(&tilted(TILT), &momentum),
         field: Box::new(field),
         energy: Box::new(energy),
         momenta,
@@ -280,13 +273,6 @@ pub fn scene() -> Scene<12> {
         shows_sixteen: true,
         settings,
     }
-}
-
-/// The last row of the rotation.
-#[inline]
-fn vertical(q: &Quaternion<f64>) -> Vector3<f64> {
-    let (i, j, k, w) = (q.i, q.j, q.k, q.w);
-    Vector3::new(2.0 * (i * k - w * j), 2.0 * (j * k + w * i), w * w - i * i - j * j + k * k)
 }
 
 /// The spatial momentum about the vertical.

@@ -1,6 +1,6 @@
 //! Bodies that turn in space, as matrices and as quaternions.
 
-use nalgebra::{Matrix3, Quaternion, SVector, UnitQuaternion, Vector3};
+use nalgebra::{Matrix3, Quaternion, Rotation3, SVector, UnitQuaternion, Vector3};
 
 /// Attitude by columns and body momentum, as the scenes compare them.
 pub type Body = SVector<f64, 12>;
@@ -46,6 +46,23 @@ pub fn rates(attitude: &Matrix3<f64>, omega: &Vector3<f64>, torque: &Vector3<f64
 /// Q̇ = Q ω/2 and π̇.
 pub fn compact_rates(attitude: &Quaternion<f64>, omega: &Vector3<f64>, torque: &Vector3<f64>) -> Compact {
     compact(&(attitude * Quaternion::from_imag(omega / 2.0)), torque)
+}
+
+/// Turned about the first axis by this angle, rad.
+pub fn tilted(angle: f64) -> Matrix3<f64> {
+    *Rotation3::from_axis_angle(&Vector3::x_axis(), angle).matrix()
+}
+
+/// The same as a quaternion.
+pub fn tilted_quaternion(angle: f64) -> Quaternion<f64> {
+    UnitQuaternion::from_axis_angle(&Vector3::x_axis(), angle).into_inner()
+}
+
+/// The last row of the rotation.
+#[inline(always)]
+pub fn last_row(q: &Quaternion<f64>) -> Vector3<f64> {
+    let (i, j, k, w) = (q.i, q.j, q.k, q.w);
+    Vector3::new(2.0 * (i * k - w * j), 2.0 * (j * k + w * i), w * w - i * i - j * j + k * k)
 }
 
 /// The rotation of a quaternion that is near a unit one.

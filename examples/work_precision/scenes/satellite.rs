@@ -4,13 +4,14 @@
 //! nothing depends on the time.
 
 use super::rotation::{
-    Body, Compact, compact, compact_rates, defect, pack, pack_quaternion, rates, split, split_compact, unpack_compact,
+    Body, Compact, compact, compact_rates, defect, last_row, pack, pack_quaternion, rates, split, split_compact,
+    tilted, tilted_quaternion, unpack_compact,
 };
 use crate::classical::{Equation, VectorField};
 use crate::motion::Scene;
 use crate::setting::{Setting, declared};
 use clebsch::Clebsch;
-use nalgebra::{Matrix3, Quaternion, Rotation3, SVector, UnitQuaternion, Vector3, Vector6};
+use nalgebra::{Matrix3, Quaternion, Rotation3, SVector, Vector3, Vector6};
 use std::hint::black_box;
 
 const MOMENTS: Vector3<f64> = Vector3::new(1.0, 1.5, 2.0);
@@ -89,8 +90,8 @@ struct Turn {
 fn declarations(inertia: Matrix3<f64>, rate: f64) -> Vec<Box<dyn Setting<12>>> {
     let satellite = Satellite { inertia, rate };
     let turn = Turn { inertia, rate };
-    let start = (tilted(), inertia * VELOCITY);
-    let turned = (tilted_quaternion(), inertia * VELOCITY);
+    let start = (tilted(TILT), inertia * VELOCITY);
+    let turned = (tilted_quaternion(TILT), inertia * VELOCITY);
     vec![
         declared(ExactSecond, "exact", satellite, start, pack).seen_from(orbit),
         declared(ExactFourth, "exact", satellite, start, pack).seen_from(orbit),
@@ -118,14 +119,6 @@ fn declarations(inertia: Matrix3<f64>, rate: f64) -> Vec<Box<dyn Setting<12>>> {
 fn orbit(time: f64, y: &Body) -> Body {
     let (attitude, momentum) = split(y);
     pack(&(Rotation3::from_axis_angle(&Vector3::z_axis(), -RATE * time).matrix() * attitude), &momentum)
-}
-
-fn tilted() -> Matrix3<f64> {
-    *Rotation3::from_axis_angle(&Vector3::x_axis(), TILT).matrix()
-}
-
-fn tilted_quaternion() -> Quaternion<f64> {
-    UnitQuaternion::from_axis_angle(&Vector3::x_axis(), TILT).into_inner()
 }
 
 /// Euler's equations with the torque 3n² y × Σy, and the turn of the body in the orbit's frame, ω − Aᵀn.
@@ -169,7 +162,7 @@ pub fn scene() -> Scene<12> {
         momentum.dot(&(inverse * momentum)) / 2.0 + potential - rate * (attitude * momentum).z
     };
     let mut settings = declarations(inertia, rate);
-    let start = compact(&tilted_quaternion(), &momentum);
+    let start = compact(&tilted_quaternion(TILT), &momentum);
     let equation =
         Orbiting { moments: inertia.diagonal(), inverse: inverse.diagonal(), rate, gradient: 3.0 * rate * rate };
     settings.extend(Equation { field: equation, start, flat: unpack_compact }.settings());
@@ -177,7 +170,7 @@ pub fn scene() -> Scene<12> {
         name: "satellite",
         title: "satellite",
         duration: 50.0,
-        start: pack(&tilted(), &momentum),
+        start: pack(&tilted(TILT), &momentum),
         field: Box::new(field),
         energy: Box::new(energy),
         momenta: |_: &SVector<f64, 12>| Vector6::zeros(),
@@ -197,11 +190,4 @@ pub fn scene() -> Scene<12> {
 fn first_row(q: &Quaternion<f64>) -> Vector3<f64> {
     let (i, j, k, w) = (q.i, q.j, q.k, q.w);
     Vector3::new(w * w + i * i - j * j - k * k, 2.0 * (i * j - w * k), 2.0 * (i * k + w * j))
-}
-
-/// The last row of the rotation.
-#[inline(always)]
-fn last_row(q: &Quaternion<f64>) -> Vector3<f64> {
-    let (i, j, k, w) = (q.i, q.j, q.k, q.w);
-    Vector3::new(2.0 * (i * k - w * j), 2.0 * (j * k + w * i), w * w - i * i - j * j + k * k)
 }

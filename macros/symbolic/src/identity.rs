@@ -16,6 +16,11 @@ use crate::{Expr, Group, IntoList, Property, Rational, Shape, Table};
 
 pub(crate) const PRIME: u64 = (1 << 61) - 1;
 
+/// A number from 0 to 1 that depends on all bits of the seeds and on nothing else.
+pub fn fraction(seeds: &[u64]) -> f64 {
+    Residue::mixed(seeds).0 as f64 / PRIME as f64
+}
+
 /// An element of the field of integers modulo the prime 2⁶¹ − 1.
 #[derive(Copy, Clone, PartialEq, Eq, Debug)]
 pub struct Residue(u64);

@@ -20,7 +20,8 @@ fn main() -> Result<(), clebsch::Error> {
     let stepper = top.stepper(0.01)?;
     let start = stepper.state(Matrix3::identity(), Vector3::x())?;
     for state in stepper.trajectory(start).take(10) {
-        println!("{}", state?.momentum());
+        let state = state?;
+        println!("{} {}", state.momentum(), stepper.conserved(&state));
     }
     Ok(())
 }

@@ -1,9 +1,12 @@
 //! The signature of the kinetic energy: how many directions it is positive and negative in, for typical parameters.
 
-use clebsch_symbolic::{Expr, Matrix, Property, Role, indexed};
+use clebsch_symbolic::{Expr, IntoList, Matrix, Property, Role, identity, indexed};
 
 #[cfg(test)]
 mod tests;
+
+/// The first seed of extreme values: those of typical ones are below.
+const EXTREMES: u64 = 100;
 
 /// The numbers of positive and of negative squares in ½ ξ·Σξ, if they are the same for several positive parameters.
 /// Scalars and entries of vectors are positive, and matrices positive definite.
@@ -20,7 +23,7 @@ pub(super) fn holds_for_all(inertia: Expr<'_>, are_definite: bool) -> bool {
     let found = signature(inertia);
     (0..TRIALS).all(|seed| {
         let matrix = inertia.evaluate(&mut |symbol| extreme(symbol, seed, are_definite));
-        // in units in which all directions are alike, so that sizes do not hide a sign
+        // in units in which all directions are alike: sizes hide no sign.
         let root = |i: usize| matrix.at(i, i).abs().sqrt();
         let entry =
             |(i, j)| if root(i) * root(j) > 0.0 { matrix.at(i, j) / (root(i) * root(j)) } else { matrix.at(i, j) };
@@ -28,15 +31,13 @@ pub(super) fn holds_for_all(inertia: Expr<'_>, are_definite: bool) -> bool {
     })
 }
 
-/// A positive value of a parameter, between a thirtieth and thirty, or a positive definite matrix; other symbols are typical.
+/// A positive value of a parameter, between a thirtieth and thirty, or a positive definite matrix. Other symbols are typical.
 fn extreme(symbol: Expr<'_>, seed: u64, are_definite: bool) -> Matrix<f64> {
     let usual = typical(symbol, seed);
     if !matches!(symbol.role(), Some(Role::Parameter(_) | Role::Constant(_))) {
         return usual;
     }
-    // each symbol has numbers of its own
-    let own = symbol.to_string().bytes().fold(seed, |own, byte| scrambled(own ^ u64::from(byte)));
-    let number = |i: usize, j: usize| (scrambled(own ^ (64 * i as u64 + j as u64)) >> 33) as f64 / (1_u64 << 31) as f64;
+    let number = numbers(symbol, seed + EXTREMES);
     let shape = symbol.shape();
     match symbol.property() {
         property
@@ -56,27 +57,16 @@ fn extreme(symbol: Expr<'_>, seed: u64, are_definite: bool) -> Matrix<f64> {
     }
 }
 
-/// A number that has nothing to do with that of the next seed.
-///
-/// Source: Steele, Lea and Flood, *Fast splittable pseudorandom number generators*, 2014.
-fn scrambled(seed: u64) -> u64 {
-    let mixed = seed.wrapping_add(1).wrapping_mul(0x9e37_79b9_7f4a_7c15);
-    let mixed = (mixed ^ (mixed >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-    let mixed = (mixed ^ (mixed >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-    mixed ^ (mixed >> 31)
-}
-
-/// A number between 0 and 1 for a seed and a place.
-fn number(seed: u64, (i, j): (usize, usize)) -> f64 {
-    let place = ((i * 31 + j) as u64).wrapping_mul(0x2545_f491_4f6c_dd1d);
-    let mixed = (seed + 1).wrapping_mul(0x9e37_79b9_7f4a_7c15).wrapping_add(place);
-    (mixed >> 33) as f64 / (1_u64 << 31) as f64
+/// Numbers from 0 to 1 for the entries of a symbol, other ones for each symbol and seed.
+fn numbers(symbol: Expr<'_>, seed: u64) -> impl Fn(usize, usize) -> f64 {
+    let seeds = symbol.to_string().bytes().map(u64::from).chain([seed]).into_list();
+    move |i, j| identity::fraction(&[seeds.as_slice(), &[i as u64, j as u64]].concat())
 }
 
 /// A positive value of a symbol: a matrix is a multiple of the identity and a small rest.
 fn typical(symbol: Expr<'_>, seed: u64) -> Matrix<f64> {
     let shape = symbol.shape();
-    let number = |i: usize, j: usize| number(seed, (i, j));
+    let number = numbers(symbol, seed);
     let small = 0.1 / shape.rows as f64;
     Matrix::from_fn(shape, |(i, j)| match (shape.is_column(), i == j, symbol.property()) {
         (true, ..) => 0.5 + number(i, j),

@@ -141,7 +141,7 @@ impl Scope<'_, '_> {
         }
         match input.role {
             Role::StepSize => match &self.constants {
-                // unrolled code has all terms that depend on h in its constants
+                // terms of h alone are constants of unrolled code, and terms of h and t read h itself
                 Some(constants) => quote!(#constants.step_size),
                 None => quote!(h),
             },

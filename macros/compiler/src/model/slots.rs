@@ -451,7 +451,7 @@ impl<'d> Matched<'d> {
         let &[velocity] = new.as_slice() else { return None };
         let is_declared =
             self.names.declared_velocity().is_some_and(|known| known.matches(&arguments[velocity].pattern));
-        // with references behind the input, another new name may be one of these that has no type
+        // with references behind the input, another new name may be one of these.
         let is_other = self.slots.contains(&Slot::Reference) && !is_declared;
         let is_slip = other_name(&arguments[velocity].pattern, self.slots).is_some();
         let is_one = |at: usize| at == input || at == velocity;
@@ -540,8 +540,8 @@ impl<'d> Matched<'d> {
     pub fn head(&self, meant: Option<Slot>) -> String {
         // also those that are there by other names
         let is_called = |slot: Slot| {
-            let free = self.arguments().filter(|(_, taken)| taken.is_none());
-            free.into_iter().any(|(argument, _)| self.called_otherwise(&argument.pattern) == Some(slot))
+            let is = |pattern| self.called_otherwise(pattern) == Some(slot);
+            self.arguments().any(|(argument, taken)| taken.is_none() && is(&argument.pattern))
         };
         let is_wanted = |slot: &Slot| self.has(*slot) || Some(*slot) == meant || is_called(*slot);
         let wanted = self.slots.iter().copied().filter(is_wanted);

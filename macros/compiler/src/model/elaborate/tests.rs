@@ -240,6 +240,8 @@ fn sequences_and_blocks() {
         ("(F, [q, q])",                                   "(F, [q, q])"),
         ("{ let a1 = h; let a1 = a1 * 2; a1 }",           "2·h"),
         ("{ let (u, v) = (h, 2); u + { let u = v; u } }", "h + 2"),
+        ("{ let [u, v] = self.pair; u - v }",             "pair[0] − pair[1]"),
+        ("{ let [u, [v, w]] = [h, [2, 3]]; u * v * w }",  "6·h"),
         ("vector![h, 2, 3].y",                            "2"),
         ("vector![1, 2, 3]",                              "[1; 2; 3]"),
         ("matrix![h, 0; 0, 1]",                           "[h, 0; 0, 1]"),
@@ -343,6 +345,8 @@ fn names_that_are_not_known() {
         ("println!(\"\")",              "unknown macro `println!` in the cost"),
         ("{ let h = 1; h }",            "`h` is reserved and cannot be the name of a `let`"),
         ("{ let F = 1; F }",            "`F` is an argument and cannot be redefined"),
+        ("{ let [u, v, w] = self.pair; u }", "`[u, v, w]` does not fit an array of 2"),
+        ("{ let [u, v] = (h, 2); u }",  "`[u, v]` does not fit a tuple of 2"),
         ("(0..2).map(|q| q).sum()",     "`q` is an argument and cannot be redefined"),
     ]);
 }
