@@ -36,12 +36,18 @@ pub fn claim<const N: usize>(scene: &Scene<N>, exact: &Exact<N>, points: &[Point
     }
 
     let declared = || by_setting(points).filter(|points| points[0].is_geometric());
-    let off: Vec<f64> = declared().filter(|points| !is_collocated(points)).filter_map(off_order).collect();
+    let off: Vec<f64> = declared()
+        .filter(|points| !is_collocated(points))
+        .filter_map(|points| off_order(points, scene.least_error))
+        .collect();
     let reason = "relative, largest; the last halving with errors of 6e-11 to 1e-2, of the energy at order 1; not to a tolerance";
     let all = declared().filter(|points| points[0].name.tolerance.is_none() && !is_collocated(points)).count();
     let measured = format!("orders of {} of {all} settings are those declared", off.len());
     claims.at_most(&name(&measured), largest(off), SLOPE, reason);
-    let off: Vec<f64> = declared().filter(|points| is_collocated(points)).filter_map(off_order).collect();
+    let off: Vec<f64> = declared()
+        .filter(|points| is_collocated(points))
+        .filter_map(|points| off_order(points, scene.least_error))
+        .collect();
     if scene.shows_sixteen && !off.is_empty() {
         let reason = "relative, largest; the same errors, in steps of the size of the motion itself";
         claims.at_most(&name("the order of collocation is nearest to 16"), largest(off), SLOPE_16, reason);
@@ -78,12 +84,12 @@ fn is_collocated(points: &[Point]) -> bool {
 }
 
 /// How far the measured order of a setting is from the declared one, relative; `None` where too few errors lie in the window.
-fn off_order(points: &[Point]) -> Option<f64> {
+fn off_order(points: &[Point], least: f64) -> Option<f64> {
     let order = f64::from(points[0].name.order);
     if points[0].name.tolerance.is_some() {
         return None;
     }
-    slope(points).map(|slope| (slope / order - 1.0).abs())
+    slope(points, least).map(|slope| (slope / order - 1.0).abs())
 }
 
 /// The energy error in the second half over that in the first, for the longest steps with a small error.

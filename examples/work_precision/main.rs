@@ -1,4 +1,4 @@
-//! The price of accuracy: every setting of five scenes and two classical methods, from long steps to short ones.
+//! The price of accuracy: every setting of seven scenes and two classical methods, from long steps to short ones.
 //!
 //! A setting is a discretization with an order. Times are those of one core; machines are noisy, so take their ratios.
 
@@ -22,7 +22,7 @@ use report::Csv;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-/// Work and precision: error against time for all settings of five scenes, next to RK4 and DOP853
+/// Work and precision: error against time for all settings of seven scenes, next to RK4 and DOP853
 #[derive(Parser, Debug)]
 #[command(name = "work_precision")]
 struct Flags {
@@ -49,6 +49,8 @@ enum Choice {
     #[value(name = "body4")]
     Body4,
     Satellite,
+    Orbit,
+    NarrowOrbit,
 }
 
 impl Flags {
@@ -87,6 +89,12 @@ fn run(flags: &Flags) -> Result<Claims, Failure> {
     if flags.includes(Choice::Satellite) {
         study.scene(&scenes::satellite::scene())?;
     }
+    if flags.includes(Choice::Orbit) {
+        study.scene(&scenes::orbit::scene("orbit", "orbit of eccentricity 0.9", 0.9))?;
+    }
+    if flags.includes(Choice::NarrowOrbit) {
+        study.scene(&scenes::orbit::scene("narrow_orbit", "orbit of eccentricity 0.99", 0.99))?;
+    }
     say("advice: the cheapest declaration for an error, and what classical methods need");
     for line in &study.advice {
         say(format_args!("  {line}"));
@@ -113,7 +121,7 @@ impl Study<'_> {
             "{} over {} s, against a reference that is known to {:.0e}\n",
             scene.title, scene.duration, exact.error
         ));
-        say(report::settings(&points));
+        say(report::settings(&points, scene.least_error));
         say(report::points(&points, self.flags.full));
         if let Some(csv) = &mut self.csv {
             csv.points(scene.name, &points)?;

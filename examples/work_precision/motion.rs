@@ -12,6 +12,9 @@ pub type Observable<const N: usize> = Box<dyn Fn(&SVector<f64, N>) -> f64>;
 /// Three components of the momentum at a time.
 pub type ClosedForm = fn(f64) -> Option<Vector3<f64>>;
 
+/// A motion at a time, and its rounding error.
+pub type Known<const N: usize> = Box<dyn Fn(f64) -> (SVector<f64, N>, f64)>;
+
 /// A motion of N numbers: the configuration, then the momentum.
 pub struct Scene<const N: usize> {
     /// For flags and files.
@@ -36,10 +39,14 @@ pub struct Scene<const N: usize> {
     pub momentum_size: f64,
     /// The momentum of the exact motion at a time, where it is known in functions.
     pub closed_form: Option<ClosedForm>,
+    /// The motion at a time with its rounding error, where it is known in functions. Nothing else is a reference then.
+    pub known: Option<Known<N>>,
     /// Steps of the reference in each tenth of the duration; half as many tell its error.
     pub reference_steps: u64,
     /// The energy is followed for so many durations: for many of the slowest periods.
     pub longer: u64,
+    /// Rounding shows in errors below this.
+    pub least_error: f64,
     /// Whether errors of order 16 show it: its steps are as long as the motion, and other powers of h may be as large.
     pub shows_sixteen: bool,
     /// The settings that are compared.

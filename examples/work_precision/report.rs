@@ -16,7 +16,7 @@ const WISHED: [f64; 4] = [1e-3, COMPARED, 1e-9, 1e-12];
 const PEER: &str = "RK4";
 
 /// Every setting at one error.
-pub fn settings(points: &[Point]) -> Table<8> {
+pub fn settings(points: &[Point], least: f64) -> Table<8> {
     let peer = by_setting(points).find(|points| points[0].name.method == PEER);
     let peer_time = peer.and_then(|points| at_error(points, COMPARED)).map_or(f64::NAN, |(time, _)| time);
     let mut table = Table::new([
@@ -36,8 +36,8 @@ pub fn settings(points: &[Point]) -> Table<8> {
             setting[0].name.to_string(),
             format!("{h:.2e}"),
             format!("{time:.2e}"),
-            format!("{:.2}", time / peer_time),
-            slope(setting).map_or("-".to_owned(), |slope| format!("{slope:.2}")),
+            if peer_time.is_nan() { "-".to_owned() } else { format!("{:.2}", time / peer_time) },
+            slope(setting, least).map_or("-".to_owned(), |slope| format!("{slope:.2}")),
             format!("{:.0e}", at.energy[0].max(at.energy[1])),
             format!("{:.0e}", at.momenta),
             format!("{:.0e}", at.constraint),
@@ -87,13 +87,14 @@ pub const WINDOW: [f64; 2] = [6e-11, 1e-2];
 const SPAN: f64 = 2.1;
 
 /// The measured order: between the shortest steps whose error is in [`WINDOW`] and those that are, if they can, twice as long.
+/// Errors below `least` do not count.
 ///
 /// At order 1 it is that of the energy error. Its steps are those of order 2 seen from other momenta, by half a kick.
 /// So over long times the phase is wrong by h² t, and h shows only in bounded errors.
-pub fn slope(points: &[Point]) -> Option<f64> {
+pub fn slope(points: &[Point], least: f64) -> Option<f64> {
     let first_order = points.first()?.name.order == 1;
     let error = |point: &Point| if first_order { point.energy[0].max(point.energy[1]) } else { point.error };
-    let [low, high] = WINDOW;
+    let [low, high] = [WINDOW[0].max(least), WINDOW[1]];
     let inside: Vec<&Point> = points.iter().filter(|point| (low..high).contains(&error(point))).collect();
     let last = inside.last()?;
     let first = inside.iter().find(|point| point.h < SPAN * last.h)?;

@@ -1,6 +1,6 @@
 //! One way to integrate a scene: a method with its dial.
 
-use clebsch::{Clebsch, Error, Method, State, Stepper};
+use clebsch::{Clebsch, Error, Method, State, Stepper, Time};
 use nalgebra::SVector;
 use std::hint::black_box;
 use std::marker::PhantomData;
@@ -191,6 +191,71 @@ impl<S: Clebsch<Scalar = f64> + Clone, M: Method<S>, const N: usize> Setting<N> 
         // from one sample to the next at once
         let part = (steps / SAMPLES) as usize;
         clock_steps(SAMPLES, h * part as f64, start, |state| stepper.advance(state, part).unwrap_or(*state))
+    }
+}
+
+/// A declared system whose steps follow a monitor, by the method M. The step size is that of s, whose mean is that of the time here.
+pub struct Paced<S: Clebsch, M: Method<S>, const N: usize>(Declared<S, M, N>);
+
+/// A declared system with `step` as a setting, by one of its methods.
+pub fn paced<S: Clebsch<Scalar = f64> + Clone, M: Method<S>, const N: usize>(
+    method: M,
+    name: &'static str,
+    system: S,
+    start: (S::Configuration, S::Momentum),
+    flat: Flat<S, N>,
+) -> Box<Paced<S, M, N>> {
+    Box::new(Paced(*declared(method, name, system, start, flat)))
+}
+
+impl<S: Clebsch<Scalar = f64> + Clone, M: Method<S>, const N: usize> Paced<S, M, N> {
+    /// From the end of one step to the last end before a time, and to the state at that time.
+    fn reach(
+        stepper: &Stepper<S, M>,
+        node: &mut State<S, M>,
+        time: f64,
+        mut passed: impl FnMut(&State<S, M>),
+    ) -> Result<State<S, M>, Error> {
+        loop {
+            let next = stepper.step(node)?;
+            if next.clock().now() > time {
+                return stepper.trajectory(*node).at([time]).next().unwrap_or(Ok(next));
+            }
+            *node = next;
+            passed(node);
+        }
+    }
+}
+
+impl<S: Clebsch<Scalar = f64> + Clone, M: Method<S>, const N: usize> Setting<N> for Paced<S, M, N> {
+    fn name(&self) -> Name {
+        self.0.name()
+    }
+
+    fn walk(&self, dial: Dial, duration: f64, observe: &mut Observe<'_, N>) -> Result<u64, Error> {
+        let (stepper, mut node) = self.0.prepare(fixed(dial, duration).1)?;
+        let mut steps = 0;
+        observe(0.0, &self.0.read(0.0, &stepper, &node));
+        for sample in 1..=SAMPLES {
+            let time = duration * sample as f64 / SAMPLES as f64;
+            let state = Self::reach(&stepper, &mut node, time, |state| {
+                steps += 1;
+                let now = state.clock().now();
+                observe(now, &self.0.read(now, &stepper, state));
+            })?;
+            observe(time, &self.0.read(time, &stepper, &state));
+        }
+        Ok(steps)
+    }
+
+    fn clock(&self, dial: Dial, duration: f64) -> f64 {
+        let Ok((stepper, start)) = self.0.prepare(fixed(dial, duration).1) else { return f64::NAN };
+        let part = duration / SAMPLES as f64;
+        let start = (start, 0, start);
+        clock_steps(SAMPLES, part, start, |&(mut node, sample, _)| {
+            let state = Self::reach(&stepper, &mut node, (sample + 1) as f64 * part, |_| ());
+            (node, sample + 1, state.unwrap_or(node))
+        })
     }
 }
 

@@ -54,7 +54,8 @@ pub use crate::parameters::{
     orientation_of_uniform, projection,
 };
 pub use crate::parts::{
-    FreeMotion, GreatCircles, HamiltonEquations, Parts, Solved, SplitKicks, Substep, Varied, VariedSubstep,
+    FreeMotion, GreatCircles, HamiltonEquations, Parts, Solved, SplitKicks, Substep, TimeTransformed, Varied,
+    VariedSubstep,
 };
 pub use crate::power::{Constants as SiteConstants, Power, PowerConstants, wrapped};
 pub use crate::rotation::{

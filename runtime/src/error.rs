@@ -393,6 +393,14 @@ errors! {
                 Some(h) => write!(f, "reduce the step size to {:.3e} or less", h * 0.9995),
                 None => f.write_str("reduce the step size"),
             });
+        /// The monitor g of `step` is not positive and finite. Within a step it is 1/W, the value that the step carries along. It is 0 where
+        /// steps to a time do not change the time any more.
+        Monitor {
+            /// g(q), or 1/W.
+            value: f64,
+        } =>
+            "the function of `step` is {value:.3e}, and a step needs one that is positive and finite: write one that is so wherever the \
+             system moves, or take smaller steps where it changes much within one";
         /// The gradient method of an opaque potential disagrees with differences of its value method.
         WrongGradient {
             /// The entry of the configuration, counted through all its leaves, matrices column by column.
@@ -530,9 +538,9 @@ errors! {
         } =>
             "there is no body {body} in an ensemble of {bodies}: they are counted from 0, so give a number below \
              {bodies}";
-        /// A step on T*Q was asked of a system with forces or a constraint, or of momenta alone. Forces act on momenta in 𝔤* and determine no covector.
+        /// A step on T*Q was asked of a system with forces, a constraint or `step`, or of momenta alone. Forces act on momenta in 𝔤* and determine no covector.
         NoCovector =>
-            "a system with forces or a constraint, or of momenta alone, has no step in (q, p), as there are no covectors of the \
+            "a system with forces, a constraint or `step`, or of momenta alone, has no step in (q, p), as there are no covectors of the \
              configuration to step: step in (q, N), by `Stepper::step`";
         /// The step has no derivative: it is at the very edge of solvability.
         SingularTangent {

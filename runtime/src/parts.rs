@@ -191,6 +191,24 @@ pub trait SplitKicks<M: Method<Self> = Declared>: Parts<M> {
     fn kick_gradient(&self, c: &M::Constants, t: T<Self>, q: &Q<Self>, weight: T<Self>, gradient: T<Self>) -> Q<Self>;
 }
 
+/// A monitor, which sets the times of steps. A step of the size h in s takes the time t with dt = g(q) ds.
+pub trait TimeTransformed<M: Method<Self> = Declared>: Substep<0, M> {
+    /// Whether a drift is the exact motion without the potential: two that meet are one then.
+    const DRIFTS_ARE_EXACT: bool = false;
+
+    /// The size h of a step, in s.
+    fn step_size(c: &M::Constants) -> T<Self>;
+
+    /// g(q), the monitor.
+    fn monitor(&self, c: &M::Constants, q: &Q<Self>) -> T<Self>;
+
+    /// −h g J(q, ∂V), the kick of a step.
+    fn monitored_kick(&self, c: &M::Constants, t: T<Self>, q: &Q<Self>) -> Mu<Self>;
+
+    /// γ = h Σ⁻¹J(q, ∂g)/g: γ·μ = h ġ/g where q moves by the velocity of the momentum μ.
+    fn monitor_slope(&self, c: &M::Constants, q: &Q<Self>) -> Mu<Self>;
+}
+
 /// Hamilton's equations of (q, p): N numbers, the first half for q. K numbers are made of the time alone.
 pub trait HamiltonEquations<const N: usize, const K: usize = 0, M: Method<Self> = Declared>: Parts<M> {
     /// Sweeps end where they change q and p by less than this part of them; 0 where only rounding ends them.

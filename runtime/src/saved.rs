@@ -79,7 +79,7 @@ impl<S: Clebsch, M: Method<S>> Stepper<S, M> {
     /// All data that a step takes from the last one are written and read back. These are the impulse at q, the
     /// constants of a free motion, and the rounding errors of compensated sums. `resume` checks that they follow from
     /// the time, q and N, up to √ε. If they do not, it makes them anew, as [`state`](Self::state) does. A damaged file,
-    /// another system and another step size are such cases. Formats have to give back every bit of a number:
+    /// another system and another step size are such cases. With `step`, W follows the monitor up to a tenth. Formats have to give back every bit of a number:
     /// `serde_json` does with its feature `float_roundtrip`, and binary ones do.
     ///
     /// ```

@@ -7,6 +7,7 @@
 //! Split           exact drifts and kicks in turn
 //! FreeMotion      one exact motion
 //! Collocated      Hamilton's equations at the nodes of Gauss and Legendre, of order 16
+//! Transformed     drifts and kicks whose times follow a monitor
 //! GreatCircle     points on large spheres in (q, w)
 //! Sites           equal sites, one after the other
 //! JoinedSites     the same, with joints between neighbours
@@ -60,6 +61,7 @@ mod sequence;
 mod sites;
 mod split;
 mod substep;
+mod transformed;
 mod unstepped;
 
 use crate::fields::copy;
@@ -88,6 +90,7 @@ pub mod kinds {
     pub use super::sequence::{Apart, Shared};
     pub use super::sites::{FreeSites, SitesOfFirstOrder, SitesOfSecondOrder};
     pub use super::split::{GradientFour, GradientSix, PlainFour, PlainSix, Split};
+    pub use super::transformed::{OfOrderTwo, Transformed};
     pub use super::unstepped::Unstepped;
 }
 
@@ -177,9 +180,14 @@ pub trait Scheme<S: Clebsch, M: Method<S> = Declared>: Sized {
     /// The data that the first step from q takes, at the time of q.
     fn left(at: AtOf<'_, S, Self, M>, q: &Q<S>, mu: &Mu<S>) -> Self::Left;
 
-    /// The same for steps that continue others of another size, or from another q: data that does not depend on these stays.
+    /// The same for steps that continue others of another size: data that does not depend on it stays.
     fn left_after(at: AtOf<'_, S, Self, M>, q: &Q<S>, mu: &Mu<S>, _left: &Self::Left) -> Self::Left {
         Self::left(at, q, mu)
+    }
+
+    /// The same for steps that go on from another q.
+    fn left_elsewhere(at: AtOf<'_, S, Self, M>, q: &Q<S>, mu: &Mu<S>, left: &Self::Left) -> Self::Left {
+        Self::left_after(at, q, mu, left)
     }
 
     /// The stored form of the momentum after an impulse at q, and the data that the next step takes. Data that does not
@@ -208,6 +216,21 @@ pub trait Scheme<S: Clebsch, M: Method<S> = Declared>: Sized {
     #[inline(always)]
     fn scaled(left: Self::Left, _ratio: S::Scalar) -> Self::Left {
         left
+    }
+
+    /// The time at which the step ended that left this, where it is not h after the start.
+    #[inline(always)]
+    fn now(_left: &Self::Left) -> Option<S::Scalar> {
+        None
+    }
+
+    /// Whether steps can start at q.
+    ///
+    /// # Errors
+    /// [`Error::Monitor`]
+    #[inline(always)]
+    fn check_monitor(_at: AtOf<'_, S, Self, M>, _q: &Q<S>) -> Result<(), Error> {
+        Ok(())
     }
 
     /// One step of the discrete Euler–Poincaré representation: (q, N) ↦ (q⁺, N⁺), from the time t to t + h, with the input u of its forces.
@@ -267,6 +290,28 @@ fn is_near<T: Scalar, V: Space<T>>(found: &V, made: &V, size: T) -> T::Mask {
     let most = T::EPSILON.sqrt() * size;
     let difference = found.zip_map(made, |found, made| (found - made).abs());
     made.finite() & difference.reduce(T::Mask::everywhere(), |entry| entry.at_most(most), |a, b| a & b)
+}
+
+/// The time after so many steps of the size h from a time, which have left `left`.
+#[inline(always)]
+pub(crate) fn time_after<S: Clebsch, M: Method<S>>(
+    time: S::Time,
+    (h, steps): (S::Scalar, usize),
+    left: &Left<S, M>,
+) -> S::Time {
+    match M::Scheme::now(left) {
+        Some(now) => {
+            let mut after = S::Time::at(now);
+            // a body that fails stays at the time before
+            if S::Scalar::LANES > 1 {
+                let known = Scalar::finite(now);
+                let lanes = (0..S::Scalar::LANES).filter(|&lane| !known.lane(lane));
+                lanes.for_each(|lane| after.take_lane(lane, &time));
+            }
+            after
+        }
+        None => (0..steps).fold(time, |time, _| time.after_step(h)),
+    }
 }
 
 /// Whether a long run looks at its state after the step with this number: every 1024 steps, so that NaN ends it soon.

@@ -12,7 +12,7 @@ use core::fmt::{self, Debug, DebugStruct, Display, Formatter};
 /// ahead: read that by [`Stepper::synchronized`](crate::Stepper::synchronized). A state also carries the impulse at q,
 /// which two steps share, or the constants of a free motion. A stepper of another step size computes its own. To go on
 /// with another *system*, make a new state of [`configuration`](Self::configuration) and [`momentum`](Self::momentum).
-/// Where the cost or the potential depends on the time, a state has its [`time`](Self::time).
+/// Where the cost or the potential depends on the time, or with `step`, a state has its [`time`](Self::time).
 ///
 /// ```
 /// # use clebsch::Clebsch;
@@ -152,7 +152,7 @@ impl<S: Clebsch, M: Method<S>> From<Stopped<S, M>> for Error {
 pub type Body<S> = (<Q<S> as Space<T<S>>>::Lane, <Mu<S> as Space<T<S>>>::Lane);
 
 impl<S: Clebsch<Time = Clock<<S as Clebsch>::Scalar>>, M: Method<S>> State<S, M> {
-    /// The time t of the configuration, in the unit of the step size.
+    /// The time t of the configuration, seconds in SI units.
     #[inline]
     pub fn time(&self) -> S::Scalar {
         Time::now(&self.time)
@@ -220,7 +220,7 @@ impl<S: Clebsch> CotangentState<S> {
 }
 
 impl<S: Clebsch<Time = Clock<<S as Clebsch>::Scalar>>> CotangentState<S> {
-    /// The time t of the configuration, in the unit of the step size.
+    /// The time t of the configuration, seconds in SI units.
     #[inline]
     pub fn time(&self) -> S::Scalar {
         Time::now(&self.time)

@@ -78,10 +78,11 @@ impl<S: Clebsch, M: Method<S>> Stepper<S, M> {
         check_on_orbit(q, self.system.orbit_defect(q))
     }
 
-    /// The same, and the kinetic energy is positive there at the time t.
+    /// The same, the kinetic energy is positive there at the time t, and steps can start there.
     pub(crate) fn check_place(&self, t: S::Scalar, q: &S::Configuration) -> Result<(), Error> {
         self.check_configuration(q)?;
-        self.system.check_kinetic_energy(t, q)
+        self.system.check_kinetic_energy(t, q)?;
+        M::Scheme::check_monitor(self.at(t), q)
     }
 
     /// (q, N) is a state at the time t.
@@ -89,6 +90,7 @@ impl<S: Clebsch, M: Method<S>> Stepper<S, M> {
         check_momentum(&self.system, q, mu)?;
         self.system.check_kinetic_energy(t, q)?;
         self.system.check_place(t, q)?;
+        M::Scheme::check_monitor(self.at(t), q)?;
         M::constraint_defect(&self.system, M::Scheme::whole(&self.constants), t, q, mu)?.check()
     }
 
@@ -108,7 +110,7 @@ impl<S: Clebsch, M: Method<S>> Stepper<S, M> {
         M::kinetic_energy(&self.system, constants, state.time.now(), &state.configuration, &state.momentum())
     }
 
-    /// The step size h, seconds in SI units.
+    /// The step size h, seconds in SI units. With `step` it is that of s, in the units of the time over those of the monitor.
     #[inline]
     pub fn step_size(&self) -> S::Scalar {
         self.h
@@ -326,7 +328,7 @@ pub(crate) fn check_violation<T: Scalar, N: Space<T>>(violation: T, mu: &N) -> R
 }
 
 /// The name of a kick that is not finite.
-const GRADIENT: &str = "the gradient of the potential at the configuration";
+pub(crate) const GRADIENT: &str = "the gradient of the potential at the configuration";
 
 /// The first lane that is not in a mask; 0 where all are.
 fn first_without<T: Scalar>(mask: T::Mask) -> usize {

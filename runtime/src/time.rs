@@ -4,7 +4,7 @@ use crate::sums::exact_sum;
 use crate::{Scalar, Space};
 use core::fmt::Debug;
 
-/// The time of a state: [`Clock`] if the cost or the potential depends on it, else `()`, which costs nothing.
+/// The time of a state: [`Clock`] if the cost or the potential depends on it, or steps follow a monitor, else `()`, which costs nothing.
 ///
 /// ```
 /// use clebsch::{Clock, Time};
@@ -67,10 +67,22 @@ pub struct Clock<T> {
 }
 
 impl<T: Scalar> Clock<T> {
-    /// The time that it shows, in the unit of the step size: seconds in SI units.
+    /// The time that it shows: seconds in SI units.
     #[inline]
     pub fn now(&self) -> T {
         self.now
+    }
+
+    /// The time t, with the rounding error of another that shows the same.
+    #[inline]
+    pub(crate) fn resumed(t: T, [now, carry]: [T; 2]) -> Self {
+        Self { now: t, carry: T::select(now.equals(t), carry, T::zero()) }
+    }
+
+    /// The time, and its rounding error.
+    #[inline]
+    pub(crate) fn parts(&self) -> [T; 2] {
+        [self.now, self.carry]
     }
 }
 

@@ -83,6 +83,7 @@ macro_rules! scenes_of_each_kind {
             a_collocated_top: collocated_top::CollocatedTop { moments: principal(), weight: 1.3 }, quaternion(), 0.1;
             a_double_pendulum: double_pendulum::DoublePendulum { mass: [1.0, 0.7], length: [1.0, 0.8], gravity: 9.81 }, [unit(), Vector3::x()], 0.05;
             an_exact_body: exact_body::ExactBody { moments: principal() }, turned(), 0.1;
+            an_eccentric_orbit: eccentric_orbit::EccentricOrbit { mass: 1.2, strength: 0.9 }, centre(), 0.05;
             a_flying_body: flying_body::FlyingBody { mass: 1.2, mass_matrix: inertia().cast(), hook: centre().cast(), stiffness: 2.0 },
                 (Vector3::new(0.5, 0.2, -0.3), turned().cast()), 0.05;
             a_generic_body_in_single_precision: generic_body::GenericBody<f32> { mass_matrix: inertia().cast(), weight: 1.3, center: centre().cast() },

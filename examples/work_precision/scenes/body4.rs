@@ -136,8 +136,10 @@ pub fn scene() -> Scene<22> {
         split: 16,
         momentum_size: MOMENTUM.norm(),
         closed_form: None,
+        known: None,
         reference_steps: 40_000,
         longer: 10,
+        least_error: 0.0,
         shows_sixteen: true,
         settings,
     }

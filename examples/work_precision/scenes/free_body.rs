@@ -183,8 +183,10 @@ pub fn scene() -> Scene<12> {
         split: 9,
         momentum_size: MOMENTUM.norm(),
         closed_form: Some(closed_form),
+        known: None,
         reference_steps: 80_000,
         longer: 10,
+        least_error: 0.0,
         shows_sixteen: true,
         settings,
     }

@@ -3,6 +3,7 @@
 pub mod body4;
 pub mod free_body;
 pub mod heavy_top;
+pub mod orbit;
 pub mod pendulum;
 mod rotation;
 pub mod satellite;

@@ -132,8 +132,10 @@ pub fn scene() -> Scene<6> {
         split: 3,
         momentum_size: MOMENTUM.norm(),
         closed_form: None,
+        known: None,
         reference_steps: 100_000,
         longer: 10,
+        least_error: 0.0,
         shows_sixteen: true,
         settings,
     }

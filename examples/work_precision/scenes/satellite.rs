@@ -178,8 +178,10 @@ pub fn scene() -> Scene<12> {
         split: 9,
         momentum_size: momentum.norm(),
         closed_form: None,
+        known: None,
         reference_steps: 200_000,
         longer: 40,
+        least_error: 0.0,
         shows_sixteen: false,
         settings,
     }

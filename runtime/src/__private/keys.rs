@@ -83,6 +83,11 @@ pub mod endpoint {}
 /// Example: `target = |q| [q.x == 1, q.y <= 2]`
 pub mod target {}
 
+/// The monitor g(q) > 0, for close approaches. A step of the size h takes the time t with dt = g(q) ds, s from 0 to h. It is short where g is small. Steps are reversible and conserve momenta. For g = c/(V₀ − V) and exact drifts they are symplectic in s.
+///
+/// Example: `step = |q| q.norm()`
+pub mod step {}
+
 /// The order of accuracy: the error at a fixed time shrinks like this power of h.
 ///
 /// Example: `order = 2`

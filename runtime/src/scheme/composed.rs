@@ -108,6 +108,11 @@ impl<S: Clebsch, M: Method<S>, I: Scheme<S, M>, Z: Sizes<K>, const K: usize> Sch
     }
 
     #[inline]
+    fn left_elsewhere(at: AtOf<'_, S, Self, M>, q: &Q<S>, mu: &Mu<S>, left: &I::Left) -> I::Left {
+        I::left_elsewhere(At::new(at.system, at.constants.first(), at.t), q, mu, left)
+    }
+
+    #[inline]
     fn kicked(at: AtOf<'_, S, Self, M>, q: &Q<S>, state: (&I::Held, &I::Left), impulse: &Mu<S>) -> (I::Held, I::Left) {
         I::kicked(At::new(at.system, at.constants.first(), at.t), q, state, impulse)
     }

@@ -66,6 +66,13 @@ impl<S: Substep<0, M>, M: Method<S>, P: Sequence<S, M>> Scheme<S, M> for InSeque
 
     #[inline]
     fn left_after(at: At<'_, S, M>, q: &Q<S>, mu: &Mu<S>, left: &Self::Left) -> Self::Left {
+        let (impulse, rests) = parted::<S, M, P::Carry>(left);
+        let rests = (S::Sums::resumed(q, rests.0), S::Sums::resumed(mu, rests.1));
+        S::Sums::joined(P::Carry::after(at, q, mu, impulse), rests)
+    }
+
+    #[inline]
+    fn left_elsewhere(at: At<'_, S, M>, q: &Q<S>, mu: &Mu<S>, left: &Self::Left) -> Self::Left {
         let (_, rests) = parted::<S, M, P::Carry>(left);
         // rounding errors of another q or N may be larger than the last place of these
         let rests = (S::Sums::resumed(q, rests.0), S::Sums::resumed(mu, rests.1));
@@ -89,6 +96,16 @@ impl<S: Substep<0, M>, M: Method<S>, P: Sequence<S, M>> Scheme<S, M> for InSeque
     fn scaled(left: Self::Left, ratio: S::Scalar) -> Self::Left {
         let (impulse, rests) = parted::<S, M, P::Carry>(&left);
         S::Sums::joined(P::Carry::scaled(*impulse, ratio), rests)
+    }
+
+    #[inline(always)]
+    fn now(left: &Self::Left) -> Option<S::Scalar> {
+        P::Carry::now(parted::<S, M, P::Carry>(left).0)
+    }
+
+    #[inline(always)]
+    fn check_monitor(at: At<'_, S, M>, q: &Q<S>) -> Result<(), Error> {
+        P::Carry::check_monitor(at, q)
     }
 
     #[inline(always)]
@@ -158,6 +175,12 @@ pub trait Carry<S: Parts<M>, M: Method<S>> {
     /// The impulse that the first step takes.
     fn first(at: At<'_, S, M>, q: &Q<S>, mu: &Mu<S>) -> Self::Impulse;
 
+    /// The same after steps of another size.
+    #[inline]
+    fn after(at: At<'_, S, M>, q: &Q<S>, mu: &Mu<S>, _impulse: &Self::Impulse) -> Self::Impulse {
+        Self::first(at, q, mu)
+    }
+
     /// The data after a push at q, which made the momentum μ: unchanged where it does not depend on μ.
     #[inline]
     fn kicked(_at: At<'_, S, M>, _q: &Q<S>, _mu: &Mu<S>, impulse: &Self::Impulse) -> Self::Impulse {
@@ -173,6 +196,18 @@ pub trait Carry<S: Parts<M>, M: Method<S>> {
     #[inline(always)]
     fn scaled(impulse: Self::Impulse, _ratio: S::Scalar) -> Self::Impulse {
         impulse
+    }
+
+    /// As [`Scheme::now`].
+    #[inline(always)]
+    fn now(_impulse: &Self::Impulse) -> Option<S::Scalar> {
+        None
+    }
+
+    /// As [`Scheme::check_monitor`].
+    #[inline(always)]
+    fn check_monitor(_at: At<'_, S, M>, _q: &Q<S>) -> Result<(), Error> {
+        Ok(())
     }
 }
 

@@ -92,8 +92,8 @@ impl<S: Clebsch, M: Method<S>> Stepper<S, M> {
     /// ```
     ///
     /// # Errors
-    /// [`Error::NotFinite`], [`Error::OffOrbit`], [`Error::OffConstraint`], [`Error::DependentConstraints`] or
-    /// [`Error::IndefiniteKineticEnergy`] as for [`state`](Self::state).
+    /// [`Error::NotFinite`], [`Error::OffOrbit`], [`Error::OffConstraint`], [`Error::DependentConstraints`],
+    /// [`Error::IndefiniteKineticEnergy`] or [`Error::Monitor`] as for [`state`](Self::state).
     pub fn with_configuration(&self, state: &State<S, M>, q: S::Configuration) -> Result<State<S, M>, Error> {
         let t = state.time.now();
         self.check_place(t, &q)?;
@@ -102,7 +102,7 @@ impl<S: Clebsch, M: Method<S>> Stepper<S, M> {
         check_finite("the momentum", &mu)?;
         let mu = M::constrained(&self.system, M::Scheme::whole(&self.constants), t, &q, &mu)?;
         check_finite("the momentum", &mu)?;
-        let left = M::Scheme::left_after(self.at(t), &q, &mu, &state.left);
+        let left = M::Scheme::left_elsewhere(self.at(t), &q, &mu, &state.left);
         self.check_left(t, &q, &left)?;
         Ok(State { configuration: q, held: M::Scheme::held(&q, &mu), left, h: self.h, ..*state })
     }

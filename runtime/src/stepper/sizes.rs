@@ -4,7 +4,7 @@ use super::stepping::check_input;
 use super::{Stepper, check_step_size, whole_or_lane};
 use crate::parameters::check_finite;
 use crate::parts::{Mu, T, U};
-use crate::scheme::{At, Constants, Scheme};
+use crate::scheme::{At, Constants, Scheme, time_after};
 use crate::space::minus;
 use crate::{Clebsch, Error, Mask, Method, Scalar, Space, State, Time};
 
@@ -103,7 +103,8 @@ impl<S: Clebsch, M: Method<S>> Stepper<S, M> {
             Ok(stepped) => stepped,
             Err(error) => return Err(self.refused_for(&start, u, error)),
         };
-        let next = State { time: time.after_step(duration), configuration, held, left, h: duration };
+        let time = time_after::<S, M>(*time, (duration, 1), &left);
+        let next = State { time, configuration, held, left, h: duration };
         if !self.is_sound(&next) {
             return Err(self.beyond(&next));
         }

@@ -2,7 +2,7 @@
 
 use super::{GRADIENT, Stepper, first_without, whole_or_lane};
 use crate::parts::{Mu, Q, T, U};
-use crate::scheme::{Left, Scheme};
+use crate::scheme::{Left, Scheme, time_after};
 use crate::{Clebsch, Error, Mask, Method, NoInputs, Scalar, Space, State, Stopped, Time, Trajectory};
 use num_traits::Zero;
 
@@ -15,7 +15,8 @@ impl<S: Clebsch, M: Method<S>> Stepper<S, M> {
     ///
     /// # Errors
     /// [`Error::NotFinite`], [`Error::OffOrbit`], [`Error::OutsideMomentumSpace`], or [`Error::IndefiniteKineticEnergy`] where the inertia depends on q or on the time.
-    /// With a constraint also [`Error::OffConstraint`], [`Error::ConstraintViolated`] or [`Error::DependentConstraints`].
+    /// With a constraint also [`Error::OffConstraint`], [`Error::ConstraintViolated`] or [`Error::DependentConstraints`]. With `step`
+    /// also [`Error::Monitor`].
     pub fn state(&self, q: S::Configuration, mu: S::Momentum) -> Result<State<S, M>, Error> {
         self.checked_state(S::Scalar::zero(), q, mu)
     }
@@ -24,7 +25,7 @@ impl<S: Clebsch, M: Method<S>> Stepper<S, M> {
     ///
     /// # Errors
     /// [`Error::Unsolvable`] or [`Error::StepTooLong`] where the step is too long for the momentum, [`Error::NotFinite`] where the potential gave
-    /// NaN or numbers overflowed, [`Error::NotConverged`]. Where the scalar has lanes: [`Error::InLane`].
+    /// NaN or numbers overflowed, [`Error::NotConverged`], with `step` [`Error::Monitor`]. Where the scalar has lanes: [`Error::InLane`].
     // a call hands states through memory, which costs as much as half of a short step; long ones stay calls within
     #[inline(always)]
     pub fn step(&self, state: &State<S, M>) -> Result<State<S, M>, Error> {
@@ -47,7 +48,7 @@ impl<S: Clebsch, M: Method<S>> Stepper<S, M> {
         let none = S::Input::origin();
         let advanced = M::Scheme::steps(self.at(time.now()), self.h, steps, start, &none);
         let (configuration, held, left) = advanced.map_err(|error| self.refused_after(state, steps, error))?;
-        let time = (0..steps).fold(*time, |time, _| time.after_step(self.h));
+        let time = time_after::<S, M>(*time, (self.h, steps), &left);
         let next = State { time, configuration, held, left, h: self.h };
         if !self.is_sound(&next) {
             return Err(self.refused_after(state, steps, self.beyond(&next)));
@@ -136,7 +137,7 @@ impl<S: Clebsch, M: Method<S>> Stepper<S, M> {
         if M::Scheme::step_into(at, (q, held, left), u, into).is_err() {
             return Err(self.refused(state, u));
         }
-        (next.time, next.h) = (state.time.after_step(self.h), self.h);
+        (next.time, next.h) = (time_after::<S, M>(state.time, (self.h, 1), &next.left), self.h);
         if self.is_sound(next) { Ok(()) } else { Err(self.beyond(next)) }
     }
 
@@ -181,7 +182,8 @@ impl<S: Clebsch, M: Method<S>> Stepper<S, M> {
         let State { time, configuration, held, .. } = state;
         match M::Scheme::step(self.at(time.now()), (configuration, held, left), u) {
             Ok((configuration, held, left)) => {
-                Ok(State { time: time.after_step(self.h), configuration, held, left, h: self.h })
+                let time = time_after::<S, M>(*time, (self.h, 1), &left);
+                Ok(State { time, configuration, held, left, h: self.h })
             }
             Err(error) => Err(error),
         }

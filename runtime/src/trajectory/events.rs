@@ -3,6 +3,7 @@
 mod search;
 
 use super::{Inputs, NoInputs, Trajectory};
+use crate::scheme::Scheme;
 use crate::space::larger;
 use crate::{Clebsch, Clock, Declared, Error, Method, Real, Scalar, State, Stepper, Time};
 use core::fmt::{self, Debug, Formatter};
@@ -403,15 +404,20 @@ where
         let [first, second] = self.found[number];
         self.found[number] = if first.is_some() { [None, second] } else { [None, None] };
         self.is_above[number] = !self.is_above[number];
-        let time = self.clock.after_step(found.part * self.stepper.h).now();
+        let time = self.clock_after(found.part * self.stepper.h, &found.state).now();
         Some(Event { number, time, state: found.state })
+    }
+
+    /// The time after a step of this size to a state.
+    fn clock_after(&self, size: S::Scalar, state: &State<S, M>) -> Clock<S::Scalar> {
+        M::Scheme::now(&state.left).map_or_else(|| self.clock.after_step(size), Clock::at)
     }
 
     /// Goes on from the end of the step, once all of its events have been told.
     fn pass(&mut self) {
         if let Some((next, values)) = self.next.take() {
             (self.node, self.input) = (next, None);
-            self.clock = self.clock.after_step(self.stepper.h);
+            self.clock = self.clock_after(self.stepper.h, &next);
             self.before = self.values;
             self.values = Some(values);
             self.known_from = [Zero::zero(); K];

@@ -3,11 +3,12 @@
 use super::{Inputs, NoInputs, Trajectory};
 use crate::fields::debug_fields;
 use crate::parameters::check_finite;
+use crate::scheme::Scheme;
 use crate::{Clebsch, Clock, Declared, Error, Method, Real, Scalar, State, Stepper, Time};
 use core::borrow::Borrow;
 use core::fmt::Debug;
 use core::iter::FusedIterator;
-use num_traits::Zero;
+use num_traits::{One, Zero};
 
 /// The states of a [`Trajectory`] at given times, made by [`at`](Trajectory::at) and [`every`](Trajectory::every). After an
 /// error it yields nothing more.
@@ -38,6 +39,8 @@ pub struct Timed<'a, S: Clebsch, I, M: Method<S> = Declared, U = NoInputs> {
     inputs: U,
     /// The input of the step from the node, once it has been asked for.
     input: Option<S::Input>,
+    /// The end of that step, where its time is looked for.
+    ahead: Option<State<S, M>>,
 }
 
 /// The times t₀ + kΔ, k = 0, 1, 2, …, of a [`Timed`] that [`every`](Trajectory::every) makes.
@@ -103,7 +106,7 @@ impl<'a, S: Clebsch<Scalar: Real>, M: Method<S>, U: Inputs<S, M>> Trajectory<'a,
     ///
     /// # Errors
     /// Each state may be an error: [`Error::NotFinite`] for its time, [`Error::TimeOrder`] where it is before the last one, and those of
-    /// [`Stepper::step`].
+    /// [`Stepper::step`]. [`Error::Monitor`] where steps do not change the time any more.
     pub fn at<I>(self, times: I) -> Timed<'a, S, I::IntoIter, M, U>
     where
         I: IntoIterator<Item: Borrow<S::Scalar>>,
@@ -111,7 +114,7 @@ impl<'a, S: Clebsch<Scalar: Real>, M: Method<S>, U: Inputs<S, M>> Trajectory<'a,
         let Self { stepper, state: node, has_failed, inputs, .. } = self;
         let last = node.time.now();
         let (clock, times) = (Clock::at(last), times.into_iter());
-        Timed { stepper, node, clock, times, last, has_failed, inputs, input: None }
+        Timed { stepper, node, clock, times, last, has_failed, inputs, input: None, ahead: None }
     }
 
     /// The states at the times t₀, t₀ + Δ, t₀ + 2Δ, …, the start first. Endless; see [`at`](Self::at).
@@ -155,6 +158,9 @@ where
         self.last = time;
         // two times that differ by rounding are the same
         let rounding = S::Scalar::from_ratio(2, 1) * S::Scalar::EPSILON * (time.abs() + h.abs());
+        if M::Scheme::now(&self.node.left).is_some() {
+            return self.reach_by_size(time, behind);
+        }
         loop {
             let ahead = self.clock.after_step(h);
             if behind(time, ahead.now()) > rounding {
@@ -172,9 +178,77 @@ where
         self.stepper.step_for_with(&self.node, left, &input)
     }
 
+    /// The same where steps take other times than h: the part of the last step that ends there is a root.
+    fn reach_by_size(
+        &mut self,
+        time: S::Scalar,
+        behind: impl Fn(S::Scalar, S::Scalar) -> S::Scalar,
+    ) -> Result<State<S, M>, Error> {
+        let h = self.stepper.h;
+        let missing = |state: &State<S, M>| behind(state.time.now(), time);
+        loop {
+            let (node, input) = (self.node, self.input_of_step());
+            if missing(&node).is_zero() {
+                return Ok(node);
+            }
+            let next = match self.ahead {
+                Some(next) => next,
+                None => self.stepper.step_with(&node, &input)?,
+            };
+            self.ahead = Some(next);
+            let took = next.time.now() - node.time.now();
+            if took.is_zero() {
+                return Err(Error::Monitor { value: 0.0 });
+            }
+            // two times that differ by rounding are the same
+            let rounding = S::Scalar::from_ratio(2, 1) * S::Scalar::EPSILON * (time.abs() + took.abs());
+            if missing(&node) <= rounding {
+                return Ok(node);
+            }
+            if missing(&next) < -rounding {
+                let ends = [(S::Scalar::zero(), missing(&node)), (S::Scalar::one(), missing(&next))];
+                return reached(ends, rounding, |part| {
+                    let state = self.stepper.step_for_with(&node, part * h, &input)?;
+                    Ok((state, missing(&state)))
+                });
+            }
+            (self.node, self.input, self.ahead) = (next, None, None);
+        }
+    }
+
     /// The input of the step from the node.
     fn input_of_step(&mut self) -> S::Input {
         *self.input.get_or_insert_with(|| self.inputs.input(&self.node))
+    }
+}
+
+/// Secants that are tried before the bracket is halved each second time: then it ends, whatever the function is.
+const SECANTS: u32 = 8;
+
+/// The state at the root of a function that is positive at the first end and negative at the other, up to `rounding`.
+fn reached<X, T: Real>(
+    ends: [(T, T); 2],
+    rounding: T,
+    mut evaluate: impl FnMut(T) -> Result<(X, T), Error>,
+) -> Result<X, Error> {
+    let ([mut a, mut b], mut points, mut count) = (ends.map(|end| end.0), ends, 0);
+    loop {
+        let [before, last] = points;
+        let secant = last.0 - last.1 * ((last.0 - before.0) / (last.1 - before.1));
+        let is_tried = count < SECANTS || count % 2 == 0;
+        // not NaN either
+        let is_inside = a < secant && secant < b;
+        let part = if is_tried && is_inside { secant } else { a + (b - a) * T::from_ratio(1, 2) };
+        let (state, value) = evaluate(part)?;
+        if value.abs() <= rounding || b - a <= T::EPSILON + T::EPSILON {
+            return Ok(state);
+        }
+        if value > T::zero() {
+            a = part;
+        } else {
+            b = part;
+        }
+        (points, count) = ([last, (part, value)], count + 1);
     }
 }
 

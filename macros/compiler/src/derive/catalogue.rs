@@ -314,6 +314,12 @@ catalogue! {
     SplittingKick = listed("kick", Hot).by(ClebschOptimalControl);
     /// The same kick of the covector.
     SplittingGradient = unlisted("kick of the covector", Hot).by(ClebschOptimalControl);
+    /// The monitor that sets the times of steps.
+    Monitor = listed("monitor", Hot);
+    /// The kick of a step whose time follows it.
+    MonitoredKick = listed("kick", Hot).by(ClebschOptimalControl);
+    /// Its slope along motions by a momentum.
+    MonitorSlope = listed("slope of the monitor", Hot);
     /// F − I in the chart.
     Increment = unlisted("increment", Hot).by(LieGroupMethods);
     /// D and c of F − I = c·D in the chart.

@@ -8,8 +8,8 @@ use clebsch_symbolic::{Chart, Expr, Group, IntoList, Property, Role};
 use super::energy::is_multiple_of_identity;
 use super::{
     Collocation, ConstraintFormulas, DiscreteLagrangian, Energy, FieldFormulas, FormulaTable, InputStep, JointFormulas,
-    MomentumEquation, Quantity, RotatingBody, SiteTerm, Solution, Splitting, Substep, SymmetricParts, Symmetries,
-    SystemFormulas, Vertical, exact, signature,
+    MomentumEquation, MonitorFormulas, Quantity, RotatingBody, SiteTerm, Solution, Splitting, Substep, SymmetricParts,
+    Symmetries, SystemFormulas, Vertical, exact, signature,
 };
 use crate::model::{Factor, Isotropy, LeafSpace, Mechanics, Signature, Steered};
 
@@ -84,6 +84,8 @@ pub struct MechanicsFormulas<'g> {
     pub stepped: usize,
     /// The drifts and kicks that make a step of higher order, where drifts are exact and there is a potential.
     pub splitting: Option<Splitting<'g>>,
+    /// The monitor that sets the times of steps; `None` where they are of one size.
+    pub monitor: Option<MonitorFormulas<'g>>,
     /// Hamilton's equations, where a step collocates them.
     pub collocation: Option<Collocation<'g>>,
     /// Whether a step is exact for lack of a potential, so that its order says nothing.
@@ -158,9 +160,14 @@ impl<'g> MechanicsFormulas<'g> {
         }
     }
 
+    /// Whether a step does not begin and end with half a kick.
+    pub fn has_own_schedule(&self) -> bool {
+        self.splitting.is_some() || self.monitor.is_some() || self.collocation.is_some()
+    }
+
     /// Of how many steps of second order a step is composed, where it is.
     pub fn stages(&self) -> Option<usize> {
-        self.model.order.stages().filter(|_| self.splitting.is_none() && !self.is_exact)
+        self.model.order.stages().filter(|_| self.splitting.is_none() && self.monitor.is_none() && !self.is_exact)
     }
 
     /// Whether nothing but the kinetic energy moves the system: no potential, and no other site.
@@ -264,6 +271,7 @@ impl<'g> MechanicsFormulas<'g> {
             return false;
         };
         matches!(factor.group, Group::SpecialOrthogonal(n) if n > 3)
+            && self.monitor.is_none()
             && leaf.space == LeafSpace::Unit
             && self.generator[0] == factor.group.wedge(self.symbols.algebra[0]) * leaf.symbol
             && self.symbols.charts[0] == Chart::Sine

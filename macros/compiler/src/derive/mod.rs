@@ -33,6 +33,7 @@ mod latex;
 mod letters;
 mod matrices;
 mod midpoint;
+mod monitor;
 mod moves;
 mod naming;
 mod power;
@@ -81,6 +82,7 @@ pub use isotropy::Vertical;
 pub use joints::{JointFormulas, JointRows};
 pub use matrices::MatrixForm;
 pub use midpoint::MidpointFormulas;
+pub use monitor::MonitorFormulas;
 pub use power::{Home, SiteTerm, Stencil, stencil};
 use rows::MOST_LISTED;
 pub use splitting::Splitting;
@@ -169,6 +171,7 @@ fn mechanics(mut model: Mechanics<'_>) -> Result<MechanicsFormulas<'_>, Diagnost
     let splitting = splitting::splitting(&sources(1), &lagrangian, &substeps);
     let is_exact =
         !energy::pushes(&model, potential_energy) && splitting::drifts_exactly(&model, &system.symbols, &substeps);
+    let monitor = MonitorFormulas::of(&sources(1), &energy, &substeps[..stepped], potential_energy)?;
     let is_free = system.is_free();
     let collocation =
         if is_exact { None } else { collocation::collocation(&sources(1), &energy, potential_energy, is_free)? };
@@ -201,6 +204,7 @@ fn mechanics(mut model: Mechanics<'_>) -> Result<MechanicsFormulas<'_>, Diagnost
         substeps,
         stepped,
         splitting,
+        monitor,
         collocation,
         is_exact,
         covector,

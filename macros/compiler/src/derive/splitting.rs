@@ -42,7 +42,8 @@ pub(super) fn splitting<'g>(
     let (model, h) = (sources.model, sources.model.step_size);
     let energy = model.potential.filter(|_| matches!(model.order, Order::Fourth | Order::Sixth))?;
     let half = -(h * energy / 2);
-    let plain = lagrangian.start == half && lagrangian.end == half && !model.has_variations();
+    let plain =
+        lagrangian.start == half && lagrangian.end == half && !model.has_variations() && model.monitor.is_none();
     if !plain || !drifts_exactly(model, &sources.symbols, substeps) {
         return None;
     }

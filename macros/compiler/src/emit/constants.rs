@@ -60,7 +60,7 @@ impl Emitter<'_, '_> {
             Some([quote!(#name), quote!(runtime::#kind<#parameters>), quote!(: runtime::#kind::new(&#inertia, #part)?)])
         });
         let formulas = &self.formulas;
-        let is_scheduled = formulas.splitting.is_some() || formulas.collocation.is_some();
+        let is_scheduled = formulas.has_own_schedule();
         let needs_step_size =
             is_scheduled || self.keeps_matrices || self.has_constrained_edges() || self.reads_step_size();
         let step_size = needs_step_size.then(|| [quote!(step_size), quote!(T), quote!(: h)]);

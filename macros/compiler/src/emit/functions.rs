@@ -309,6 +309,17 @@ functions! {
         fn kick_gradient(&self, c: &C, t: T, q: &Q, weight: T, gradient: T) -> Q { Id::SplittingGradient }
     }
 
+    /// `TimeTransformed`: the monitor that sets the times of steps.
+    TIME_TRANSFORMED(true) {
+        fn step_size(c: &C) -> T { Id::Constants } = { c.step_size }
+        /// The monitor g: dt = g ds.
+        fn monitor(&self, c: &C, q: &Q) -> T { Id::Monitor }
+        /// The kick of a step, which is that of the time h g.
+        fn monitored_kick(&self, c: &C, t: T, q: &Q) -> Mu { Id::MonitoredKick }
+        /// The slope γ of the monitor: γ·μ = h ġ/g with the velocity of the momentum μ.
+        fn monitor_slope(&self, c: &C, q: &Q) -> Mu { Id::MonitorSlope }
+    }
+
     /// `HamiltonEquations`: the equations that a step of order 16 collocates.
     HAMILTON_EQUATIONS(true) {
         fn step_size(c: &C) -> T { Id::Constants } = { c.step_size }

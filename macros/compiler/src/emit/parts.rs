@@ -78,7 +78,7 @@ impl Emitter<'_, '_> {
     /// Whether the steps of a single substep are so short that they are inlined wherever they are called.
     pub(super) fn is_short(&self) -> bool {
         let formulas = &self.formulas;
-        let is_single = formulas.stepped == 1 && formulas.stages().is_none() && formulas.collocation.is_none();
+        let is_single = formulas.stepped == 1 && formulas.stages().is_none() && !formulas.has_own_schedule();
         is_single && self.program.cost_of_moves(0).total() <= SHORT_STEP
     }
 
@@ -203,7 +203,7 @@ impl Emitter<'_, '_> {
         kernel: Option<&'k Kernel>,
     ) -> Option<Body<'k>> {
         let computed = || Some(function.computes(&self.scope_of_step(), kernel?));
-        let steps_otherwise = self.formulas.splitting.is_some() || self.formulas.collocation.is_some();
+        let steps_otherwise = self.formulas.has_own_schedule();
         let has_covectors = self.model.has_covectors();
         match function.name {
             "end_kick" if !self.ends_with_kick() || self.ends_as_it_starts(index) => None,
@@ -245,8 +245,7 @@ impl Emitter<'_, '_> {
 
     /// Whether a step ends with a kick of its own.
     fn ends_with_kick(&self) -> bool {
-        let formulas = self.formulas;
-        formulas.splitting.is_none() && formulas.collocation.is_none() && !self.program.turns_in_plane()
+        !self.formulas.has_own_schedule() && !self.program.turns_in_plane()
     }
 
     /// The substep whose kick at the start is that at the end.

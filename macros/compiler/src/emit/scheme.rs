@@ -4,17 +4,20 @@
 use proc_macro2::{Ident, TokenStream};
 use quote::{format_ident, quote};
 
-use super::Emitter;
 use super::constants::tensor;
 use super::function::{Body, no_words};
-use super::functions::{FREE_MOTION, GREAT_CIRCLES, SPLIT_KICKS};
+use super::functions::{FREE_MOTION, GREAT_CIRCLES, SPLIT_KICKS, TIME_TRANSFORMED};
 use super::scope::size;
+use super::{Emitter, flag};
 use crate::derive::{Id, Solution};
 use crate::lower::Solve;
 
 impl Emitter<'_, '_> {
     /// The type of the scheme.
     pub(super) fn scheme(&self) -> TokenStream {
+        if self.formulas.monitor.is_some() {
+            return transformed(self.model.order.stages());
+        }
         composed(self.formulas.stages(), self.scheme_of_single_steps())
     }
 
@@ -57,6 +60,7 @@ impl Emitter<'_, '_> {
             && self.program.find(Id::StartKick(0)).is_some()
             && self.program.find(Id::EndKick(last)).is_some()
             && formulas.splitting.is_none()
+            && formulas.monitor.is_none()
             && formulas.collocation.is_none()
     }
 
@@ -70,6 +74,11 @@ impl Emitter<'_, '_> {
     pub(super) fn parts_of_scheme(&self) -> TokenStream {
         if self.formulas.splitting.is_some() {
             return self.split_kicks();
+        }
+        if let Some(monitor) = &self.formulas.monitor {
+            let is_exact = monitor.drifts_exactly.then(|| flag("DRIFTS_ARE_EXACT", true));
+            let functions = self.written(TIME_TRANSFORMED, &self.scope_of_step(), &no_words);
+            return self.implementation("TimeTransformed", &[], quote!(#is_exact #functions));
         }
         if self.formulas.collocation.is_some() {
             return self.hamilton_equations();
@@ -146,12 +155,24 @@ impl Emitter<'_, '_> {
 /// The scheme of a step of so many single steps; where it is `None`, that of single steps.
 pub(super) fn composed(stages: Option<usize>, single: TokenStream) -> TokenStream {
     let Some(stages) = stages else { return single };
+    let sizes = sizes(stages);
+    quote!(runtime::Composed<#single, #sizes>)
+}
+
+/// The scheme of a step of transformed time that is composed of so many.
+fn transformed(stages: Option<usize>) -> TokenStream {
+    let sizes = sizes(stages.unwrap_or(1));
+    quote!(runtime::Transformed<#sizes>)
+}
+
+/// The sizes of so many steps, the same forwards and backwards, and how many differ.
+fn sizes(stages: usize) -> TokenStream {
     let order = match stages {
+        1 => quote!(OfOrderTwo),
         5 => quote!(OfOrderFour),
         11 => quote!(OfOrderSix),
         _ => quote!(OfOrderEight),
     };
-    // the sizes of a composed step are the same forwards and backwards
     let distinct = size(stages.div_ceil(2));
-    quote!(runtime::Composed<#single, runtime::#order, #distinct>)
+    quote!(runtime::#order, #distinct)
 }

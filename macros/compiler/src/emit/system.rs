@@ -22,7 +22,7 @@ impl<'g> Emitter<'_, 'g> {
         let types = types_of_system(
             &self.types.clone().map(|ty| self.spelled(&ty)),
             &self.input,
-            &time_type(self.formulas.is_timed()),
+            &time_type(self.formulas.is_timed() || self.formulas.monitor.is_some()),
         );
         let names = self.names_of(&self.target.name);
         let stepping = self.stepping(Some(names), &self.program.derivation());
@@ -185,7 +185,7 @@ impl<'g> Emitter<'_, 'g> {
         let solves = || self.program.steps[0].solves.iter().filter(|solve| solve.solution == Solution::FreeRotation);
         solves().next()?;
         let scope = self.scope_of_system();
-        let inertia = scope.body(self.program.kernel(Id::Inertia));
+        let inertia = self.inertia(&scope);
         let dimension = size(self.dimension);
         let momentum = |solve: &Solve| {
             let factor = &self.model.factors[self.factor_of(solve)];

@@ -63,6 +63,7 @@ impl<'a, 'g> Maker<'a, 'g> {
         let is_of_step = match id {
             Id::MomentumAfter(_) => self.of_steps.contains(&id),
             Id::SplittingKick | Id::SplittingGradient | Id::Guess | Id::Mobility => true,
+            Id::Monitor | Id::MonitoredKick | Id::MonitorSlope => true,
             _ => id.substep().is_some(),
         };
         let hoisting = if is_of_step { Hoisting::Constants(&mut self.hoisted) } else { Hoisting::Nothing };
@@ -111,7 +112,8 @@ fn is_stacked(id: Id) -> bool {
             | MomentumAfter(_)
     );
     let is_momentum = matches!(id, MomentumMap | Coadjoint | Legendre | LegendreNext | MomentumComponents | Inertia);
-    let is_of_scheme = matches!(id, SynchronizedMomentum | Gyroscopic | SplittingKick | Guess);
+    let is_of_scheme =
+        matches!(id, SynchronizedMomentum | Gyroscopic | SplittingKick | MonitoredKick | MonitorSlope | Guess);
     is_of_step || is_momentum || is_of_scheme || matches!(id, ConservedMomenta | Bounds | BoundPrices)
 }
 

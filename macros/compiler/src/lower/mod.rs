@@ -123,7 +123,14 @@ fn kernels<'g>(formulas: &MechanicsFormulas<'g>, form: &Form) -> Result<Kernels<
     if let Some(splitting) = &formulas.splitting {
         maker.name(&splitting.form);
     }
-    maker.known_rows([Id::SplittingKick, Id::SplittingGradient, Id::Mobility]);
+    maker.known_rows([
+        Id::SplittingKick,
+        Id::SplittingGradient,
+        Id::Monitor,
+        Id::MonitoredKick,
+        Id::MonitorSlope,
+        Id::Mobility,
+    ]);
     maker.collocation(formulas);
     maker.rows([Id::Lift]);
     maker.variations(formulas)?;

@@ -8,11 +8,11 @@ use super::groups::without_cayley_map;
 use super::power::Term;
 use super::scope::Scope;
 use super::sites;
-use super::slots::{COST, LAGRANGIAN, POTENTIAL, Slot};
+use super::slots::{COST, LAGRANGIAN, MONITOR, POTENTIAL, Slot};
 use super::space::new_value_of;
 use super::typed::{Arguments, Typed, Velocity};
 use super::value::{Each, Value};
-use super::{Discretization, Factor, Kinetic, Leaf, Parameter, Written};
+use super::{Discretization, Factor, Kinetic, Leaf, Monitor, Parameter, Written};
 use crate::diagnostic::{Location, error, refuse, report};
 use crate::parse::{self, Closure, Declaration, Opaque, Pattern, parenthesized, spell, tail};
 
@@ -184,6 +184,14 @@ impl<'g> Closures<'_, '_, 'g> {
                 help "add the values of sites, as in `(0..N).map(|i| …).sum()`");
         }
         (None, value.terms().unwrap_or_default())
+    }
+
+    /// The monitor of `step`; `None` within an error, which was reported.
+    pub fn monitor(&mut self) -> Option<Option<Monitor<'g>>> {
+        let Some(closure) = &self.declaration.step else { return Some(None) };
+        let scope = self.arguments.scope_of(closure, MONITOR);
+        let value = scalar(self.context, closure, scope, "the time of a step is a scalar")?;
+        Some(Some(Monitor { value, written: written(closure) }))
     }
 
     fn opaque(&self, opaque: &Opaque) -> Option<Expr<'g>> {

@@ -233,6 +233,7 @@ pub fn model<'g>(graph: &'g Graph, declaration: &Declaration, by_number: ByNumbe
         kinetic,
         potential,
         opaque: declaration.potential.as_ref().and_then(Potential::opaque).cloned(),
+        monitor: formulas.monitor,
         force,
         constraint: formulas.constraint,
         power,
@@ -256,6 +257,7 @@ struct ClosureValues<'g> {
     laws: Vec<(Side, bool)>,
     mover: Mover<'g>,
     potential: Option<Expr<'g>>,
+    monitor: Option<Monitor<'g>>,
     /// The potential of a power.
     terms: Vec<Term<'g>>,
     symmetries: Vec<OfferedSymmetry<'g>>,
@@ -284,6 +286,7 @@ impl<'g> ClosureValues<'g> {
         let action = closures.action();
         let kinetic = closures.kinetic();
         let (potential, terms) = closures.potential();
+        let monitor = closures.monitor();
         let (action, factors, space) = (action?, typed.factors.as_deref()?, typed.space.as_ref()?);
         let (graph, diagnostics, closure) = (context.graph, context.diagnostics, &declaration.action);
         let acting = Action { graph, closure, factors, configurations: &space.leaves, value: &action };
@@ -315,6 +318,7 @@ impl<'g> ClosureValues<'g> {
             laws: laws?,
             mover: mover?,
             potential,
+            monitor: monitor?,
             terms,
             symmetries,
             force,

@@ -77,7 +77,9 @@ pub fn outline(graph: &Graph, declaration: &Declaration) -> Option<Outline> {
         dimension: groups.leaves.iter().map(|(group, _)| group.dimension()).sum(),
         element: (groups.layout, groups.leaves.each(of_group)),
         configuration: if declaration.dials.emit.momentum { point() } else { nested(spaces) },
-        takes_time: opaque_takes_time || declaration.closures().flat_map(|closure| &closure.arguments).any(is_time),
+        takes_time: opaque_takes_time
+            || declaration.step.is_some()
+            || declaration.closures().flat_map(|closure| &closure.arguments).any(is_time),
         scalar: scalar(declaration),
     })
 }

@@ -31,6 +31,7 @@ pub(super) enum Slot {
 pub(super) const COST: &[Slot] = &[Slot::Time, Slot::Step, Slot::Configuration, Slot::Element];
 pub(super) const LAGRANGIAN: &[Slot] = &[Slot::Time, Slot::Configuration, Slot::Velocity];
 pub(super) const POTENTIAL: &[Slot] = &[Slot::Time, Slot::Configuration];
+pub(super) const MONITOR: &[Slot] = &[Slot::Configuration];
 pub(super) const FORCE: &[Slot] = &[Slot::Time, Slot::Configuration, Slot::Velocity, Slot::Input];
 pub(super) const CHOSEN_FORCE: &[Slot] =
     &[Slot::Time, Slot::Configuration, Slot::Velocity, Slot::Input, Slot::Reference];
@@ -49,10 +50,11 @@ pub(super) const END_OF_STATES: &[Slot] = &[Slot::Time, Slot::Configuration, Slo
 pub(super) const SYMMETRY: &[Slot] = &[Slot::Offered, Slot::Configuration, Slot::Element];
 
 /// The arguments of the closure of each key.
-const ARGUMENTS: [(&str, &[Slot]); 13] = [
+const ARGUMENTS: [(&str, &[Slot]); 14] = [
     ("cost", COST),
     ("lagrangian", LAGRANGIAN),
     ("potential", POTENTIAL),
+    ("step", MONITOR),
     ("symmetry", SYMMETRY),
     ("force", FORCE),
     ("force_on", FORCE),

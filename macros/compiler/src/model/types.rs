@@ -81,6 +81,8 @@ pub struct Mechanics<'g> {
     pub potential: Option<Expr<'g>>,
     /// The methods behind an opaque potential.
     pub opaque: Option<Opaque>,
+    /// The monitor that sets the times of steps; `None` where they are of one size.
+    pub monitor: Option<Monitor<'g>>,
     /// The forces; `None` where nothing but the potential acts.
     pub force: Option<Force<'g>>,
     /// The constraint; `None` where every velocity is allowed.
@@ -373,6 +375,14 @@ impl<'g> Kinetic<'g> {
     pub fn discretization(&self) -> Option<Discretization> {
         if let Kinetic::Lagrangian { discretization, .. } = self { Some(*discretization) } else { None }
     }
+}
+
+/// The monitor that `step` declares.
+pub struct Monitor<'g> {
+    /// g(q): dt = g ds.
+    pub value: Expr<'g>,
+    /// The function as written.
+    pub written: Written,
 }
 
 /// The forces other than that of the potential, as functions of t, q, ξ and the input u.

@@ -30,6 +30,8 @@ pub struct Declaration {
     pub kinetic: Kinetic,
     /// The potential energy; a free body has none.
     pub potential: Option<Potential>,
+    /// The monitor, which sets the times of steps.
+    pub step: Option<Closure>,
     /// The force as a covector of the group, in 𝔤*.
     pub force: Option<Closure>,
     /// The force as a covector of the configuration.
@@ -110,7 +112,7 @@ impl Declaration {
     pub fn closures(&self) -> impl Iterator<Item = &Closure> {
         let potential = self.potential.as_ref().and_then(Potential::closure);
         let forces = self.force.iter().chain(&self.force_on).chain(&self.constraints).chain(&self.spaces);
-        let energies = [Some(&self.action), Some(self.kinetic.closure()), potential];
+        let energies = [Some(&self.action), Some(self.kinetic.closure()), potential, self.step.as_ref()];
         let control = self.control.iter().flat_map(|control| [Some(&control.price), control.bounds.as_ref()]);
         energies.into_iter().chain(control).flatten().chain(forces).chain(self.of_end()).chain(&self.symmetries)
     }
@@ -157,8 +159,8 @@ pub(super) fn assemble(input: &DeriveInput, mut keys: Keys, fields: Vec<Field>) 
         diagnostics.push(missing_kinetic(&input.ident, &fields));
     }
     control::check_end(&keys, control.as_ref());
-    let [action, force, force_on, endpoint, target] =
-        ["action", "force", "force_on", "endpoint", "target"].map(|name| keys.closures.remove(name));
+    let [action, step, force, force_on, endpoint, target] =
+        ["action", "step", "force", "force_on", "endpoint", "target"].map(|name| keys.closures.remove(name));
     let [constraints, spaces, symmetries] =
         ["constraint", "space", "symmetry"].map(|name| keys.lists.remove(name).unwrap_or_default());
     let Keys { potential, groups, dials, methods, .. } = keys;
@@ -175,6 +177,7 @@ pub(super) fn assemble(input: &DeriveInput, mut keys: Keys, fields: Vec<Field>) 
         action,
         kinetic,
         potential,
+        step,
         force,
         force_on,
         constraints,
@@ -266,6 +269,7 @@ impl fmt::Display for Declaration {
             Some(Potential::Opaque(opaque)) => writeln!(f, "  potential  = {}", opaque.spell())?,
             None => {}
         }
+        self.step.iter().try_for_each(|closure| entry(f, closure))?;
         let control = self.control.iter().flat_map(|control| [Some(&control.price), control.bounds.as_ref()]).flatten();
         let others =
             self.force.iter().chain(&self.force_on).chain(&self.constraints).chain(&self.spaces).chain(control);

@@ -15,7 +15,7 @@ const EXPECTED: [(&[&str], &str); 12] = [
         "write `force = |v| …`, with the components of the momentum"),
     (&["integrator", "scheme", "stepper", "rule"],
         "write `order = 2`, 4, 6, 8 or 16; `discretization` and `chart` choose among steps of one order"),
-    (&["h", "dt", "step", "step_size", "timestep", "time_step", "stepsize"],
+    (&["h", "dt", "step_size", "timestep", "time_step", "stepsize"],
         "leave it out: the step is the argument of `stepper(h)`"),
     (&["t", "time", "duration", "horizon", "steps"],
         "leave it out: the number of steps is chosen when they are made"),

@@ -71,7 +71,7 @@ const ITERATED: &str = "an implicit momentum equation";
 
 /// All keys: the name, how the value is read, an example, the default, the needs, and the meaning.
 #[rustfmt::skip]
-pub(super) const KEYS: [Key; 28] = [
+pub(super) const KEYS: [Key; 29] = [
     key("action", Kind::Closure, "|F: SO<3>, R: SO<3>| …", "required, or `dynamics`", "",
         "The type of the first argument is the group, that of the second the space of configurations. The value is the moved configuration. Whether the action is left or right is found."),
     key("cost", Kind::Closure, "|h, F| …", "required, or `lagrangian`", "",
@@ -102,6 +102,8 @@ pub(super) const KEYS: [Key; 28] = [
         "The price of the end of a plan, or of a path of least action with a free end. It is added to the prices of all steps."),
     key("target", Kind::Closure, "|q| [q.x == 1, q.y <= 2]", "none", CHOICE,
         "Conditions that hold at the end of plans to `Target::Conditions`: equations of scalars or vectors, and inequalities of scalars. A block with `let` may end in the list."),
+    key("step", Kind::Closure, "|q| q.norm()", "steps of the size h", "`lagrangian` or `cost`, and a potential",
+        "The monitor g(q) > 0, for close approaches. A step of the size h takes the time t with dt = g(q) ds, s from 0 to h. It is short where g is small. Steps are reversible and conserve momenta. For g = c/(V₀ − V) and exact drifts they are symplectic in s."),
     dial("order", Dial(|dials, value| value.order(&mut dials.order), |dials| text(&dials.order), Order::meanings), "2", "2", MECHANICS,
         "The order of accuracy: the error at a fixed time shrinks like this power of h."),
     dial("discretization", Dial(|dials, value| value.word(&mut dials.discretization), |dials| text(&dials.discretization), meanings::<Discretization>), "cayley", "`cayley` where that map stays in the group, else `exponential`", "`lagrangian` or `controls`",

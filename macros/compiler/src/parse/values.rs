@@ -67,7 +67,9 @@ impl Reader<'_, '_> {
             let is_method = self.name == "potential" && stream.peek(Token![Self]);
             let opaque =
                 || "for methods of the struct write `potential = opaque(Self::value, Self::gradient)`".to_string();
-            return Err(error.maybe_help(is_method.then(opaque)));
+            let size = || "leave it out for steps of one size: that is the argument of `stepper(h)`".to_string();
+            let is_size = self.name == "step";
+            return Err(error.maybe_help(is_method.then(opaque)).maybe_help(is_size.then(size)));
         }
         let closure = closure::parse(stream)?;
         Ok(Closure::read(self.name, closure, self.diagnostics))

@@ -1,6 +1,6 @@
 //! The bodies that share the lanes of one state.
 
-use crate::scheme::Held;
+use crate::scheme::{Held, Scheme, time_after};
 use crate::{Body, Clebsch, Error, Failure, Mask, Method, Scalar, Space, State, Stepper, Time};
 use alloc::vec::Vec;
 use core::ops::Range;
@@ -80,7 +80,7 @@ impl<S: Clebsch, M: Method<S>> Chunk<State<S, M>> {
             let undefined = Held::<S, M>::filled(S::Scalar::zero() / S::Scalar::zero());
             next.held.set_lane(lane, &undefined.lane(lane));
         }
-        next.time = self.state.time.after_step(stepper.h);
+        next.time = time_after::<S, M>(self.state.time, (stepper.h, 1), &next.left);
         self.state = next;
     }
 
@@ -123,7 +123,8 @@ impl<S: Clebsch, M: Method<S>> Chunk<State<S, M>> {
     /// The time goes on where all bodies have failed, for those that are put in their place.
     #[cold]
     fn wait(chunks: &mut [Self], steppers: &[Stepper<S, M>], steps: u64) {
-        if size_of::<S::Time>() == 0 {
+        let waits = |chunk: &Self| size_of::<S::Time>() == 0 || M::Scheme::now(&chunk.state.left).is_some();
+        if chunks.iter().any(waits) {
             return;
         }
         for (number, chunk) in chunks.iter_mut().enumerate() {

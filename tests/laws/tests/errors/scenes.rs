@@ -7,6 +7,7 @@ use clebsch::{
 use clebsch_tests::fixtures::chaplygin_sleigh::ChaplyginSleigh;
 use clebsch_tests::fixtures::collocated_top::CollocatedTop;
 use clebsch_tests::fixtures::damped_body::DampedBody;
+use clebsch_tests::fixtures::eccentric_orbit::EccentricOrbit;
 use clebsch_tests::fixtures::exact_body::ExactBody;
 use clebsch_tests::fixtures::follower::Follower;
 use clebsch_tests::fixtures::free_rigid_body::FreeRigidBody;
@@ -310,7 +311,12 @@ fn states() -> Vec<Scene> {
     let hit = ceiling.next().expect("the ceiling").expect("an event");
     ceiling.go_on_from(ball.state(*hit.state.configuration(), Vector1::zeros()).expect("at rest below it"));
     let resting = ceiling.next();
+    let orbit = EccentricOrbit { mass: 1.0, strength: 1.0 }.into_stepper(0.1).expect("an orbit");
     vec![
+        scene(
+            refused(orbit.state(Vector3::zeros(), Vector3::x())),
+            &["the function of `step` is 0.000e0", "positive and finite", "take smaller steps"],
+        ),
         scene(late, &["0.2 comes after 0.3", "in the order in which steps reach them"]),
         scene(refused(undefined.expect("an error")), &["event 0 is not finite", "NaN"]),
         scene(refused(touch.expect("an error")), &["event 0 touches zero", "the zeros of its rate"]),

@@ -276,3 +276,54 @@ fn what_cannot_be_stepped_is_said() {
         Err(Error::SingularKineticEnergy { .. })
     ));
 }
+
+/// A bob on a sphere whose inertia is one number, and the same with a tensor.
+mod bobs {
+    use clebsch::Clebsch;
+    use nalgebra::Matrix3;
+
+    #[derive(Clebsch, Clone, Debug)]
+    #[clebsch(
+        action         = |F: SO<3>, q: Unit<Vector3>| F * q,
+        lagrangian     = |w| self.moment * w.norm_squared() / 2,
+        potential      = |q| self.weight * q.z,
+        discretization = exact,
+        order          = 4,
+    )]
+    pub struct OfOneMoment {
+        pub moment: f64,
+        pub weight: f64,
+    }
+
+    #[derive(Clebsch, Clone, Debug)]
+    #[clebsch(
+        action         = |F: SO<3>, q: Unit<Vector3>| F * q,
+        lagrangian     = |w| w.dot(&(self.inertia * w)) / 2,
+        potential      = |q| self.weight * q.z,
+        discretization = exact,
+        order          = 4,
+    )]
+    pub struct OfATensor {
+        #[clebsch(symmetric)]
+        pub inertia: Matrix3<f64>,
+        pub weight: f64,
+    }
+}
+
+/// An inertia that is one number is the tensor with it on the diagonal: in steps, and in the Legendre transforms.
+#[test]
+fn one_moment_is_a_tensor() -> Result<(), clebsch::Error> {
+    use clebsch::Clebsch;
+    use nalgebra::{Matrix3, Rotation3, Vector3};
+    let one = bobs::OfOneMoment { moment: 1.7, weight: 2.3 };
+    let tensor = bobs::OfATensor { inertia: Matrix3::from_diagonal_element(1.7), weight: 2.3 };
+    let (q, mu) = (Vector3::new(0.6, 0.0, 0.8), Vector3::new(0.4, 0.9, -0.3));
+    let turn = *Rotation3::from_euler_angles(0.1, -0.2, 0.3).matrix();
+    let difference = one.legendre(0.1, 0.0, &q, &turn) - tensor.legendre(0.1, 0.0, &q, &turn);
+    assert!(difference.norm() < 1e-13, "{difference}");
+    let (one, tensor) = (one.into_stepper(0.1)?, tensor.into_stepper(0.1)?);
+    let ends = (one.advance(&one.state(q, mu)?, 100)?, tensor.advance(&tensor.state(q, mu)?, 100)?);
+    assert!((ends.0.configuration() - ends.1.configuration()).norm() < 1e-12);
+    assert!((ends.0.momentum() - ends.1.momentum()).norm() < 1e-12);
+    Ok(())
+}

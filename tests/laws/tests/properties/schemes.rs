@@ -4,11 +4,12 @@ use crate::arbitrary::{attitude, cases, definite, matrix, vector};
 use crate::bodies::{H, damped_bodies, tops};
 use crate::runner::proptest;
 use clebsch::__private::{
-    At, FreeMotion, GreatCircles, HamiltonEquations, Parts, Scheme, SplitKicks, Substep, VariedSubstep,
+    At, FreeMotion, GreatCircles, HamiltonEquations, Parts, Scheme, SplitKicks, Substep, TimeTransformed, VariedSubstep,
 };
 use clebsch::{Clebsch, Error, Variational};
 use clebsch_tests::fixtures::collocated_top::CollocatedTop;
 use clebsch_tests::fixtures::damped_body::DampedBody;
+use clebsch_tests::fixtures::eccentric_orbit::EccentricOrbit;
 use clebsch_tests::fixtures::exact_body::ExactBody;
 use clebsch_tests::fixtures::midpoint_top::MidpointTop;
 use clebsch_tests::fixtures::neumann20::Neumann20;
@@ -185,6 +186,33 @@ proptest! {
         prop_assert_eq!(SplitTop::step_size(&constants), H);
         let (kick, gradient) = (top.kick(&constants, 0.0, &r, b, g), top.kick_gradient(&constants, 0.0, &r, b, g));
         assert_near(&top.momentum_map(&r, &gradient), &kick, NEAR, "J(q, ∂U)");
+    }
+
+    /// A monitor, its slope, and the kick for a step of that time; a step from a place takes about h g.
+    #[test]
+    fn monitors_set_the_times_of_steps(mass in 0.5_f64..2.0, strength in 0.5_f64..2.0, q in vector::<3>(1.0), mu in vector::<3>(0.5), t in -1.0_f64..1.0) {
+        prop_assume!(q.norm() > 0.3);
+        type Steps = <EccentricOrbit as Clebsch>::Scheme;
+        let (h, orbit) = (1e-3, EccentricOrbit { mass, strength });
+        let constants = orbit.constants(h)?;
+        prop_assert_eq!(<EccentricOrbit as TimeTransformed>::step_size(&constants), h);
+        prop_assert!((orbit.monitor(&constants, &q) - q.norm()).abs() < NEAR, "g");
+        let kick = orbit.monitored_kick(&constants, t, &q);
+        assert_near(&kick, &(-q * (h * strength / q.norm_squared())), NEAR, "−h g J(q, ∂V)");
+        // h ġ/g with the velocity μ/m
+        let rate = orbit.monitor_slope(&constants, &q).dot(&mu);
+        prop_assert!((rate - h * q.dot(&mu) / (mass * q.norm_squared())).abs() < NEAR, "γ·μ");
+        let at = At::new(&orbit, &constants, t);
+        prop_assert_eq!(Steps::check_monitor(at, &q), Ok(()));
+        prop_assert_eq!(Steps::check_monitor(at, &(q * 0.0)), Err(Error::Monitor { value: 0.0 }));
+        let left = Steps::left(at, &q, &mu);
+        let now = <Steps as Scheme<EccentricOrbit>>::now;
+        prop_assert_eq!(now(&left), Some(t));
+        // at another place W is that of the place
+        prop_assert_eq!(Steps::left_elsewhere(at, &(q * 1.05), &mu, &left), Steps::left(at, &(q * 1.05), &mu));
+        let (.., left) = Steps::step(at, (&q, &mu, &left), &())?;
+        let took = now(&left).map_or(f64::NAN, |now| now - t);
+        prop_assert!((took / (h * q.norm()) - 1.0).abs() < 0.02, "the time of a step is {took}");
     }
 
     /// Hamilton's equations: J(q, p) = μ of the covector, its slope by the torque alone, and a guess that is the velocity.

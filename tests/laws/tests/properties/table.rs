@@ -17,6 +17,7 @@ pub const PROPERTIES: &[(&str, &[Property])] = &[
         ("free_motions_are_followed",      &["FreeMotion::kept", "FreeMotion::follow"]),
         ("kicks_of_splittings_are_momenta", &["SplitKicks::step_size", "SplitKicks::kick", "SplitKicks::kick_gradient"]),
         ("slopes_are_those_of_hamilton",   &["HamiltonEquations::step_size", "HamiltonEquations::slope", "HamiltonEquations::covector", "HamiltonEquations::momentum", "HamiltonEquations::guess", "HamiltonEquations::part", "HamiltonEquations::joined", "HamiltonEquations::parted"]),
+        ("monitors_set_the_times_of_steps", &["TimeTransformed::step_size", "TimeTransformed::monitor", "TimeTransformed::monitored_kick", "TimeTransformed::monitor_slope", "Scheme::now", "Scheme::check_monitor", "Scheme::left_elsewhere"]),
         ("slopes_take_the_terms_of_their_time", &["HamiltonEquations::terms_of_time"]),
         ("points_turn_by_the_step_over_the_inertia", &["GreatCircles::turn"]),
         ("edges_are_those_of_substeps",    &["VariedSubstep::edge", "VariedSubstep::momenta", "VariedSubstep::carried", "VariedSubstep::slopes", "VariedSubstep::passed", "VariedSubstep::slopes_passed"]),

@@ -6,6 +6,7 @@
 //! of the problem. With 1000 steps of 0.01 to 0.05 that makes 1e-13 to 1e-12.
 
 mod products;
+mod transformed;
 
 use clebsch::{Clebsch, State, Stepper};
 use clebsch_tests::fixtures::first_order_top::FirstOrderTop;

@@ -4,8 +4,8 @@ use clebsch_symbolic::{Group, IntoElements};
 
 use super::Lowered;
 use super::equations::{how, part};
-use crate::derive::{Collocation, MechanicsFormulas, Solution};
-use crate::model::{LeafSpace, Order};
+use crate::derive::{Collocation, MechanicsFormulas, MonitorFormulas, Solution};
+use crate::model::{LeafSpace, Mechanics, Order};
 
 const COMPENSATED: &str = "Sums are compensated: the rounding errors of q and N are stored, and added in the next step. Only the increments q⁺ − q and N⁺ − N are rounded.\n";
 
@@ -26,6 +26,9 @@ pub(super) fn scheme(formulas: &MechanicsFormulas<'_>, lowered: &Lowered) -> Str
     }
     if let Some(splitting) = &formulas.splitting {
         text = split(model.order, splitting.has_gradient);
+    }
+    if let Some(monitor) = &formulas.monitor {
+        text = transformed(model, monitor);
     }
     if formulas.is_exact && !formulas.moves_freely() {
         text += "Between kicks a site moves exactly.\n";
@@ -164,6 +167,27 @@ fn tolerance(formulas: &MechanicsFormulas<'_>) -> String {
     format!(
         "{ends} {:e} of {x}, as asked for. F lies on its group whatever {x} is. {kept}. The energy and other momenta drift, as the step is not symplectic.\n",
         tolerance.value
+    )
+}
+
+/// A step whose time follows a monitor.
+fn transformed(model: &Mechanics<'_>, monitor: &MonitorFormulas<'_>) -> String {
+    let composed = match model.order.stages() {
+        None => "It is symmetric, of second order.".to_string(),
+        Some(stages) => format!("{stages} of these, of sizes γ_i h, make a step of order {}.", model.order),
+    };
+    let half = if monitor.drifts_exactly {
+        "A step is half a drift, kick, half a drift"
+    } else {
+        "A step is half a kick, drift, half a kick"
+    };
+    let kind = if monitor.is_logarithmic {
+        "g·(V₀ − V) is constant: in s the step is symplectic, that of the logarithmic Hamiltonian"
+    } else {
+        "It is reversible, and symplectic only for exact drifts and monitors c/(V₀ − V)"
+    };
+    format!(
+        "The time follows the monitor g(q): dt = g ds, in steps of the size h of s. W starts as 1/g. A drift takes the time h/W. A kick is that of the time h·g, with W⁺ = W − γ·(μ + μ⁺)/2. {half}, each of which conserves momenta. {composed} {kind}.\n"
     )
 }
 

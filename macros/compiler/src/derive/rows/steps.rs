@@ -256,6 +256,16 @@ impl<'g> MechanicsFormulas<'g> {
             rows.push(kick.in_words(format!("J({q}, ∂U), U = {energy}"), in_latex));
             rows.push(covector.in_words(energy, latex));
         }
+        if let Some(monitor) = &self.monitor {
+            let slope = Formula::new(Id::MonitorSlope, "γ", monitor.slope.clone());
+            rows.push(Formula::new(Id::Monitor, format!("g({q})"), [monitor.value]));
+            rows.push(Formula::new(Id::MonitoredKick, format!("M⁺ − M at {q}"), monitor.kick.clone()));
+            let by_inertia = "\\Sigma^{-1}";
+            rows.push(slope.in_words(
+                format!("h·Σ⁻¹J({q}, ∂g)/g, γ·μ = h·ġ/g"),
+                format!("h {by_inertia} J({q}, \\partial g)/g,\\quad \\gamma\\cdot\\mu = h \\dot g/g"),
+            ));
+        }
         rows.extend(self.row_of_collocation(names));
         rows.extend(self.guess().map(|guess| Formula::new(Id::Guess, x, guess)));
         rows

@@ -43,6 +43,7 @@ features! {
     Cost "`cost`",
     Lagrangian "`lagrangian`",
     Potential "`potential`",
+    Step "`step`",
     Force "`force`",
     ForceOn "`force_on`",
     Constraint "`constraint`",

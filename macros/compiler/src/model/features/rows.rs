@@ -15,12 +15,12 @@ const WITHOUT_MATRICES: &[Feature] =
 
 /// The refused features, the others, the message, the reason, and the replacement.
 #[rustfmt::skip]
-pub(super) const ROWS: [Row; 87] = [
+pub(super) const ROWS: [Row; 90] = [
     // inputs move the configuration
     row(&[Dynamics], &[Controls],
         "there are `controls` and `dynamics`, but one thing moves a configuration", "",
         "keep `controls` for motions of a group, `dynamics` for any map of a vector space"),
-    row(&[Lagrangian, Potential, Force, ForceOn, Constraint, Field, Symmetry, Order, Tolerance, Iterations, Summation, Isotropy, Signature, Chart, Method], &[Controls, Dynamics],
+    row(&[Lagrangian, Potential, Step, Force, ForceOn, Constraint, Field, Symmetry, Order, Tolerance, Iterations, Summation, Isotropy, Signature, Chart, Method], &[Controls, Dynamics],
         "a system with {beside} has no {refused}",
         "the inputs move the configuration directly, without mass, momentum or force",
         "leave it out, or leave out {beside}"),
@@ -92,6 +92,19 @@ pub(super) const ROWS: [Row; 87] = [
         "{beside} needs a potential that is a formula",
         "it differentiates forces, and an opaque potential gives a value and a gradient, no second derivatives",
         "write the potential as a closure, or leave out the word"),
+    // steps of other times
+    row(&[Step], &[Force, ForceOn, Constraint, Field, Power, Effort, Tangent, Boundary, Momentum, Connection, Midpoint],
+        "`step` is not for a system with {beside} yet",
+        "such a step is made of drifts and kicks alone, whose times the monitor scales",
+        "leave out `step`, or {beside}"),
+    row(&[FirstOrder, Sixteenth], &[Step],
+        "a step with `step` has order 2, 4, 6 or 8, not {name}",
+        "it is composed of drift, kick, drift, which is symmetric and of order 2",
+        ORDER_2),
+    row(&[Step], &[GeneralLagrangian, VaryingEnergy, AdjointPair],
+        "`step` needs a kinetic energy that is a constant quadratic form of the velocity, and a discretization that is its own adjoint",
+        "the drift of another time is that of the time h with a multiple of the momentum",
+        "write a kinetic energy, as in `self.mass * v.norm_squared() / 2`, put terms without velocity in `potential`, or leave out `step`"),
     // constraints
     row(&[Boundary], &[Constraint],
         "{refused} is not for a system with a constraint yet",
