@@ -26,7 +26,7 @@ const REFERENCE: f64 = 1e-3;
 /// Claims for one scene.
 pub fn claim<const N: usize>(scene: &Scene<N>, exact: &Exact<N>, points: &[Point], claims: &mut Claims) {
     let name = |what: &str| format!("{}: {what}", scene.title);
-    let reason = "two resolutions of it; errors that slopes are taken from";
+    let reason = "two resolutions of it, or rounding of functions; errors that slopes are taken from";
     claims.at_most(&name("the reference is exact enough"), exact.error, REFERENCE * WINDOW[0], reason);
 
     if let Some(closed_form) = scene.closed_form {
@@ -40,7 +40,10 @@ pub fn claim<const N: usize>(scene: &Scene<N>, exact: &Exact<N>, points: &[Point
         .filter(|points| !is_collocated(points))
         .filter_map(|points| off_order(points, scene.least_error))
         .collect();
-    let reason = "relative, largest; the last halving with errors of 6e-11 to 1e-2, of the energy at order 1; not to a tolerance";
+    let low = WINDOW[0].max(scene.least_error);
+    let reason = &format!(
+        "relative, largest; the last halving with errors of {low:.0e} to 1e-2, of the energy at order 1; not to a tolerance"
+    );
     let all = declared().filter(|points| points[0].name.tolerance.is_none() && !is_collocated(points)).count();
     let measured = format!("orders of {} of {all} settings are those declared", off.len());
     claims.at_most(&name(&measured), largest(off), SLOPE, reason);

@@ -251,6 +251,7 @@ impl<S: Clebsch<Scalar = f64> + Clone, M: Method<S>, const N: usize> Setting<N> 
     fn clock(&self, dial: Dial, duration: f64) -> f64 {
         let Ok((stepper, start)) = self.0.prepare(fixed(dial, duration).1) else { return f64::NAN };
         let part = duration / SAMPLES as f64;
+        // the last one so that no state at a sample is left out
         let start = (start, 0, start);
         clock_steps(SAMPLES, part, start, |&(mut node, sample, _)| {
             let state = Self::reach(&stepper, &mut node, (sample + 1) as f64 * part, |_| ());

@@ -19,7 +19,7 @@
 //! Hamiltonian systems*, Astron. J. 118 (1999).
 
 use super::composed::Sizes;
-use super::sequence::{Carry, From, InSequence, Sequence, To};
+use super::sequence::{Carry, From, InSequence, Sequence, To, parted};
 use super::substep::Moving;
 use super::{At, Pair, is_due, look};
 use crate::parts::{Mu, Q, T, TimeTransformed, U};
@@ -127,7 +127,7 @@ impl<S: TimeTransformed<M>, M: Method<S>, Z: Sizes<K>, const K: usize> Sequence<
         let mut t = at.t;
         for number in 0..steps {
             state = Self::step(At { t, ..at }, (&state.0, &state.1, &state.2), u)?;
-            t = super::sequence::parted::<S, M, Density>(&state.2).0.y;
+            t = parted::<S, M, Density>(&state.2).0.y;
             if is_due(number) {
                 let (q, mu, _) = state;
                 look(&q, &mu)?;

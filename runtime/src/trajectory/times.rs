@@ -226,6 +226,8 @@ where
 const SECANTS: u32 = 8;
 
 /// The state at the root of a function that is positive at the first end and negative at the other, up to `rounding`.
+///
+/// The search of events closes its bracket to ε of the step, with twice as many evaluations. Here the value ends it.
 fn reached<X, T: Real>(
     ends: [(T, T); 2],
     rounding: T,

@@ -78,7 +78,8 @@ impl Emitter<'_, '_> {
     /// Whether the steps of a single substep are so short that they are inlined wherever they are called.
     pub(super) fn is_short(&self) -> bool {
         let formulas = &self.formulas;
-        let is_single = formulas.stepped == 1 && formulas.stages().is_none() && !formulas.has_own_schedule();
+        let is_composed = formulas.stages().is_some() || formulas.monitor.is_some() || formulas.collocation.is_some();
+        let is_single = formulas.stepped == 1 && !is_composed;
         is_single && self.program.cost_of_moves(0).total() <= SHORT_STEP
     }
 
